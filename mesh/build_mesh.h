@@ -1,0 +1,39 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "mesh/mesh_settings.h"
+#include "mesh/zone_mesh.h"
+#include "scenes/model/scene.h"
+
+namespace reemit {
+
+/// Area of one surface through repair and meshing [m2], one side: input = meshed + removed to 1e-9 relative.
+struct SurfaceAreas {
+  double input = 0;    ///< Sum over the polygons as read, after splitting non-planar ones into triangles.
+  double meshed = 0;   ///< Sum over the base triangles.
+  double removed = 0;  ///< Duplicates and parts covered by a coplanar face that wins over this one.
+};
+
+/// What meshing did to the room, for `info` and for the user.
+struct MeshReport {
+  std::vector<SurfaceAreas> surfaces;  ///< By SurfaceId.
+  std::size_t degenerate_faces = 0;    ///< Dropped: zero area.
+  std::size_t duplicate_faces = 0;     ///< Dropped: same polygon twice.
+  std::size_t overlapping_faces = 0;   ///< Lost area to a coplanar face (the emitter wins, else the earlier one).
+  std::size_t flipped_faces = 0;       ///< Turned round because the rest of their closed shell says so.
+  std::size_t nonplanar_faces = 0;     ///< Split into triangles.
+  std::size_t cut_faces = 0;           ///< Cut along the contact with another face.
+  std::vector<std::string> warnings;   ///< With surface names, files and lines.
+};
+
+struct MeshResult {
+  ZoneMesh mesh;
+  MeshReport report;
+};
+
+/// Repairs, cuts and triangulates the room and sizes its zones. Deterministic.
+/// Throws InputError when nothing is left to trace, or a face cannot be repaired (it is named).
+MeshResult build_mesh(const Scene& scene, const MeshSettings& settings = {});
+
+}  // namespace reemit

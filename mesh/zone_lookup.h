@@ -1,0 +1,53 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace reemit {
+
+// A base triangle with `divisions` n is cut into n*n congruent zones by lines parallel to its sides. Zones are numbered
+// in rows of constant floor(u n); row i holds 2(n-i)-1 triangles, pointing towards the corner u=1 (lower) and away
+// from it (upper) in turn, so row i starts at 2ni - i*i.
+//
+//   v ^  |\          u, v: p = (1-u-v) p0 + u p1 + v p2, the convention of Embree.
+//     |  |4\
+//     |  |--\
+//     |  |2\3|\      n = 2: zones 0 (lower), 1 (upper), 2 (lower) of row 0, then 3 of row 1 (drawn for n = 2
+//     |  |0\1|3\     with v upwards).
+//     +------------> u
+
+/// Number of the zone inside its base triangle that holds barycentric point (u,v); any u, v are clamped into it.
+inline std::uint32_t zone_in_triangle(std::uint32_t divisions, float u, float v) {
+  if (divisions == 1) return 0;
+  const auto n = static_cast<std::int64_t>(divisions);
+  const float un = u * static_cast<float>(n);
+  const float vn = v * static_cast<float>(n);
+  const std::int64_t i = std::clamp<std::int64_t>(static_cast<std::int64_t>(un), 0, n - 1);
+  const std::int64_t j = std::clamp<std::int64_t>(static_cast<std::int64_t>(vn), 0, n - 1 - i);
+  const bool upper = (un - static_cast<float>(i)) + (vn - static_cast<float>(j)) > 1.0F && j < n - 1 - i;
+  return static_cast<std::uint32_t>(2 * n * i - i * i + 2 * j + (upper ? 1 : 0));
+}
+
+struct Barycentric {
+  double u, v;
+};
+
+/// Corners of zone `zone` of a base triangle, counter-clockwise as the triangle itself. Inverse of zone_in_triangle.
+inline std::array<Barycentric, 3> zone_corners(std::uint32_t divisions, std::uint32_t zone) {
+  const auto n = static_cast<std::int64_t>(divisions);
+  const auto z = static_cast<std::int64_t>(zone);
+  auto i = static_cast<std::int64_t>(static_cast<double>(n) - std::sqrt(static_cast<double>(n * n - z)));
+  while (2 * n * (i + 1) - (i + 1) * (i + 1) <= z) ++i;  // the square root may be off by one for large n
+  while (2 * n * i - i * i > z) --i;
+  const std::int64_t in_row = z - (2 * n * i - i * i);
+  const std::int64_t j = in_row / 2;
+  const double h = 1.0 / static_cast<double>(n);
+  const auto at = [h](std::int64_t a, std::int64_t b) {
+    return Barycentric{h * static_cast<double>(a), h * static_cast<double>(b)};
+  };
+  if (in_row % 2 == 0) return {at(i, j), at(i + 1, j), at(i, j + 1)};
+  return {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+}
+
+}  // namespace reemit

@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenes/model/bands.h"
+#include "scenes/model/camera.h"
+#include "scenes/model/luminaire.h"
+#include "scenes/model/material.h"
+#include "scenes/model/surface.h"
+
+namespace reemit {
+
+/// A room as read from file: plain data in metres, watts and steradians.
+/// Readers fill it in any order, then call finish_scene, after which it is not changed any more.
+struct Scene {
+  std::string name;
+  std::string source;  ///< Path of the room file.
+  BandSet bands = BandSet::grey();
+  std::vector<Material> materials;  ///< Every Spectrum has bands.count() entries.
+  std::vector<Surface> surfaces;
+  std::vector<PunctualLight> lights;
+  std::vector<Camera> cameras;        ///< Names are unique.
+  std::vector<std::string> warnings;  ///< What the user should know: ignored parts, assumptions, repairs.
+  std::vector<std::string> notes;     ///< Conversions and assumptions that were applied (units, efficacy).
+
+  const Material& material_of(const Surface& s) const { return materials[s.material.index()]; }
+};
+
+/// Checks every value (finite, in range, indices in bounds, names unique) and throws InputError at the first
+/// that fails; drops to one band when no colour is anywhere; warns once per material whose non-diffuse part is
+/// ignored, when there is no luminaire, and when the size is unlikely for a room in metres.
+void finish_scene(Scene& scene);
+
+struct Box {
+  Vec3 min{0, 0, 0};
+  Vec3 max{0, 0, 0};
+  Vec3 size() const { return max - min; }
+  Vec3 centre() const { return 0.5 * (min + max); }
+};
+
+/// Bounding box of all faces [m]; a box of zero size if there are none.
+Box bounds(const Scene& scene);
+
+/// Content hash of everything that light transport depends on (geometry, materials, lights, bands; not
+/// cameras, names or paths), as 16 hex digits.
+std::string content_hash(const Scene& scene);
+
+}  // namespace reemit

@@ -1,0 +1,66 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/build_mesh.h"
+#include "mesh/zone_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "scenes/model/bands.h"
+#include "solver/solver_settings.h"
+#include "solver/tally/energy_audit.h"
+
+namespace reemit {
+
+/// Sums over batches of the irradiance of every zone [W/m2], index zone * bands + band. One batch is one independent
+/// estimate, so means and standard errors follow from the sums alone, and more batches can be added later.
+struct ZoneSums {
+  std::int64_t batches = 0;
+  std::vector<double> direct, direct_squared;      ///< First hit from a luminaire.
+  std::vector<double> indirect, indirect_squared;  ///< Everything after a reflection.
+  std::vector<double> total_squared;               ///< (direct + indirect)^2.
+};
+
+/// A mean and its standard error, both in the unit of the quantity.
+struct Estimate {
+  double mean = 0;
+  double stderr_of_mean = 0;
+};
+
+enum class StopReason { kErrorTarget, kTimeLimit, kPacketCount, kInterrupted, kNoLuminaire };
+std::string to_string(StopReason reason);  ///< In words, as printed and stored.
+
+/// How far a solve got.
+struct SolveRecord {
+  StopReason stopped = StopReason::kNoLuminaire;
+  std::uint64_t packets = 0;       ///< Emitted by luminaires.
+  std::uint64_t rays = 0;          ///< Traced in all.
+  double seconds = 0;              ///< Wall time of the solve without meshing.
+  double error = 0;                ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
+  double error_95th_percentile = 0;  ///< 95th percentile over zones of s/B, worst band; lit zones only.
+  std::uint64_t unreached_zones = 0;  ///< Zones that no packet met.
+};
+
+/// The view-independent solution of a room and all that later questions need.
+/// Zone values are irradiances; radiosity follows as B = M_e + rho E with the zone's material.
+struct Solution {
+  std::string program_version;
+  std::string room_path;  ///< As given to solve, made absolute.
+  std::string room_hash;  ///< content_hash of the room.
+  ReadOptions read_options;
+  MeshSettings mesh_settings;
+  SolverSettings settings;
+  SolveRecord record;
+  BandSet bands = BandSet::grey();
+  std::vector<std::string> surface_names;  ///< By SurfaceId.
+  MeshReport mesh_report;
+  ZoneMesh mesh{BaseMesh{}};
+  ZoneSums sums;
+  EnergyAudit audit;
+
+  Estimate direct_irradiance(ZoneId z, std::size_t band) const;    ///< [W/m2]
+  Estimate indirect_irradiance(ZoneId z, std::size_t band) const;  ///< [W/m2]
+  Estimate irradiance(ZoneId z, std::size_t band) const;           ///< [W/m2]
+};
+
+}  // namespace reemit

@@ -1,0 +1,77 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "mesh/zone_mesh.h"
+
+namespace reemit {
+
+/// Where a ray met the room.
+struct Hit {
+  TriangleId triangle;
+  float u = 0;         ///< Barycentric, as ZoneMesh::point.
+  float v = 0;
+  float distance = 0;  ///< In normalised units (RayScene::metres_per_unit).
+  bool front = true;   ///< The ray came from the front of the triangle.
+};
+
+/// 16 rays in the layout that packet tracing wants (normalised space, unit directions).
+struct alignas(64) Ray16 {
+  float ox[16], oy[16], oz[16];
+  float dx[16], dy[16], dz[16];
+};
+
+struct Hit16 {
+  std::uint32_t triangle[16];  ///< RayScene::kMiss where the ray left the room.
+  float u[16], v[16];
+  float distance[16];
+  bool front[16];
+};
+
+/// Owner of the ray-tracing structure over the base triangles. Rays live in a normalised space in which the room
+/// fits into [-1,1]^3, so that rooms of any size and place behave alike. Const members may be called from any thread.
+class RayScene {
+ public:
+  static constexpr std::uint32_t kMiss = 0xffffffff;
+
+  explicit RayScene(const ZoneMesh& mesh);
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  double metres_per_unit() const { return metres_per_unit_; }
+  Vec3f normalised(const Vec3& point) const { return ((point - centre_) / metres_per_unit_).cast<float>(); }
+  Vec3 in_room(const Vec3f& point) const { return point.cast<double>() * metres_per_unit_ + centre_; }
+
+  Vec3f corner(TriangleId t, int k) const { return corners_[3 * t.index() + static_cast<std::size_t>(k)]; }
+  const Vec3f& normal(TriangleId t) const { return normals_[t.index()]; }  ///< Unit, of the front.
+  Vec3f point(TriangleId t, float u, float v) const {
+    return (1 - u - v) * corner(t, 0) + u * corner(t, 1) + v * corner(t, 2);
+  }
+  /// Start of a ray that leaves the given side at (u,v): the one self-intersection rule of the program.
+  Vec3f ray_origin(TriangleId t, float u, float v, bool front) const;
+
+  /// Nearest hit along a ray of unit direction. False if there is none.
+  bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
+  /// Nearest hit that is not the back of a one-sided triangle: what a camera sees.
+  bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
+  /// Nearest hits of the first `count` rays, count <= 16.
+  void closest16(const Ray16& rays, int count, Hit16& hits) const;
+  /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an eye).
+  bool visible(const Vec3f& from, const Vec3f& to) const;
+  /// True if a ray of unit direction leaves the room without a hit.
+  bool escapes(const Vec3f& origin, const Vec3f& direction) const;
+
+  const ZoneMesh& mesh() const { return *mesh_; }
+
+ private:
+  struct EmbreeScene;
+  const ZoneMesh* mesh_;
+  double metres_per_unit_ = 1;
+  Vec3 centre_{0, 0, 0};
+  std::vector<Vec3f> corners_;
+  std::vector<Vec3f> normals_;
+  std::unique_ptr<EmbreeScene> embree_;
+};
+
+}  // namespace reemit
