@@ -105,6 +105,17 @@ void OutputFile::flush() {
   buffer_.clear();
 }
 
+void OutputFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
+  flush();
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t written = pwrite(descriptor_, static_cast<const char*>(bytes) + done, size - done,
+                                   static_cast<off_t>(offset + done));
+    if (written < 0 && errno != EINTR) raise(target_, "cannot write the file", last_error());
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+}
+
 void OutputFile::commit() {
   flush();
   // Without this a crash of the machine after the rename could leave an empty file under the good name.

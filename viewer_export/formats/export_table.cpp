@@ -16,7 +16,9 @@ constexpr ExportFormat kFormats[] = {
 
 }  // namespace
 
-std::span<const ExportFormat> export_formats() { return kFormats; }
+std::span<const ExportFormat> export_formats() {
+  return kFormats;
+}
 
 const ExportFormat& export_format_of(const std::filesystem::path& file) {
   return format_by_extension(export_formats(), file);

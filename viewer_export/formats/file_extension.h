@@ -8,8 +8,8 @@
 
 namespace reemit {
 
-/// The row of a format table whose `extension` is that of the file name (case is ignored). Throws InputError that
-/// lists the known ones.
+/// The row of a format table whose `extension` is that of the file name (case is ignored). Throws InputError
+/// that lists the known ones.
 template <class Format>
 const Format& format_by_extension(std::span<const Format> formats, const std::filesystem::path& file) {
   std::string extension = file.extension().string();

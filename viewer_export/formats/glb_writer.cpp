@@ -4,8 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
+
+#include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
 #include "viewer_export/formats/vertex_export.h"
@@ -161,8 +162,9 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
     const auto stride = 4 * static_cast<std::size_t>(a.components);
     add_view(layout.order.size() * stride, kArrayBuffer)["byteStride"] = stride;
   }
-  const std::size_t index_count = 3 * std::accumulate(layout.parts.begin(), layout.parts.end(), std::size_t{0},
-                                                      [](std::size_t n, const Part& p) { return n + p.triangles.size(); });
+  const std::size_t index_count =
+      3 * std::accumulate(layout.parts.begin(), layout.parts.end(), std::size_t{0},
+                          [](std::size_t n, const Part& p) { return n + p.triangles.size(); });
   add_view(4 * index_count, kElementArrayBuffer);
 
   Json accessors = Json::array();

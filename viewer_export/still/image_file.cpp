@@ -29,7 +29,9 @@ std::vector<float> rgb_of(const StillImage& image) {
 
 }  // namespace
 
-std::span<const ImageFormat> image_formats() { return kFormats; }
+std::span<const ImageFormat> image_formats() {
+  return kFormats;
+}
 
 const ImageFormat& image_format_of(const std::filesystem::path& file) {
   return format_by_extension(image_formats(), file);
