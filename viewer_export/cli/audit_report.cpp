@@ -31,7 +31,8 @@ std::vector<std::size_t> by_power(const EnergyAudit& audit, SurfaceQuanta quanta
   for (std::size_t s = 0; s < surface_count; ++s) watts[s] = watts_of_surface(audit, quanta, s);
   std::vector<std::size_t> order(surface_count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return watts[a] > watts[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return watts[a] > watts[b]; });
   return order;
 }
 
@@ -87,7 +88,8 @@ std::int64_t sum(const std::vector<std::int64_t>& quanta) {
 Json band_json(const EnergyAudit& audit, const BandAudit& band) {
   const auto watts = [&](std::int64_t quanta) { return audit.watts(band, quanta); };
   Json escaped_by_direction;
-  for (std::size_t d = 0; d < kDirections.size(); ++d) escaped_by_direction[kDirections[d]] = watts(band.escaped[d]);
+  for (std::size_t d = 0; d < kDirections.size(); ++d)
+    escaped_by_direction[kDirections[d]] = watts(band.escaped[d]);
   return {{"name", band.band},
           {"emitted_W", watts(band.emitted)},
           {"absorbed_W", watts(band.total_absorbed())},
@@ -131,9 +133,10 @@ std::string audit_text(const EnergyAudit& audit, const std::vector<std::string>&
   table.line("roulette loss", [](const BandAudit& band) { return band.roulette_loss; });
   table.line("roulette gain", [](const BandAudit& band) { return band.roulette_gain; });
   table.balance();
-  return table.text() + fmt::format("{} over {} batch{}\n",
-                                    audit.balanced() ? "The books balance exactly" : "THE BOOKS DO NOT BALANCE",
-                                    audit.batches, audit.batches == 1 ? "" : "es");
+  return table.text() +
+         fmt::format("{} over {} batch{}\n",
+                     audit.balanced() ? "The books balance exactly" : "THE BOOKS DO NOT BALANCE",
+                     audit.batches, audit.batches == 1 ? "" : "es");
 }
 
 Json audit_json(const EnergyAudit& audit, const std::vector<std::string>& surface_names) {
@@ -143,7 +146,8 @@ Json audit_json(const EnergyAudit& audit, const std::vector<std::string>& surfac
   for (const std::size_t s : by_power(audit, &BandAudit::absorbed, surface_names.size())) {
     surfaces.push_back(surface_json(audit, surface_names[s], s));
   }
-  return {{"bands", bands}, {"balanced", audit.balanced()}, {"batches", audit.batches}, {"surfaces", surfaces}};
+  return {
+      {"bands", bands}, {"balanced", audit.balanced()}, {"batches", audit.batches}, {"surfaces", surfaces}};
 }
 
 }  // namespace reemit::cli

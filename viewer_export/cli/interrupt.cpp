@@ -1,18 +1,22 @@
 #include "viewer_export/cli/interrupt.h"
 
 #include <csignal>
+
 #include <unistd.h>
 
 namespace reemit::cli {
 namespace {
 
-// A signal handler has no argument of ours to find its state by, so this is the one place that keeps it per process.
+// A signal handler has no argument of ours to find its state by, so this is the one place that keeps it per
+// process.
 std::atomic<bool> stop_requested{false};
 std::atomic<int> quit_signal{0};
 std::atomic<bool> writing{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-void quit(int signal) { ::_exit(128 + signal); }
+void quit(int signal) {
+  ::_exit(128 + signal);
+}
 
 extern "C" void handle_signal(int signal) {
   if (!stop_requested.exchange(true)) return;
@@ -37,9 +41,13 @@ InterruptGuard::~InterruptGuard() {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-const std::atomic<bool>& InterruptGuard::requested() const { return stop_requested; }
+const std::atomic<bool>& InterruptGuard::requested() const {
+  return stop_requested;
+}
 
-FinishWriting::FinishWriting() { writing = true; }
+FinishWriting::FinishWriting() {
+  writing = true;
+}
 
 FinishWriting::~FinishWriting() {
   writing = false;

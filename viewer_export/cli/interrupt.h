@@ -3,8 +3,8 @@
 
 namespace reemit::cli {
 
-/// While it lives, the first SIGINT or SIGTERM asks long work to stop and the second one ends the program at once.
-/// At most one may live at a time: signals belong to the process.
+/// While it lives, the first SIGINT or SIGTERM asks long work to stop and the second one ends the program at
+/// once. At most one may live at a time: signals belong to the process.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -16,8 +16,8 @@ class InterruptGuard {
   const std::atomic<bool>& requested() const;
 };
 
-/// While it lives, a signal that would end the program waits until the file in work is complete or removed, so that
-/// no half-written file stays behind.
+/// While it lives, a signal that would end the program waits until the file in work is complete or removed,
+/// so that no half-written file stays behind.
 class FinishWriting {
  public:
   FinishWriting();

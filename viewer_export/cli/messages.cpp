@@ -14,6 +14,8 @@ void print_warnings(const std::vector<std::string>& warnings) {
   }
 }
 
-void print_note(const std::string& note) { fmt::print(stderr, "reemit: {}\n", note); }
+void print_note(const std::string& note) {
+  fmt::print(stderr, "reemit: {}\n", note);
+}
 
 }  // namespace reemit::cli

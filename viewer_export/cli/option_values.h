@@ -6,8 +6,8 @@
 
 namespace reemit::cli {
 
-// Values of options, read strictly: the whole text must be the value. All throw std::invalid_argument with a message
-// that names the text and shows a right one.
+// Values of options, read strictly: the whole text must be the value. All throw std::invalid_argument with a
+// message that names the text and shows a right one.
 
 /// Share of one in (0,1): "1%", "0.5 %" or "0.01".
 double parse_share(const std::string& text);

@@ -5,9 +5,8 @@
 #include <cstdio>
 #include <utility>
 
-#include <unistd.h>
-
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace reemit::cli {
 
@@ -19,7 +18,9 @@ ProgressStyle progress_style(bool quiet, bool verbose) {
 
 Progress::Progress(std::string what, ProgressStyle style) : what_(std::move(what)), style_(style) {}
 
-Progress::~Progress() { finish(); }
+Progress::~Progress() {
+  finish();
+}
 
 void Progress::update(double done, const std::string& detail) {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
@@ -59,7 +60,8 @@ std::string duration_text(double seconds) {
   const double whole = std::round(std::max(0.0, seconds));
   if (whole < 60) return fmt::format("{:.0f} s", whole);
   if (whole < 3600) return fmt::format("{:.0f} min {:02.0f} s", std::floor(whole / 60), std::fmod(whole, 60));
-  return fmt::format("{:.0f} h {:02.0f} min", std::floor(whole / 3600), std::floor(std::fmod(whole, 3600) / 60));
+  return fmt::format("{:.0f} h {:02.0f} min", std::floor(whole / 3600),
+                     std::floor(std::fmod(whole, 3600) / 60));
 }
 
 }  // namespace reemit::cli

@@ -23,7 +23,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` in [0,1]; `detail` such as "error 1.3 %, 12.1 Mrays/s"; `seconds_left` < 0 or not finite: not known yet.
+  /// `done` in [0,1]; `detail` such as "error 1.3 %, 12.1 Mrays/s"; `seconds_left` < 0 or not finite: not
+  /// known yet.
   void update(double done, const std::string& detail, double seconds_left);
   /// The same with the time left estimated from the time since construction and `done`.
   void update(double done, const std::string& detail = {});

@@ -7,7 +7,9 @@
 
 namespace reemit::cli {
 
-void TextTable::row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+void TextTable::row(std::vector<std::string> cells) {
+  rows_.push_back(std::move(cells));
+}
 
 std::string TextTable::text() const {
   std::vector<std::size_t> widths;
@@ -29,8 +31,12 @@ std::string TextTable::text() const {
   return text;
 }
 
-std::string number_text(double value) { return fmt::format("{:.6g}", value); }
+std::string number_text(double value) {
+  return fmt::format("{:.6g}", value);
+}
 
-std::string percent_text(double share) { return fmt::format("{:.3g} %", 100 * share); }
+std::string percent_text(double share) {
+  return fmt::format("{:.3g} %", 100 * share);
+}
 
 }  // namespace reemit::cli
