@@ -29,7 +29,7 @@ Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSetting
   solution.room_hash = content_hash(scene);
   solution.settings = settings;
   solution.bands = scene.bands;
-  for (const Surface& s : scene.surfaces) solution.surface_names.push_back(s.name);
+  keep_surfaces(scene, solution);
   solution.mesh_report = std::move(mesh.report);
   solution.mesh = std::move(mesh.mesh);
   const std::size_t values = solution.mesh.zone_count() * scene.bands.count();
