@@ -49,8 +49,7 @@ std::string room_status(const Solution& solution, const std::filesystem::path& f
     return "unchanged";
   } catch (const InputError& problem) {
     const std::string message = problem.what();
-    return message.substr(0, message.find('
-'));
+    return message.substr(0, message.find('\n'));
   }
 }
 
