@@ -13,7 +13,7 @@
 
 #include "tests/support/temp_folder.h"
 
-namespace reemit::testing {
+namespace reemit::test {
 
 /// How one run of the built program ended.
 struct ProgramRun {
@@ -89,4 +89,4 @@ inline ProgramRun run_reemit(const std::vector<std::string>& arguments, const Ru
   return RunningProgram(arguments, options).wait();
 }
 
-}  // namespace reemit::testing
+}  // namespace reemit::test

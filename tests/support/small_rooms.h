@@ -1,9 +1,10 @@
 #pragma once
 #include <string>
 
-namespace reemit::testing {
+namespace reemit::test {
 
-/// A closed box of one metre with a coloured wall and a lamp that floats under the ceiling, in the native format.
+/// A closed box of one metre with a coloured wall and a lamp that floats under the ceiling, in the native
+/// format.
 inline std::string small_json_room() {
   return R"({
   "format": "reemit-room", "version": 1, "name": "small box", "bands": "rgb",
@@ -53,4 +54,4 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(text.find(from), from.size(), to);
 }
 
-}  // namespace reemit::testing
+}  // namespace reemit::test

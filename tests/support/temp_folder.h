@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace reemit::testing {
+namespace reemit::test {
 
 /// A folder of its own for one test, removed with all it holds.
 class TempFolder {
@@ -57,4 +57,4 @@ inline std::string read_bytes(const std::filesystem::path& path) {
   return content.str();
 }
 
-}  // namespace reemit::testing
+}  // namespace reemit::test

@@ -1,10 +1,7 @@
-#include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,18 +25,9 @@ struct InfoOptions {
   OutputStyle style;
 };
 
-/// Whether a file is HDF5, by the signature every such file starts with. A missing one is left to the
-/// readers.
-bool is_hdf5(const std::filesystem::path& path) {
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  std::array<char, 8> start{};
-  std::ifstream file(path, std::ios::binary);
-  return file.read(start.data(), start.size()) && std::string_view(start.data(), start.size()) == kSignature;
-}
-
-/// A solution cut short or empty is still meant as one.
+/// A solution file cut short at its start or empty is still meant as one.
 bool is_solution(const std::filesystem::path& path) {
-  return is_hdf5(path) || path.extension() == ".h5" || path.extension() == ".hdf5";
+  return is_solution_file(path) || path.extension() == ".h5" || path.extension() == ".hdf5";
 }
 
 /// Whether the room of a solution can still be read and is the one that was solved.
