@@ -20,8 +20,9 @@ constexpr std::uint32_t kPacketsPerTask = 4096;
 constexpr std::uint32_t kMostSweeps = 200'000;
 
 /// Traces a flight and books every packet where it ends; `incident` receives what zones catch.
-void trace_flight(const TransportScene& transport, const Flight& flight, const FlightNumbers& numbers,
+void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumbers& numbers,
                   std::vector<std::int64_t>& incident, BatchBooks& books) {
+  const TransportScene& transport = batch.transport;
   const std::size_t bands = transport.bands();
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
@@ -36,6 +37,7 @@ void trace_flight(const TransportScene& transport, const Flight& flight, const F
       for (std::uint32_t first = begin; first < end; first += 16) {
         const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
         cursor.start16(first, count, numbers, rays, source);
+        if (batch.ray_observer != nullptr) (*batch.ray_observer)(rays, count);
         transport.rays().closest16(rays, count, hits);
         for (int lane = 0; lane < count; ++lane) {
           const std::uint32_t s = source[lane];
@@ -214,9 +216,8 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   Allocation allocation(transport.zones(), bands);
   for (std::uint32_t sweep = 0; sweep < kMostSweeps; ++sweep) {
     if (task.abandon != nullptr && task.abandon->load(std::memory_order_relaxed)) return false;
-    trace_flight(transport, flight,
-                 FlightNumbers(task.settings.sampling, task.settings.seed, task.batch, sweep), incident,
-                 books);
+    trace_flight(task, flight, FlightNumbers(task.settings.sampling, task.settings.seed, task.batch, sweep),
+                 incident, books);
     reflect(transport, incident, sweep == 0 ? books.direct : books.indirect, unshot, books);
     const auto left = static_cast<double>(sum(unshot));
     if (left <= task.settings.stop_share * emitted) break;

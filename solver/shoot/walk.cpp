@@ -25,6 +25,7 @@ class WalkTask {
         bands_(task.transport.bands()),
         rng_(task.settings.seed, RngPurpose::kReflection),
         batch_(task.batch),
+        observer_(task.ray_observer),
         books_(books),
         local_(books),
         absorbed_(absorbed) {}
@@ -36,6 +37,8 @@ class WalkTask {
       trace_on(bounce);
     }
   }
+
+  std::uint64_t rays() const { return rays_; }
 
  private:
   void start(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
@@ -90,8 +93,9 @@ class WalkTask {
   void arrive(const Ray16& rays, int count, std::vector<std::int64_t>& incident, const IdOf& id_of,
               const QuantaOf& quanta_of, std::uint32_t bounce) {
     Hit16 hits;
+    if (observer_ != nullptr) (*observer_)(rays, count);
     transport_.rays().closest16(rays, count, hits);
-    books_rays_ += static_cast<std::uint64_t>(count);
+    rays_ += static_cast<std::uint64_t>(count);
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = quanta_of(lane);
       if (hits.triangle[lane] == RayScene::kMiss) {
@@ -136,18 +140,15 @@ class WalkTask {
     for (std::size_t i = 0; i < quanta_.size(); ++i) book(books_.unshot[i % bands_], quanta_[i]);
   }
 
- public:
-  std::uint64_t rays() const { return books_rays_; }
-
- private:
   const TransportScene& transport_;
   std::size_t bands_;
   CounterRng rng_;
   std::uint32_t batch_;
+  const RayObserver* observer_;
   BatchBooks& books_;
   LocalBooks local_;
   std::vector<std::int64_t>& absorbed_;  // [surface * bands + band], of this thread
-  std::uint64_t books_rays_ = 0;
+  std::uint64_t rays_ = 0;
   std::vector<ZoneId> zones_, from_zones_;          // where each packet is
   std::vector<std::uint32_t> ids_, from_ids_;       // its number: selects its random numbers
   std::vector<std::int64_t> quanta_, from_quanta_;  // its power per band
