@@ -7,9 +7,11 @@ namespace reemit {
 struct MeshSettings {
   /// Largest zone area [m2], > 0. Unset: total area / default_zone_count.
   std::optional<double> zone_area;
-  int default_zone_count = 4000;     ///< Zones aimed at when zone_area is unset [1, 1e8].
-  double smallest_angle_deg = 20.0;  ///< Quality bound of the base triangulation where the input allows it [0, 30].
-  double crease_angle_deg = 30.0;    ///< Neighbouring faces that bend less share vertices (curved surfaces) [0, 180].
+  int default_zone_count = 4000;  ///< Zones aimed at when zone_area is unset [1, 1e8].
+  double smallest_angle_deg =
+      20.0;  ///< Quality bound of the base triangulation where the input allows it [0, 30].
+  double crease_angle_deg =
+      30.0;  ///< Neighbouring faces that bend less share vertices (curved surfaces) [0, 180].
 };
 
 }  // namespace reemit

@@ -6,18 +6,13 @@
 
 namespace reemit {
 
-// A base triangle with `divisions` n is cut into n*n congruent zones by lines parallel to its sides. Zones are numbered
-// in rows of constant floor(u n); row i holds 2(n-i)-1 triangles, pointing towards the corner u=1 (lower) and away
-// from it (upper) in turn, so row i starts at 2ni - i*i.
-//
-//   v ^  |\          u, v: p = (1-u-v) p0 + u p1 + v p2, the convention of Embree.
-//     |  |4\
-//     |  |--\
-//     |  |2\3|\      n = 2: zones 0 (lower), 1 (upper), 2 (lower) of row 0, then 3 of row 1 (drawn for n = 2
-//     |  |0\1|3\     with v upwards).
-//     +------------> u
+// A base triangle with `divisions` n is cut into n*n congruent zones by lines parallel to its sides, in the
+// barycentric coordinates of Embree: p = (1-u-v) p0 + u p1 + v p2. Zones are numbered in rows of constant
+// floor(u n). Row i holds 2(n-i)-1 triangles, lower ones (with the orientation of the whole triangle) and
+// upper ones in turn, so row i starts at number 2ni - i*i.
 
-/// Number of the zone inside its base triangle that holds barycentric point (u,v); any u, v are clamped into it.
+/// Number of the zone inside its base triangle that holds barycentric point (u,v); any u, v are clamped into
+/// it.
 inline std::uint32_t zone_in_triangle(std::uint32_t divisions, float u, float v) {
   if (divisions == 1) return 0;
   const auto n = static_cast<std::int64_t>(divisions);
@@ -33,7 +28,8 @@ struct Barycentric {
   double u, v;
 };
 
-/// Corners of zone `zone` of a base triangle, counter-clockwise as the triangle itself. Inverse of zone_in_triangle.
+/// Corners of zone `zone` of a base triangle, counter-clockwise as the triangle itself. Inverse of
+/// zone_in_triangle.
 inline std::array<Barycentric, 3> zone_corners(std::uint32_t divisions, std::uint32_t zone) {
   const auto n = static_cast<std::int64_t>(divisions);
   const auto z = static_cast<std::int64_t>(zone);

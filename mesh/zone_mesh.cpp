@@ -34,8 +34,8 @@ ZoneMesh::ZoneMesh(BaseMesh base) : base_(std::move(base)) {
   zone_triangle_.reserve(zones);
   for (std::size_t i = 0; i < count; ++i) {
     const BaseTriangle& t = base_.triangles[i];
-    zone_triangle_.insert(zone_triangle_.end(), (t.two_sided ? 2 : 1) * std::size_t{t.divisions} * t.divisions,
-                          TriangleId(i));
+    zone_triangle_.insert(zone_triangle_.end(),
+                          (t.two_sided ? 2 : 1) * std::size_t{t.divisions} * t.divisions, TriangleId(i));
   }
 }
 

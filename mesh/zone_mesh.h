@@ -12,15 +12,17 @@ namespace reemit {
 /// What rays are traced against: a triangle of the coarse, repaired room, and how it is cut into zones.
 struct BaseTriangle {
   static constexpr std::uint32_t kFlat = 0xffffffff;
-  std::array<std::uint32_t, 3> vertex;                      ///< Into BaseMesh::vertices, counter-clockwise from the front.
-  std::array<std::uint32_t, 3> normal{kFlat, kFlat, kFlat};  ///< Into BaseMesh::normals, kFlat = geometric normal.
+  std::array<std::uint32_t, 3> vertex;  ///< Into BaseMesh::vertices, counter-clockwise from the front.
+  std::array<std::uint32_t, 3> normal{kFlat, kFlat,
+                                      kFlat};  ///< Into BaseMesh::normals, kFlat = geometric normal.
   SurfaceId surface;
   std::uint32_t face = 0;       ///< Index of the polygon in its Surface it was cut from.
   std::uint32_t divisions = 1;  ///< n >= 1: the triangle holds n*n zones on each side that has zones.
   bool two_sided = false;       ///< The back has zones of its own; else it absorbs.
 };
 
-/// The repaired, cut and triangulated room [m]. Plain data: this is what a solution file keeps of the geometry.
+/// The repaired, cut and triangulated room [m]. Plain data: this is what a solution file keeps of the
+/// geometry.
 struct BaseMesh {
   std::vector<Vec3> vertices;
   std::vector<Vec3> normals;  ///< Unit shading normals.
@@ -28,7 +30,8 @@ struct BaseMesh {
 };
 
 /// Base triangles and their zones. A zone is one cell of a base triangle seen from one side; the back of a
-/// two-sided triangle has zones of its own, numbered like those of its front. No radiometric value is stored here.
+/// two-sided triangle has zones of its own, numbered like those of its front. No radiometric value is stored
+/// here.
 class ZoneMesh {
  public:
   /// Throws std::invalid_argument when an index is out of range or divisions is 0 or the zones exceed 2^32-2.
@@ -42,8 +45,10 @@ class ZoneMesh {
   const Vec3& corner(TriangleId t, int k) const {
     return base_.vertices[triangle(t).vertex[static_cast<std::size_t>(k)]];
   }
-  double triangle_area(TriangleId t) const { return triangle_area_[t.index()]; }           ///< One side [m2].
-  const Vec3& triangle_normal(TriangleId t) const { return triangle_normal_[t.index()]; }  ///< Unit, of the front.
+  double triangle_area(TriangleId t) const { return triangle_area_[t.index()]; }  ///< One side [m2].
+  const Vec3& triangle_normal(TriangleId t) const {
+    return triangle_normal_[t.index()];
+  }  ///< Unit, of the front.
 
   /// First zone on the given side; not valid for the back of a one-sided triangle.
   ZoneId first_zone(TriangleId t, bool front) const { return first_zone_[2 * t.index() + (front ? 0 : 1)]; }

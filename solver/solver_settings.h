@@ -11,17 +11,17 @@ enum class SamplingKind { kRandom, kSobol };
 struct SolverSettings {
   SolveMethod method = SolveMethod::kShooting;
   SamplingKind sampling = SamplingKind::kSobol;  ///< Of points and directions of each flight.
-  double error_target = 0;          ///< Relative rms standard error of radiosity, worst band, as a fraction [0,1).
-  double time_limit_s = 0;          ///< Wall time of the solve [s], >= 0.
-  std::uint64_t packets = 0;        ///< Packets emitted by luminaires in all batches together.
+  double error_target = 0;    ///< Relative rms standard error of radiosity, worst band, as a fraction [0,1).
+  double time_limit_s = 0;    ///< Wall time of the solve [s], >= 0.
+  std::uint64_t packets = 0;  ///< Packets emitted by luminaires in all batches together.
   std::uint64_t batch_packets = 0;  ///< Packets emitted in one batch; 0 = from the number of zones.
   int smallest_batch_count = 8;     ///< Batches before an error is believed [2, 65536].
   double stop_share = 1e-5;         ///< Shooting: a batch ends when unshot/emitted falls below this (0, 0.1].
   std::uint64_t seed = 1;
-  int threads = 0;                  ///< 0 = all cores.
+  int threads = 0;  ///< 0 = all cores.
 };
 
-std::string to_string(SolveMethod method);    ///< "shooting" or "walk".
+std::string to_string(SolveMethod method);     ///< "shooting" or "walk".
 std::string to_string(SamplingKind sampling);  ///< "random" or "sobol".
 
 }  // namespace reemit

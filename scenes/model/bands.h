@@ -6,7 +6,8 @@
 
 namespace reemit {
 
-/// One value per band: reflectance [1], radiance [W/(m2 sr)], power [W], ... in the order of the room's BandSet.
+/// One value per band: reflectance [1], radiance [W/(m2 sr)], power [W], ... in the order of the room's
+/// BandSet.
 using Spectrum = Eigen::ArrayXd;
 
 enum class BandKind { kGrey, kRgb, kSpectral };

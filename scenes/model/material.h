@@ -21,7 +21,7 @@ struct Material {
   std::string name;
   Spectrum reflectance;       ///< Diffuse (Lambertian) reflectance rho [0,1] per band; BRDF = rho/pi.
   Spectrum emitted_radiance;  ///< L_e [W/(m2 sr)] per band, Lambertian; all 0 = no luminaire.
-  bool two_sided = true;      ///< The back reflects like the front; else the back of the face absorbs all light.
+  bool two_sided = true;  ///< The back reflects like the front; else the back of the face absorbs all light.
   bool emits_both_sides = false;  ///< Else only the front emits. Needs two_sided.
   NonDiffusePart non_diffuse;
 

@@ -28,8 +28,8 @@ struct Scene {
 };
 
 /// Checks every value (finite, in range, indices in bounds, names unique) and throws InputError at the first
-/// that fails; drops to one band when no colour is anywhere; warns once per material whose non-diffuse part is
-/// ignored, when there is no luminaire, and when the size is unlikely for a room in metres.
+/// that fails; drops to one band when no colour is anywhere; warns once per material whose non-diffuse part
+/// is ignored, when there is no luminaire, and when the size is unlikely for a room in metres.
 void finish_scene(Scene& scene);
 
 struct Box {

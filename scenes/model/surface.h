@@ -8,12 +8,13 @@
 
 namespace reemit {
 
-/// A polygon with holes. Indices into Surface::positions; the front is where the outer loop runs counter-clockwise.
+/// A polygon with holes. Indices into Surface::positions; the front is where the outer loop runs
+/// counter-clockwise.
 struct Face {
   std::vector<std::uint32_t> outer;               ///< >= 3 vertices.
   std::vector<std::vector<std::uint32_t>> holes;  ///< Each >= 3 vertices, any winding.
-  std::vector<std::uint32_t> normals;             ///< Into Surface::normals, one per outer vertex; empty = flat.
-  std::uint32_t source_line = 0;                  ///< In the file named by Surface::source; 0 = not known.
+  std::vector<std::uint32_t> normals;  ///< Into Surface::normals, one per outer vertex; empty = flat.
+  std::uint32_t source_line = 0;       ///< In the file named by Surface::source; 0 = not known.
 };
 
 /// A named group of faces of one material, in world coordinates.

@@ -12,8 +12,9 @@
 
 namespace reemit {
 
-/// Sums over batches of the irradiance of every zone [W/m2], index zone * bands + band. One batch is one independent
-/// estimate, so means and standard errors follow from the sums alone, and more batches can be added later.
+/// Sums over batches of the irradiance of every zone [W/m2], index zone * bands + band. One batch is one
+/// independent estimate, so means and standard errors follow from the sums alone, and more batches can be
+/// added later.
 struct ZoneSums {
   std::int64_t batches = 0;
   std::vector<double> direct, direct_squared;      ///< First hit from a luminaire.
@@ -33,11 +34,11 @@ std::string to_string(StopReason reason);  ///< In words, as printed and stored.
 /// How far a solve got.
 struct SolveRecord {
   StopReason stopped = StopReason::kNoLuminaire;
-  std::uint64_t packets = 0;       ///< Emitted by luminaires.
-  std::uint64_t rays = 0;          ///< Traced in all.
-  double seconds = 0;              ///< Wall time of the solve without meshing.
-  double error = 0;                ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
-  double error_95th_percentile = 0;  ///< 95th percentile over zones of s/B, worst band; lit zones only.
+  std::uint64_t packets = 0;  ///< Emitted by luminaires.
+  std::uint64_t rays = 0;     ///< Traced in all.
+  double seconds = 0;         ///< Wall time of the solve without meshing.
+  double error = 0;  ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
+  double error_95th_percentile = 0;   ///< 95th percentile over zones of s/B, worst band; lit zones only.
   std::uint64_t unreached_zones = 0;  ///< Zones that no packet met.
 };
 

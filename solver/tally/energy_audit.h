@@ -32,7 +32,8 @@ struct EnergyAudit {
 
   bool balanced() const;
   double watts(const BandAudit& band, std::int64_t quanta) const {
-    return batches > 0 ? static_cast<double>(quanta) * band.watts_per_quantum / static_cast<double>(batches) : 0.0;
+    return batches > 0 ? static_cast<double>(quanta) * band.watts_per_quantum / static_cast<double>(batches)
+                       : 0.0;
   }
 };
 

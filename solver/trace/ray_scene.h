@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "mesh/zone_mesh.h"
 
@@ -9,7 +10,7 @@ namespace reemit {
 /// Where a ray met the room.
 struct Hit {
   TriangleId triangle;
-  float u = 0;         ///< Barycentric, as ZoneMesh::point.
+  float u = 0;  ///< Barycentric, as ZoneMesh::point.
   float v = 0;
   float distance = 0;  ///< In normalised units (RayScene::metres_per_unit).
   bool front = true;   ///< The ray came from the front of the triangle.
@@ -28,8 +29,9 @@ struct Hit16 {
   bool front[16];
 };
 
-/// Owner of the ray-tracing structure over the base triangles. Rays live in a normalised space in which the room
-/// fits into [-1,1]^3, so that rooms of any size and place behave alike. Const members may be called from any thread.
+/// Owner of the ray-tracing structure over the base triangles. Rays live in a normalised space in which the
+/// room fits into [-1,1]^3, so that rooms of any size and place behave alike. Const members may be called
+/// from any thread.
 class RayScene {
  public:
   static constexpr std::uint32_t kMiss = 0xffffffff;
@@ -57,7 +59,8 @@ class RayScene {
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hits of the first `count` rays, count <= 16.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
-  /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an eye).
+  /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
+  /// eye).
   bool visible(const Vec3f& from, const Vec3f& to) const;
   /// True if a ray of unit direction leaves the room without a hit.
   bool escapes(const Vec3f& origin, const Vec3f& direction) const;

@@ -1,0 +1,85 @@
+#include "solver/sampling/sobol.h"
+
+namespace reemit {
+namespace {
+
+using DirectionNumbers = std::array<std::uint32_t, 32>;
+
+/// Primitive polynomial (degree s, coefficients a) and first direction numbers m of one dimension,
+/// new-joe-kuo-6 [JK08].
+struct Polynomial {
+  int degree;
+  std::uint32_t coefficients;
+  std::array<std::uint32_t, 5> m;
+};
+
+constexpr std::array<Polynomial, kSobolDimensions - 1> kPolynomials{{
+    {1, 0, {1}},
+    {2, 1, {1, 3}},
+    {3, 1, {1, 3, 1}},
+    {3, 2, {1, 1, 1}},
+    {4, 1, {1, 1, 3, 3}},
+    {4, 4, {1, 3, 5, 13}},
+    {5, 2, {1, 1, 5, 5, 17}},
+}};
+
+constexpr std::array<DirectionNumbers, kSobolDimensions> make_directions() {
+  std::array<DirectionNumbers, kSobolDimensions> all{};
+  for (std::size_t bit = 0; bit < 32; ++bit) all[0][bit] = 1U << (31 - bit);
+  for (std::size_t d = 1; d < all.size(); ++d) {
+    const Polynomial& p = kPolynomials[d - 1];
+    const auto s = static_cast<std::size_t>(p.degree);
+    DirectionNumbers& v = all[d];
+    for (std::size_t i = 0; i < s; ++i) v[i] = p.m[i] << (31 - i);
+    for (std::size_t i = s; i < 32; ++i) {
+      v[i] = v[i - s] ^ (v[i - s] >> s);
+      for (std::size_t k = 1; k < s; ++k)
+        if ((p.coefficients >> (s - 1 - k)) & 1U) v[i] ^= v[i - k];
+    }
+  }
+  return all;
+}
+
+constexpr auto kDirections = make_directions();
+
+/// The 16 points of indices 0..15: the sequence is linear over XOR, so they shift to any aligned block.
+constexpr std::array<std::array<std::uint32_t, 16>, kSobolDimensions> make_low_points() {
+  std::array<std::array<std::uint32_t, 16>, kSobolDimensions> all{};
+  for (std::size_t d = 0; d < all.size(); ++d)
+    for (std::uint32_t i = 0; i < 16; ++i)
+      for (std::size_t bit = 0; bit < 4; ++bit)
+        if ((i >> bit) & 1U) all[d][i] ^= kDirections[d][bit];
+  return all;
+}
+
+constexpr auto kLowPoints = make_low_points();
+
+}  // namespace
+
+std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
+  const DirectionNumbers& v = kDirections[static_cast<std::size_t>(dimension)];
+  std::uint32_t x = 0;
+  for (std::size_t bit = 0; index != 0; ++bit, index >>= 1)
+    if (index & 1U) x ^= v[bit];
+  return x;
+}
+
+SobolSequence::SobolSequence(std::uint64_t seed) : seeds_{} {
+  // SplitMix64 spreads one seed over the dimensions.
+  for (std::uint32_t& s : seeds_) {
+    seed += 0x9E3779B97F4A7C15ULL;
+    std::uint64_t z = seed;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    s = static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
+  }
+}
+
+void SobolSequence::sample16(std::uint32_t first_index, int dimension, float* out) const {
+  const auto d = static_cast<std::size_t>(dimension);
+  const std::uint32_t high = sobol_bits(first_index, dimension);
+  const std::uint32_t seed = seeds_[d];
+  for (std::size_t i = 0; i < 16; ++i) out[i] = unit(owen_scramble(high ^ kLowPoints[d][i], seed));
+}
+
+}  // namespace reemit

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "scenes/model/bands.h"
+#include "viewer_export/formats/export_info.h"
+
+namespace reemit {
+
+/// A picture of the room in physical units. Pixels in rows from the top left: pixel = y * width + x. A layer
+/// that was not computed is empty; `radiance` is always there.
+struct StillImage {
+  ExportInfo info;
+  BandSet bands = BandSet::grey();
+  int width = 0;   ///< [px]
+  int height = 0;  ///< [px]
+
+  // bands.count() values per pixel: index pixel * bands + band.
+  std::vector<float> radiance;  ///< The picture [W/(m2 sr)].
+  std::vector<float> direct;    ///< Part that is emission and first reflection of luminaires [W/(m2 sr)].
+  std::vector<float> indirect;  ///< The rest [W/(m2 sr)].
+  std::vector<float> radiance_stderr;  ///< Standard error of `radiance` [W/(m2 sr)].
+  std::vector<float> albedo;           ///< Reflectance of what is seen [0,1].
+
+  std::vector<float> samples;  ///< One per pixel: camera rays.
+  std::vector<float> depth;    ///< One per pixel: distance from the eye [m]; +inf where nothing is seen.
+  std::vector<float> normal;   ///< Three per pixel: unit, world coordinates; 0 where nothing is seen.
+
+  std::size_t pixel_count() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+};
+
+/// Throws std::invalid_argument when a layer's size does not fit the picture.
+void check_consistent(const StillImage& image);
+
+}  // namespace reemit

@@ -1,0 +1,49 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenes/model/bands.h"
+#include "scenes/model/ids.h"
+#include "scenes/model/vec.h"
+#include "viewer_export/formats/export_info.h"
+#include "viewer_export/still/tone_map.h"
+
+namespace reemit {
+
+/// Light at the vertices of the zones, ready for export. Vertices are split where surface, material, side or
+/// a crease splits them, so every vertex belongs to one surface.
+struct VertexData {
+  ExportInfo info;
+  BandSet bands = BandSet::grey();
+  ToneMapSettings
+      tone_map;  ///< Of the displayable colours in PLY and glTF; the radiances are never tone-mapped.
+  std::vector<std::string> surface_names;   ///< By SurfaceId.
+  std::vector<std::string> material_names;  ///< By MaterialId.
+
+  // One entry per vertex.
+  std::vector<Vec3> positions;  ///< [m]
+  std::vector<Vec3> normals;    ///< Unit, towards the side the light was computed on.
+  std::vector<SurfaceId> surfaces;
+  std::vector<MaterialId> materials;
+
+  // bands.count() entries per vertex: index vertex * bands + band.
+  std::vector<float> radiance;         ///< Leaving the vertex in all, emission included [W/(m2 sr)].
+  std::vector<float> irradiance;       ///< [W/m2]
+  std::vector<float> radiance_stderr;  ///< Standard error of radiance [W/(m2 sr)].
+  std::vector<float>
+      direct_radiance;  ///< Part of radiance that is the first reflection of luminaires [W/(m2 sr)].
+
+  std::vector<std::array<std::uint32_t, 3>>
+      triangles;  ///< Counter-clockwise seen from the side of the normals.
+
+  std::size_t vertex_count() const { return positions.size(); }
+  /// Linear Rec.709 of one of the per-band arrays at a vertex.
+  Eigen::Array3d rgb(const std::vector<float>& values, std::size_t vertex) const;
+};
+
+/// Throws std::invalid_argument when array sizes or indices do not fit together.
+void check_consistent(const VertexData& data);
+
+}  // namespace reemit
