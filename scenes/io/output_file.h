@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -27,6 +28,10 @@ class OutputFile {
   /// Appends to the partial file (buffered). Throws ResourceError when the disk is full or fails.
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
+
+  /// Writes into the partial file at a byte offset, for formats that fill in tables afterwards. Bytes
+  /// appended by write() before are in place by then. Throws ResourceError as write() does.
+  void write_at(std::uint64_t offset, const void* bytes, std::size_t size);
 
   /// Makes the file appear under its name. Throws ResourceError; the previous file is then unchanged.
   void commit();

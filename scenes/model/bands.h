@@ -29,12 +29,15 @@ class BandSet {
   const std::vector<double>& centres_nm() const { return centres_nm_; }  ///< Empty unless spectral.
 
   /// Luminous efficacy of each band [lm/W]: 179 x Rec.709 weights for grey and RGB ([ZIM98] appendix, the
-  /// Radiance convention), 683 V(lambda) for spectral rooms.
+  /// Radiance convention), 683 x the mean of V(lambda) over the band for spectral rooms. Bands meet half-way
+  /// between their centres; a lone band is taken at its centre.
   const Spectrum& efficacy_lm_per_w() const { return efficacy_; }
   /// One line for file headers that states the conversion.
   std::string efficacy_statement() const;
 
   /// Linear Rec.709 colour of a spectrum, scaled so that its luminance weights give luminance/179.
+  /// Equal-energy white is neutral in rooms whose bands cover the visible range. Components may be negative
+  /// (colours out of gamut).
   Eigen::Array3d to_rgb(const Spectrum& value) const;
 
   bool operator==(const BandSet& other) const {

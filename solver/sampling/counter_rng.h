@@ -15,6 +15,7 @@ enum class RngPurpose : std::uint32_t {
   kPixel,
   kPath,
   kProbe,
+  kDither,
 };
 
 /// Counter-based random numbers: Philox4x32 with 7 rounds, the fewest that pass BigCrush [SMDS11, table 2]. A

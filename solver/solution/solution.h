@@ -28,7 +28,7 @@ struct Estimate {
   double stderr_of_mean = 0;
 };
 
-enum class StopReason { kErrorTarget, kTimeLimit, kPacketCount, kInterrupted, kNoLuminaire };
+enum class StopReason { kErrorTarget, kTimeLimit, kPacketCount, kInterrupted, kNoLuminaire, kBatchLimit };
 std::string to_string(StopReason reason);  ///< In words, as printed and stored.
 
 /// How far a solve got.

@@ -154,12 +154,16 @@ RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
-Vec3f RayScene::ray_origin(TriangleId t, float u, float v, bool front) const {
-  const Vec3f p = point(t, u, v);
-  const Vec3f inward = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0F - p;
+Vec3f RayScene::lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle) {
+  const Vec3f inward = middle - point;
   const float distance = inward.norm();
   const float inset = distance > 0 ? std::min(kInset * kLift / distance, 1.0F) : 0.0F;
-  return p + (front ? kLift : -kLift) * normal(t) + inset * inward;
+  return point + kLift * side_normal + inset * inward;
+}
+
+Vec3f RayScene::ray_origin(TriangleId t, float u, float v, bool front) const {
+  const Vec3f& n = normal(t);
+  return lifted(point(t, u, v), front ? n : Vec3f(-n), (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0F);
 }
 
 bool RayScene::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {

@@ -50,7 +50,10 @@ class RayScene {
   Vec3f point(TriangleId t, float u, float v) const {
     return (1 - u - v) * corner(t, 0) + u * corner(t, 1) + v * corner(t, 2);
   }
-  /// Start of a ray that leaves the given side at (u,v): the one self-intersection rule of the program.
+  /// The one self-intersection rule of the program: start of a ray that leaves a triangle with centroid
+  /// `middle` at `point` on the side that `side_normal` (unit) points to.
+  static Vec3f lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle);
+  /// Start of a ray that leaves the given side at (u,v).
   Vec3f ray_origin(TriangleId t, float u, float v, bool front) const;
 
   /// Nearest hit along a ray of unit direction. False if there is none.

@@ -19,6 +19,10 @@ struct ExportInfo {
   std::vector<std::pair<std::string, std::string>> settings;
 };
 
+/// The text with control characters replaced by spaces: a line break would end a comment of a file header
+/// early.
+std::string one_line(std::string text);
+
 /// The info as {name, value} pairs for headers and metadata: program, room, units, efficacy, seed, error,
 /// settings. Values are one line each: line breaks inside become spaces.
 std::vector<std::pair<std::string, std::string>> describe(const ExportInfo& info, const BandSet& bands);

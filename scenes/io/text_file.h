@@ -1,0 +1,17 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace reemit {
+
+/// Largest file a reader loads [bytes].
+inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{4} << 30;
+
+/// Throws InputError unless the path names a regular, non-empty file of at most `largest` bytes.
+void check_readable_file(const std::filesystem::path& file, std::uintmax_t largest = kLargestFile);
+
+/// The bytes of a file after check_readable_file; throws InputError when it cannot be opened or read.
+std::string load_file(const std::filesystem::path& file, std::uintmax_t largest = kLargestFile);
+
+}  // namespace reemit

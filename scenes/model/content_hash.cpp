@@ -1,0 +1,98 @@
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "scenes/model/scene.h"
+
+namespace reemit {
+namespace {
+
+// FNV-1a, 64 bit [FNV]. Numbers enter as little-endian bytes whatever the machine, and -0 as 0.
+class Hasher {
+ public:
+  void add(std::uint64_t value) {
+    for (int shift = 0; shift < 64; shift += 8) {
+      state_ ^= (value >> shift) & 0xffU;
+      state_ *= 0x100000001b3ULL;
+    }
+  }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value)); }
+  void add(bool value) { add(std::uint64_t{value}); }
+  void add(const Vec3& v) {
+    for (const double x : v) add(x);
+  }
+  void add(const Spectrum& s) {
+    add(static_cast<std::uint64_t>(s.size()));
+    for (const double x : s) add(x);
+  }
+  std::uint64_t state() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325ULL;
+};
+
+void add_material(Hasher& hash, const Material& m) {
+  hash.add(m.reflectance);
+  hash.add(m.emitted_radiance);
+  hash.add(m.two_sided);
+  hash.add(m.emits_both_sides);
+}
+
+// The corners themselves rather than their indices, so that vertices no face uses do not count.
+void add_loop(Hasher& hash, std::span<const std::uint32_t> loop, const std::vector<Vec3>& points) {
+  hash.add(std::uint64_t{loop.size()});
+  for (const std::uint32_t index : loop) hash.add(points[index]);
+}
+
+void add_surface(Hasher& hash, const Surface& surface) {
+  hash.add(std::uint64_t{surface.faces.size()});
+  for (const Face& face : surface.faces) {
+    add_loop(hash, face.outer, surface.positions);
+    hash.add(std::uint64_t{face.holes.size()});
+    for (const auto& hole : face.holes) add_loop(hash, hole, surface.positions);
+    add_loop(hash, face.normals,
+             surface.normals);  // creases, and with them shared vertices, follow from these
+  }
+}
+
+void add_light(Hasher& hash, const PunctualLight& light) {
+  hash.add(std::uint64_t{light.index()});
+  std::visit(
+      [&hash](const auto& l) {
+        using Light = std::decay_t<decltype(l)>;
+        if constexpr (!std::is_same_v<Light, DirectionalLight>) {
+          hash.add(l.position);
+          hash.add(l.intensity);
+        } else {
+          hash.add(l.irradiance);
+        }
+        if constexpr (!std::is_same_v<Light, PointLight>) hash.add(l.direction);
+        if constexpr (std::is_same_v<Light, SpotLight>) {
+          hash.add(l.inner_angle);
+          hash.add(l.outer_angle);
+        }
+      },
+      light);
+}
+
+}  // namespace
+
+std::string content_hash(const Scene& scene) {
+  Hasher hash;
+  hash.add(static_cast<std::uint64_t>(scene.bands.kind()));
+  hash.add(std::uint64_t{scene.bands.centres_nm().size()});
+  for (const double centre : scene.bands.centres_nm()) hash.add(centre);
+  hash.add(std::uint64_t{scene.surfaces.size()});
+  for (const Surface& surface : scene.surfaces) {
+    add_material(hash, scene.material_of(surface));
+    add_surface(hash, surface);
+  }
+  hash.add(std::uint64_t{scene.lights.size()});
+  for (const PunctualLight& light : scene.lights) add_light(hash, light);
+  return fmt::format("{:016x}", hash.state());
+}
+
+}  // namespace reemit

@@ -1,0 +1,144 @@
+#include "scenes/model/scene.h"
+
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "scenes/model/scene_checks.h"
+
+namespace reemit {
+namespace {
+
+bool is_grey(const Spectrum& s) {
+  constexpr double kRoundOff = 1e-9;  // colour conversions leave neutral colours neutral to about 1e-15
+  return s.maxCoeff() - s.minCoeff() <= kRoundOff * s.maxCoeff();
+}
+
+// Intensity or irradiance, whichever the light has. Light is PunctualLight or const PunctualLight.
+template <class Light>
+auto& power_of(Light& light) {
+  return std::visit(
+      [](auto& l) -> std::conditional_t<std::is_const_v<Light>, const Spectrum&, Spectrum&> {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(l)>, DirectionalLight>)
+          return l.irradiance;
+        else
+          return l.intensity;
+      },
+      light);
+}
+
+std::vector<bool> used_materials(const Scene& scene) {
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const Surface& s : scene.surfaces) used[s.material.index()] = true;
+  return used;
+}
+
+// Luminance-weighted mean: the one number to tell the user about a spectrum.
+double luminous_mean(const Spectrum& s, const BandSet& bands) {
+  const Spectrum& efficacy = bands.efficacy_lm_per_w();
+  return efficacy.sum() > 0 ? (efficacy * s).sum() / efficacy.sum() : s.mean();
+}
+
+void reduce(Spectrum& s, const BandSet& bands) {
+  if (s.size() > 0) s = Spectrum::Constant(1, is_grey(s) ? s[0] : luminous_mean(s, bands));
+}
+
+void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
+  if (scene.bands.kind() != BandKind::kRgb) return;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    if (used[i] && !(is_grey(m.reflectance) && is_grey(m.emitted_radiance))) return;
+  }
+  for (const PunctualLight& light : scene.lights)
+    if (!is_grey(power_of(light))) return;
+
+  for (Material& m : scene.materials) {
+    NonDiffusePart& rest = m.non_diffuse;
+    for (Spectrum* s : {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance,
+                        &rest.diffuse_transmittance, &rest.specular_transmittance})
+      reduce(*s, scene.bands);
+  }
+  for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);
+  scene.bands = BandSet::grey();
+  scene.notes.push_back("No surface or light has a colour: one grey band is transported.");
+}
+
+std::string ignored_parts(const Material& m, const BandSet& bands) {
+  std::string parts;
+  const auto add = [&](const char* what, const Spectrum& s) {
+    if (s.size() == 0 || !(s > 0).any()) return;
+    parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", what, luminous_mean(s, bands));
+  };
+  add("specular reflectance", m.non_diffuse.specular_reflectance);
+  add("diffuse transmittance", m.non_diffuse.diffuse_transmittance);
+  add("specular transmittance", m.non_diffuse.specular_transmittance);
+  return parts;
+}
+
+void warn_of_ignored_parts(Scene& scene, const std::vector<bool>& used) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    if (!used[i]) continue;
+    const std::string parts = ignored_parts(m, scene.bands);
+    if (parts.empty()) continue;
+    scene.warnings.push_back(
+        fmt::format("Material '{}': only its diffuse reflectance {:.3g} is modelled; ignored (this light is "
+                    "absorbed): {}.",
+                    m.name, luminous_mean(m.reflectance, scene.bands), parts));
+  }
+}
+
+void warn_if_dark(Scene& scene, const std::vector<bool>& used) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    if (used[i] && scene.materials[i].emits()) return;
+  for (const PunctualLight& light : scene.lights)
+    if ((power_of(light) > 0).any()) return;
+  scene.warnings.push_back(
+      "The room has no luminaire: no surface and no light emits, so everything stays black.");
+}
+
+void warn_of_units(Scene& scene) {
+  constexpr double kLargest = 200, kSmallest = 0.2;  // [m]
+  const Box box = bounds(scene);
+  const double extent = box.size().maxCoeff();
+  if (extent <= kLargest && extent >= kSmallest) return;
+  scene.warnings.push_back(
+      fmt::format("The room measures {:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, "
+                  "{:.4g}, {:.4g}): "
+                  "unlikely for a room. Is it in other units than metres?",
+                  box.size().x(), box.size().y(), box.size().z(), box.min.x(), box.min.y(), box.min.z(),
+                  box.max.x(), box.max.y(), box.max.z()));
+}
+
+}  // namespace
+
+void finish_scene(Scene& scene) {
+  check_materials(scene);
+  check_geometry(scene);
+  check_lights(scene);
+  check_cameras(scene);
+  const std::vector<bool> used = used_materials(scene);
+  reduce_to_grey_if_colourless(scene, used);
+  warn_of_ignored_parts(scene, used);
+  warn_if_dark(scene, used);
+  warn_of_units(scene);
+}
+
+Box bounds(const Scene& scene) {
+  bool any = false;
+  Box box;
+  for (const Surface& surface : scene.surfaces) {
+    for (const Face& face : surface.faces) {
+      for (const std::uint32_t index : face.outer) {
+        const Vec3& p = surface.positions[index];
+        if (!any) box.min = box.max = p;
+        any = true;
+        box.min = box.min.cwiseMin(p);
+        box.max = box.max.cwiseMax(p);
+      }
+    }
+  }
+  return box;
+}
+
+}  // namespace reemit

@@ -1,0 +1,221 @@
+#include "scenes/model/scene_checks.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace {
+
+std::string in_file(const Scene& scene, const std::string& what) {
+  return scene.source.empty() ? what : scene.source + ": " + what;
+}
+
+std::string listed(const Spectrum& s) {
+  std::string text;
+  for (const double value : s) text += fmt::format("{}{:.6g}", text.empty() ? "" : " ", value);
+  return text;
+}
+
+void check_size(Spectrum& s, const Scene& scene, const std::string& where, const char* what) {
+  const auto bands = static_cast<Eigen::Index>(scene.bands.count());
+  if (s.size() == 0) s = Spectrum::Zero(bands);
+  if (s.size() != bands)
+    throw InputError(where, fmt::format("{} has {} values", what, s.size()),
+                     fmt::format("Give one value per band; the room has {}.", bands));
+}
+
+void check_fraction(const Spectrum& s, const std::string& where, const char* what) {
+  if (!s.isFinite().all() || (s < 0).any() || (s > 1).any())
+    throw InputError(
+        where, fmt::format("{} {} is outside [0, 1]", what, listed(s)),
+        "A surface cannot send back less than nothing or more light than it gets: give fractions, not "
+        "percent or 0-255.");
+}
+
+void check_power(const Spectrum& s, const std::string& where, const char* what) {
+  if (!s.isFinite().all() || (s < 0).any())
+    throw InputError(where, fmt::format("{} {} is negative or not a number", what, listed(s)),
+                     "Give a finite value of 0 or more in every band.");
+}
+
+void check_material(Material& m, Scene& scene, const std::string& where) {
+  check_size(m.reflectance, scene, where, "reflectance");
+  check_size(m.emitted_radiance, scene, where, "emitted radiance");
+  check_fraction(m.reflectance, where, "reflectance");
+  check_power(m.emitted_radiance, where, "emitted radiance");
+  NonDiffusePart& rest = m.non_diffuse;
+  const auto check_rest = [&](Spectrum& s, const char* what) {
+    if (s.size() == 0) return;
+    check_size(s, scene, where, what);
+    check_fraction(s, where, what);
+  };
+  check_rest(rest.specular_reflectance, "specular reflectance");
+  check_rest(rest.diffuse_transmittance, "diffuse transmittance");
+  check_rest(rest.specular_transmittance, "specular transmittance");
+  for (const double value : {rest.roughness, rest.transmission_roughness, rest.index_of_refraction})
+    if (!std::isfinite(value) || value < 0)
+      throw InputError(where, "roughness or index of refraction is negative or not a number",
+                       "Give 0 or more.");
+  if (m.emits_both_sides && !m.two_sided)
+    throw InputError(where, "emits from both sides but is one-sided",
+                     "Make the material two-sided, or let only its front emit.");
+}
+
+std::string face_name(const Scene& scene, const Surface& surface, std::size_t face) {
+  const std::uint32_t line = surface.faces[face].source_line;
+  const std::string& file = surface.source.empty() ? scene.source : surface.source;
+  return fmt::format("{}{}surface '{}', face {}", file,
+                     line != 0 ? fmt::format(":{}: ", line) : (file.empty() ? "" : ": "), surface.name,
+                     face + 1);
+}
+
+void check_loop(const std::vector<std::uint32_t>& loop, const std::vector<Vec3>& points,
+                const std::string& where) {
+  if (loop.size() < 3)
+    throw InputError(where, fmt::format("a loop has {} vertices", loop.size()),
+                     "A polygon and each of its holes need at least 3 vertices.");
+  for (const std::uint32_t index : loop) {
+    if (index >= points.size())
+      throw InputError(where, fmt::format("vertex index {} is out of range", index),
+                       fmt::format("The surface has {} vertices, counted from 0.", points.size()));
+    if (!points[index].allFinite())
+      throw InputError(where, "a vertex has a coordinate that is infinite or not a number",
+                       "Repair the coordinates in the program that wrote the file.");
+  }
+}
+
+// Unit normals, one per outer vertex; false if that cannot be had.
+bool usable_normals(const Face& face, Surface& surface, const std::string& where) {
+  if (face.normals.size() != face.outer.size())
+    throw InputError(where, fmt::format("{} normals for {} vertices", face.normals.size(), face.outer.size()),
+                     "Give one normal per outer vertex, or none.");
+  for (const std::uint32_t index : face.normals) {
+    if (index >= surface.normals.size())
+      throw InputError(where, fmt::format("normal index {} is out of range", index),
+                       fmt::format("The surface has {} normals, counted from 0.", surface.normals.size()));
+    Vec3& normal = surface.normals[index];
+    const double length = normal.stableNorm();
+    if (!std::isfinite(length) || length <= 0) return false;
+    if (std::abs(length - 1) > 1e-12) normal /= length;
+  }
+  return true;
+}
+
+void check_direction(Vec3& direction, const std::string& where) {
+  const double length = direction.stableNorm();
+  if (!std::isfinite(length) || length <= 0)
+    throw InputError(where, "the direction is zero or not a number",
+                     "Give a direction of any length above 0.");
+  direction /= length;
+}
+
+void check_light(PointLight& light, Scene& scene, const std::string& where) {
+  check_size(light.intensity, scene, where, "intensity");
+  check_power(light.intensity, where, "intensity");
+  if (!light.position.allFinite())
+    throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
+}
+
+void check_light(SpotLight& light, Scene& scene, const std::string& where) {
+  check_size(light.intensity, scene, where, "intensity");
+  check_power(light.intensity, where, "intensity");
+  if (!light.position.allFinite())
+    throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
+  check_direction(light.direction, where);
+  constexpr double kSlack = 1e-6;  // pi/2 written with single precision
+  if (!(light.inner_angle >= 0 && light.inner_angle < light.outer_angle &&
+        light.outer_angle <= std::numbers::pi / 2 + kSlack))
+    throw InputError(where,
+                     fmt::format("cone angles {:.4g} and {:.4g} rad", light.inner_angle, light.outer_angle),
+                     "Half angles must satisfy 0 <= inner < outer <= pi/2.");
+}
+
+void check_light(DirectionalLight& light, Scene& scene, const std::string& where) {
+  check_size(light.irradiance, scene, where, "irradiance");
+  check_power(light.irradiance, where, "irradiance");
+  check_direction(light.direction, where);
+}
+
+void check_camera(const Camera& camera, const std::string& where) {
+  if (!camera.eye.allFinite() || !camera.look_at.allFinite() || !camera.up.allFinite())
+    throw InputError(where, "eye, look-at point or up is not a number", "Give finite x, y, z.");
+  const Vec3 view = camera.look_at - camera.eye;
+  if (view.stableNorm() <= 0)
+    throw InputError(where, "the eye is the point it looks at", "Move one of the two.");
+  constexpr double kLeastSine = 1e-6;
+  if (camera.up.stableNorm() <= 0 ||
+      view.stableNormalized().cross(camera.up.stableNormalized()).norm() < kLeastSine)
+    throw InputError(where, "up is zero or along the viewing direction", "Choose another up vector.");
+  if (!(camera.vertical_fov_deg > 0 && camera.vertical_fov_deg < 180))
+    throw InputError(where, fmt::format("field of view {:.6g} degrees", camera.vertical_fov_deg),
+                     "It must lie between 0 and 180 degrees.");
+  constexpr int kMostPixels = 65536;
+  if (camera.width < 1 || camera.height < 1 || camera.width > kMostPixels || camera.height > kMostPixels)
+    throw InputError(where, fmt::format("image of {} x {} pixels", camera.width, camera.height),
+                     fmt::format("Width and height must be 1 ... {}.", kMostPixels));
+}
+
+}  // namespace
+
+void check_materials(Scene& scene) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    Material& m = scene.materials[i];
+    const std::string name =
+        m.name.empty() ? fmt::format("material {}", i + 1) : fmt::format("material '{}'", m.name);
+    check_material(m, scene, in_file(scene, name));
+  }
+}
+
+void check_geometry(Scene& scene) {
+  std::erase_if(scene.surfaces, [](const Surface& s) { return s.faces.empty(); });
+  if (scene.surfaces.empty())
+    throw InputError(in_file(scene, "room"), "it has no faces", "A room needs at least one polygon.");
+  std::size_t flattened = 0;
+  for (Surface& surface : scene.surfaces) {
+    if (surface.material.index() >= scene.materials.size())
+      throw InputError(in_file(scene, fmt::format("surface '{}'", surface.name)), "it has no material",
+                       "Give every surface a material of the room.");
+    for (std::size_t i = 0; i < surface.faces.size(); ++i) {
+      Face& face = surface.faces[i];
+      const std::string where = face_name(scene, surface, i);
+      check_loop(face.outer, surface.positions, where);
+      for (const auto& hole : face.holes) check_loop(hole, surface.positions, where);
+      if (!face.normals.empty() && !usable_normals(face, surface, where)) {
+        face.normals.clear();
+        ++flattened;
+      }
+    }
+  }
+  if (flattened > 0)
+    scene.warnings.push_back(fmt::format(
+        "{} face(s) have a shading normal that is zero or not a number and are shown flat.", flattened));
+}
+
+void check_lights(Scene& scene) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    std::visit(
+        [&](auto& light) {
+          const std::string name =
+              light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light '{}'", light.name);
+          check_light(light, scene, in_file(scene, name));
+        },
+        scene.lights[i]);
+  }
+}
+
+void check_cameras(Scene& scene) {
+  std::set<std::string> names;
+  for (Camera& camera : scene.cameras) {
+    if (camera.name.empty()) camera.name = "camera";
+    const std::string base = camera.name;
+    for (int n = 2; !names.insert(camera.name).second; ++n) camera.name = fmt::format("{}_{}", base, n);
+    check_camera(camera, in_file(scene, fmt::format("camera '{}'", camera.name)));
+  }
+}
+
+}  // namespace reemit

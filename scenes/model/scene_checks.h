@@ -1,0 +1,22 @@
+#pragma once
+#include "scenes/model/scene.h"
+
+namespace reemit {
+
+// The steps of finish_scene. Each throws InputError that names the material, surface, face, light or camera.
+
+/// Gives every spectrum its size (an empty one becomes 0) and checks ranges: reflectance [0,1], radiance >=
+/// 0.
+void check_materials(Scene& scene);
+
+/// Removes surfaces without faces and checks indices and coordinates; a face whose shading normals are
+/// unusable becomes flat, with one warning for the room.
+void check_geometry(Scene& scene);
+
+/// Intensities finite and >= 0, cone angles in order; directions become unit vectors.
+void check_lights(Scene& scene);
+
+/// Checks views and makes camera names unique by a suffix.
+void check_cameras(Scene& scene);
+
+}  // namespace reemit

@@ -1,0 +1,114 @@
+#include "solver/progressive_solver.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <tbb/task_arena.h>
+
+#include "scenes/model/error.h"
+#include "solver/shoot/closed_room_check.h"
+#include "solver/shoot/packet_batch.h"
+#include "solver/tally/batch_statistics.h"
+#include "solver/tally/stop_rule.h"
+
+#include "reemit/version.h"
+
+namespace reemit {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings) {
+  Solution solution;
+  solution.program_version = kProgramVersion;
+  solution.room_hash = content_hash(scene);
+  solution.settings = settings;
+  solution.bands = scene.bands;
+  for (const Surface& s : scene.surfaces) solution.surface_names.push_back(s.name);
+  solution.mesh_report = std::move(mesh.report);
+  solution.mesh = std::move(mesh.mesh);
+  const std::size_t values = solution.mesh.zone_count() * scene.bands.count();
+  for (auto* sum : {&solution.sums.direct, &solution.sums.direct_squared, &solution.sums.indirect,
+                    &solution.sums.indirect_squared, &solution.sums.total_squared})
+    sum->assign(values, 0.0);
+  for (const std::string& name : scene.bands.names()) {
+    BandAudit& band = solution.audit.bands.emplace_back();
+    band.band = name;
+    band.absorbed.assign(scene.surfaces.size(), 0);
+    band.absorbed_on_backs.assign(scene.surfaces.size(), 0);
+  }
+  return solution;
+}
+
+/// Adds batches to `solution` until a rule stops it.
+void run_batches(const TransportScene& transport, const Emission& emission, Solution& solution,
+                 const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  const SolverSettings& settings = solution.settings;
+  const StopRule rule(settings, transport.zones());
+  const auto start = std::chrono::steady_clock::now();
+  SolveRecord& record = solution.record;
+  BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
+  for (;;) {
+    const auto batch = static_cast<std::uint32_t>(solution.sums.batches);
+    const BatchTask task{
+        transport, emission, settings, batch, rule.batch_packets(), batch == 0 ? nullptr : &interrupt};
+    books.clear();
+    const bool whole =
+        settings.method == SolveMethod::kShooting ? shoot_batch(task, books) : walk_batch(task, books);
+    if (whole) {
+      add_batch(solution.mesh, books, emission.watts_per_quantum, solution.sums);
+      add_batch(books, solution.audit);
+      record.packets += books.packets;
+      record.rays += books.rays;
+    }
+    record.seconds = seconds_since(start);
+    record.error = zone_error(transport.scene(), solution.mesh, solution.sums, false).rms;
+    const RunState state{solution.sums.batches, record.packets, record.error, record.seconds,
+                         interrupt.load()};
+    if (progress) {
+      const double fraction = rule.fraction_done(state);
+      progress({fraction, record.error, static_cast<double>(record.rays) / record.seconds, record.seconds,
+                fraction > 0 ? record.seconds * (1 - fraction) / fraction
+                             : std::numeric_limits<double>::infinity(),
+                record.rays, record.packets, solution.sums.batches});
+    }
+    if (const auto reason = rule.stop(state)) {
+      record.stopped = *reason;
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
+               const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  Solution solution = empty_solution(scene, std::move(mesh), settings);
+  const RayScene rays(solution.mesh);
+  const TransportScene transport(scene, solution.mesh, rays);
+  const Emission emission = collect_emission(transport);
+  for (std::size_t b = 0; b < scene.bands.count(); ++b)
+    solution.audit.bands[b].watts_per_quantum = emission.watts_per_quantum[b];
+  if (emission.sources.empty()) {
+    solution.record.stopped = StopReason::kNoLuminaire;
+    solution.record.unreached_zones = solution.mesh.zone_count();
+    return solution;
+  }
+  refuse_closed_perfect_reflector(transport, emission, settings.seed);
+
+  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    run_batches(transport, emission, solution, progress, interrupt);
+    const ZoneError error = zone_error(scene, solution.mesh, solution.sums, true);
+    solution.record.error_95th_percentile = error.percentile_95;
+    solution.record.unreached_zones = error.unreached;
+  });
+  return solution;
+}
+
+}  // namespace reemit

@@ -1,0 +1,32 @@
+#pragma once
+#include <atomic>
+#include <functional>
+
+#include "mesh/build_mesh.h"
+#include "scenes/model/scene.h"
+#include "solver/solution/solution.h"
+#include "solver/solver_settings.h"
+
+namespace reemit {
+
+struct SolveProgress {
+  double fraction = 0;  ///< Of the work until the stopping rule holds, an estimate [0,1].
+  double error = 0;     ///< Relative rms standard error so far (ZoneError::rms); infinite before two batches.
+  double rays_per_second = 0;
+  double seconds = 0;
+  double seconds_left = 0;  ///< Infinite when not known yet.
+  std::uint64_t rays = 0;
+  std::uint64_t packets = 0;
+  std::int64_t batches = 0;
+};
+using ProgressCallback = std::function<void(const SolveProgress&)>;
+
+/// Solves the room batch by batch until a stopping rule of `settings` holds or `interrupt` becomes true; then
+/// returns what stands. At least one batch is always finished. Values depend on room, mesh and settings
+/// (without threads) only, bit for bit, when the run stops by error or packets. Fills everything in Solution
+/// except room_path, read_options and mesh_settings. Throws InputError when a closed room reflects everything
+/// in some band: it has no solution.
+Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
+               const ProgressCallback& progress, const std::atomic<bool>& interrupt);
+
+}  // namespace reemit

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "solver/shoot/transport_scene.h"
+#include "solver/tally/batch_books.h"
+
+namespace reemit {
+
+/// A luminaire, or the part of one that lies in a zone, as packets see it.
+struct EmissionSource {
+  ZoneId zone;              ///< Valid for surfaces that emit.
+  std::uint32_t light = 0;  ///< Else index into Scene::lights.
+};
+
+/// All that emits, with its power in quanta: the sources of one band share kBatchQuanta exactly.
+struct Emission {
+  std::vector<EmissionSource> sources;
+  std::vector<std::int64_t> quanta;       ///< [source * bands + band]
+  std::vector<double> watts;              ///< Emitted power of the room per band [W].
+  std::vector<double> watts_per_quantum;  ///< Per band [W]; 0 for a band in which nothing emits.
+};
+
+Emission collect_emission(const TransportScene& transport);
+
+/// Starts one packet of a luminaire without area from four uniform numbers.
+void start_light_ray(const PunctualLight& light, const RayScene& scene, float u0, float u1, float u2,
+                     float u3, Ray16& rays, int lane);
+
+/// Power of a luminaire without area [W] per band; of a directional light, the part that crosses the sphere
+/// around the room: [W] = irradiance x pi R^2.
+Spectrum light_power(const PunctualLight& light, const RayScene& scene);
+
+}  // namespace reemit

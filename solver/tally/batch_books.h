@@ -1,0 +1,57 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/zone_mesh.h"
+
+namespace reemit {
+
+/// Quanta that each emitting band sends out in one batch. 2^42 leaves a packet of a 10^8-packet batch 4 x
+/// 10^4 quanta, and 2^20 batches still fit into 63 bits.
+inline constexpr std::int64_t kBatchQuanta = std::int64_t{1} << 42;
+
+/// Adds to a number that other threads add to as well. Integer addition is associative, so the sum does not
+/// depend on the order or on the number of threads.
+inline void book(std::int64_t& account, std::int64_t quanta) {
+  std::atomic_ref<std::int64_t>(account).fetch_add(quanta, std::memory_order_relaxed);
+}
+
+/// Where the power of one batch went, in quanta. Zone arrays are indexed zone * bands + band, surface arrays
+/// surface * bands + band, escaped by axis * bands + band (axes as in BandAudit::escaped).
+struct BatchBooks {
+  BatchBooks(std::size_t zones, std::size_t surfaces, std::size_t band_count)
+      : bands(band_count),
+        direct(zones * bands),
+        indirect(zones * bands),
+        absorbed(surfaces * bands),
+        absorbed_on_backs(surfaces * bands),
+        escaped(6 * bands),
+        emitted(bands),
+        unshot(bands),
+        roulette_gain(bands),
+        roulette_loss(bands) {}
+
+  void clear() {
+    for (auto* account : {&direct, &indirect, &absorbed, &absorbed_on_backs, &escaped, &emitted, &unshot,
+                          &roulette_gain, &roulette_loss})
+      account->assign(account->size(), 0);
+    packets = 0;
+    rays = 0;
+  }
+
+  std::size_t bands;
+  std::vector<std::int64_t> direct;    ///< Incident at the first hit of packets from luminaires.
+  std::vector<std::int64_t> indirect;  ///< Incident after at least one reflection.
+  std::vector<std::int64_t> absorbed;
+  std::vector<std::int64_t> absorbed_on_backs;
+  std::vector<std::int64_t> escaped;
+  std::vector<std::int64_t> emitted;
+  std::vector<std::int64_t> unshot;
+  std::vector<std::int64_t> roulette_gain;
+  std::vector<std::int64_t> roulette_loss;
+  std::uint64_t packets = 0;  ///< Emitted by luminaires.
+  std::uint64_t rays = 0;
+};
+
+}  // namespace reemit

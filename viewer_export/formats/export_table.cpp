@@ -1,0 +1,36 @@
+#include "viewer_export/formats/export_table.h"
+
+#include "viewer_export/formats/csv_writer.h"
+#include "viewer_export/formats/file_extension.h"
+#include "viewer_export/formats/glb_writer.h"
+#include "viewer_export/formats/ply_writer.h"
+
+namespace reemit {
+namespace {
+
+constexpr ExportFormat kFormats[] = {
+    {".ply", "polygons with all radiometric values (MeshLab, Blender, CloudCompare)", write_ply},
+    {".glb", "binary glTF 2.0, ready to view (Blender, three.js, any glTF viewer)", write_glb},
+    {".csv", "a table, one row per vertex (spreadsheets, pandas, R)", write_csv},
+};
+
+}  // namespace
+
+std::span<const ExportFormat> export_formats() {
+  return kFormats;
+}
+
+const ExportFormat& export_format_of(const std::filesystem::path& file) {
+  return format_by_extension(export_formats(), file);
+}
+
+std::optional<ToneMap> write_vertex_data(const VertexData& data, const std::filesystem::path& file) {
+  const ExportFormat& format = export_format_of(file);
+  check_consistent(data);
+  OutputFile output(file);
+  std::optional<ToneMap> tone_map = format.write(data, output);
+  output.commit();
+  return tone_map;
+}
+
+}  // namespace reemit

@@ -1,0 +1,276 @@
+#include "viewer_export/formats/glb_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes/model/error.h"
+#include "viewer_export/formats/vertex_export.h"
+
+namespace reemit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers that the glTF 2.0 specification assigns.
+constexpr int kFloat = 5126;
+constexpr int kUnsignedInt = 5125;
+constexpr int kArrayBuffer = 34962;
+constexpr int kElementArrayBuffer = 34963;
+constexpr int kTriangles = 4;
+constexpr std::uint32_t kMagic = 0x46546C67;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinChunk = 0x004E4942;
+
+float finite(double value) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  if (std::isnan(value)) return 0;
+  return static_cast<float>(std::clamp<double>(value, -kLargest, kLargest));
+}
+
+// The vertices and triangles of one surface, as ranges of the reordered arrays.
+struct Part {
+  SurfaceId surface;
+  MaterialId material;
+  std::size_t first_vertex = 0, vertex_count = 0;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // relative to first_vertex
+};
+
+// Vertices in the order of their surfaces, so that every mesh of the file is one range of the buffers.
+struct Layout {
+  std::vector<std::uint32_t> order;  // new vertex -> vertex of the data
+  std::vector<Part> parts;
+};
+
+bool degenerate(const std::array<std::uint32_t, 3>& t, const std::vector<Eigen::Vector3f>& p) {
+  return p[t[0]] == p[t[1]] || p[t[1]] == p[t[2]] || p[t[2]] == p[t[0]];
+}
+
+Layout lay_out(const VertexData& data, const std::vector<Eigen::Vector3f>& positions) {
+  std::vector<std::vector<std::array<std::uint32_t, 3>>> triangles(data.surface_names.size());
+  std::vector<bool> used(data.vertex_count(), false);
+  for (const auto& t : data.triangles) {
+    if (degenerate(t, positions)) continue;
+    triangles[data.surfaces[t[0]].index()].push_back(t);
+    for (const std::uint32_t v : t) used[v] = true;
+  }
+  Layout layout;
+  for (std::uint32_t v = 0; v < data.vertex_count(); ++v)
+    if (used[v]) layout.order.push_back(v);
+  std::stable_sort(layout.order.begin(), layout.order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return data.surfaces[a] < data.surfaces[b]; });
+  std::vector<std::uint32_t> place(data.vertex_count());
+  for (std::uint32_t i = 0; i < layout.order.size(); ++i) place[layout.order[i]] = i;
+
+  std::size_t next = 0;
+  for (std::size_t s = 0; s < triangles.size(); ++s) {
+    if (triangles[s].empty()) continue;
+    Part part{SurfaceId(s), data.materials[triangles[s].front()[0]], next, 0, std::move(triangles[s])};
+    while (next < layout.order.size() && data.surfaces[layout.order[next]] == part.surface) ++next;
+    part.vertex_count = next - part.first_vertex;
+    for (auto& t : part.triangles)
+      for (std::uint32_t& v : t) v = place[v] - static_cast<std::uint32_t>(part.first_vertex);
+    layout.parts.push_back(std::move(part));
+  }
+  return layout;
+}
+
+// One vertex attribute: its name, its numbers per vertex, and how to append them for a vertex of the data.
+struct Attribute {
+  std::string semantic;
+  int components;
+  std::function<void(std::string&, std::uint32_t)> append;
+};
+
+std::vector<Attribute> attributes_of(const VertexData& data, const VertexColours& colours,
+                                     const std::vector<Eigen::Vector3f>& positions) {
+  const auto vector = [](std::string semantic, auto value_of) {
+    return Attribute{std::move(semantic), 3, [value_of](std::string& out, std::uint32_t v) {
+                       const auto value = value_of(v);
+                       for (Eigen::Index c = 0; c < 3; ++c) append_bytes(out, finite(value[c]));
+                     }};
+  };
+  const auto rgb = [&data, &vector](std::string semantic, const std::vector<float>& values) {
+    return vector(std::move(semantic), [&data, &values](std::uint32_t v) { return data.rgb(values, v); });
+  };
+  std::vector<Attribute> attributes;
+  attributes.push_back(vector("POSITION", [&positions](std::uint32_t v) { return positions[v]; }));
+  attributes.push_back(vector("NORMAL", [&data](std::uint32_t v) -> Vec3 {
+    const Vec3 normal = data.normals[v].normalized();
+    return std::abs(normal.norm() - 1) < 1e-6 ? normal : Vec3(Vec3::UnitZ());
+  }));
+  attributes.push_back(vector("COLOR_0", [&colours](std::uint32_t v) { return colours.displayable(v); }));
+  attributes.push_back(rgb("_RADIANCE", data.radiance));
+  attributes.push_back(rgb("_IRRADIANCE", data.irradiance));
+  const std::pair<const char*, const std::vector<float>*> parts[] = {{"_STDERR", &data.radiance_stderr},
+                                                                     {"_DIRECT", &data.direct_radiance}};
+  if (data.bands.kind() == BandKind::kRgb) {
+    for (const auto& [name, values] : parts) attributes.push_back(rgb(name, *values));
+    return attributes;
+  }
+  const std::size_t bands = data.bands.count();
+  const auto scalar = [&](const std::string& semantic, const std::vector<float>& values, std::size_t band) {
+    attributes.push_back({semantic, 1, [&values, bands, band](std::string& out, std::uint32_t v) {
+                            append_bytes(out, finite(values[v * bands + band]));
+                          }});
+  };
+  for (std::size_t band = 0; band < bands; ++band) {
+    std::string suffix = data.bands.name(band);
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    scalar("_RADIANCE_" + suffix, data.radiance, band);
+    scalar("_IRRADIANCE_" + suffix, data.irradiance, band);
+    for (const auto& [name, values] : parts) scalar(std::string(name) + "_" + suffix, *values, band);
+  }
+  return attributes;
+}
+
+Json extras_of(const VertexData& data, const ToneMap& tone_map) {
+  Json extras;
+  for (const auto& [name, value] : describe(data.info, data.bands)) extras[name] = value;
+  extras["_RADIANCE"] = "W/(m2 sr), linear Rec.709";
+  extras["_IRRADIANCE"] = "W/m2, linear Rec.709";
+  extras["COLOR_0"] = tone_map.statement();
+  extras["exposure"] = tone_map.exposure();
+  extras["exposure_ev"] = tone_map.exposure_ev();
+  extras["white"] = tone_map.white();
+  extras["axes"] = "as in the room file";
+  return extras;
+}
+
+// The JSON chunk; buffer views lie in the order of the attributes, then the indices.
+Json document(const VertexData& data, const Layout& layout, const std::vector<Attribute>& attributes,
+              const std::vector<Eigen::Vector3f>& positions, const Vec3& origin, const ToneMap& tone_map) {
+  Json gltf;
+  gltf["asset"] = {{"version", "2.0"},
+                   {"generator", "reemit " + data.info.program_version},
+                   {"extras", extras_of(data, tone_map)}};
+  gltf["extensionsUsed"] = {"KHR_materials_unlit"};
+  gltf["scene"] = 0;
+  Json views = Json::array();
+  std::size_t offset = 0;
+  const auto add_view = [&](std::size_t bytes, int target) -> Json& {
+    views.push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", target}});
+    offset += bytes;
+    return views.back();
+  };
+  for (const Attribute& a : attributes) {
+    const auto stride = 4 * static_cast<std::size_t>(a.components);
+    add_view(layout.order.size() * stride, kArrayBuffer)["byteStride"] = stride;
+  }
+  const std::size_t index_count =
+      3 * std::accumulate(layout.parts.begin(), layout.parts.end(), std::size_t{0},
+                          [](std::size_t n, const Part& p) { return n + p.triangles.size(); });
+  add_view(4 * index_count, kElementArrayBuffer);
+
+  Json accessors = Json::array();
+  Json meshes = Json::array();
+  Json nodes = Json::array();
+  Json materials = Json::array();
+  std::vector<int> material_number(data.material_names.size(), -1);
+  std::size_t index_offset = 0;
+  for (const Part& part : layout.parts) {
+    Json primitive;
+    for (std::size_t a = 0; a < attributes.size(); ++a) {
+      const int components = attributes[a].components;
+      Json accessor = {{"bufferView", a},
+                       {"byteOffset", part.first_vertex * 4 * static_cast<std::size_t>(components)},
+                       {"componentType", kFloat},
+                       {"count", part.vertex_count},
+                       {"type", components == 3 ? "VEC3" : "SCALAR"}};
+      if (attributes[a].semantic == "POSITION") {
+        Eigen::Vector3f low = positions[layout.order[part.first_vertex]];
+        Eigen::Vector3f high = low;
+        for (std::size_t i = 0; i < part.vertex_count; ++i) {
+          low = low.cwiseMin(positions[layout.order[part.first_vertex + i]]);
+          high = high.cwiseMax(positions[layout.order[part.first_vertex + i]]);
+        }
+        accessor["min"] = {low.x(), low.y(), low.z()};
+        accessor["max"] = {high.x(), high.y(), high.z()};
+      }
+      primitive["attributes"][attributes[a].semantic] = accessors.size();
+      accessors.push_back(std::move(accessor));
+    }
+    primitive["indices"] = accessors.size();
+    accessors.push_back({{"bufferView", attributes.size()},
+                         {"byteOffset", index_offset},
+                         {"componentType", kUnsignedInt},
+                         {"count", 3 * part.triangles.size()},
+                         {"type", "SCALAR"}});
+    index_offset += 12 * part.triangles.size();
+    int& material = material_number[part.material.index()];
+    if (material < 0) {
+      material = static_cast<int>(materials.size());
+      materials.push_back({{"name", data.material_names[part.material.index()]},
+                           {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
+                           {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+    }
+    primitive["material"] = material;
+    primitive["mode"] = kTriangles;
+    const std::string& name = data.surface_names[part.surface.index()];
+    nodes.push_back({{"name", name}, {"mesh", meshes.size()}});
+    if (origin != Vec3::Zero()) nodes.back()["translation"] = {origin.x(), origin.y(), origin.z()};
+    meshes.push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
+  }
+  Json roots = Json::array();
+  for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
+  gltf["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
+  gltf["nodes"] = std::move(nodes);
+  gltf["meshes"] = std::move(meshes);
+  gltf["materials"] = std::move(materials);
+  gltf["accessors"] = std::move(accessors);
+  gltf["bufferViews"] = std::move(views);
+  gltf["buffers"] = Json::array({{{"byteLength", offset}}});
+  return gltf;
+}
+
+}  // namespace
+
+std::optional<ToneMap> write_glb(const VertexData& data, OutputFile& file) {
+  const Vec3 origin = single_precision_origin(data);
+  std::vector<Eigen::Vector3f> positions;
+  positions.reserve(data.vertex_count());
+  for (const Vec3& p : data.positions) positions.push_back((p - origin).cast<float>());
+  const Layout layout = lay_out(data, positions);
+  if (layout.parts.empty())
+    throw InputError("glTF export", "the room has no triangle to draw", "Check the room with `reemit info`.");
+  const VertexColours colours = colours_of(data);
+  const std::vector<Attribute> attributes = attributes_of(data, colours, positions);
+
+  const Json gltf = document(data, layout, attributes, positions, origin, colours.tone_map);
+  std::string json = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto binary_bytes = gltf["buffers"][0]["byteLength"].get<std::size_t>();
+  const std::size_t total = 12 + 8 + json.size() + 8 + binary_bytes;
+  if (total > std::numeric_limits<std::uint32_t>::max())
+    throw InputError("glTF export", "the file would exceed 4 GiB, the limit of .glb",
+                     "Write .ply or .csv, or solve with larger zones.");
+
+  std::string bytes;
+  for (const std::uint32_t word : {kMagic, std::uint32_t{2}, static_cast<std::uint32_t>(total),
+                                   static_cast<std::uint32_t>(json.size()), kJsonChunk})
+    append_bytes(bytes, word);
+  bytes += json;
+  append_bytes(bytes, static_cast<std::uint32_t>(binary_bytes));
+  append_bytes(bytes, kBinChunk);
+  file.write(bytes);
+  for (const Attribute& attribute : attributes)
+    for (const std::uint32_t v : layout.order) {
+      bytes.clear();
+      attribute.append(bytes, v);
+      file.write(bytes);
+    }
+  for (const Part& part : layout.parts)
+    for (const auto& triangle : part.triangles) {
+      bytes.clear();
+      for (const std::uint32_t v : triangle) append_bytes(bytes, v);
+      file.write(bytes);
+    }
+  return colours.tone_map;
+}
+
+}  // namespace reemit

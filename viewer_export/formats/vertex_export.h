@@ -1,0 +1,37 @@
+#pragma once
+#include <bit>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "viewer_export/still/tone_map.h"
+#include "viewer_export/vertex/vertex_data.h"
+
+namespace reemit {
+
+static_assert(std::endian::native == std::endian::little,
+              "the binary writers copy values as they lie in memory");
+
+/// Appends the bytes of a number in little-endian order.
+template <class T>
+void append_bytes(std::string& out, T value) {
+  static_assert(std::is_arithmetic_v<T>);
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// Radiance in linear Rec.709 at every vertex, 3 values each [W/(m2 sr)], and the tone map that suits it.
+struct VertexColours {
+  std::vector<float> rgb;
+  ToneMap tone_map;
+
+  Eigen::Array3d displayable(std::size_t vertex) const {  ///< Linear [0,1].
+    return tone_map(Eigen::Array3d(rgb[3 * vertex], rgb[3 * vertex + 1], rgb[3 * vertex + 2]));
+  }
+};
+VertexColours colours_of(const VertexData& data);
+
+/// Origin for positions in single precision [m]: 0, or the centre of a room so far from 0 that float
+/// coordinates would lose more than a millionth of its size.
+Vec3 single_precision_origin(const VertexData& data);
+
+}  // namespace reemit

@@ -1,0 +1,80 @@
+#include "viewer_export/still/exr_writer.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "viewer_export/still/oiio_output.h"
+
+namespace reemit {
+namespace {
+
+constexpr float kWhiteLuminance = 179;  // [cd/m2] of R = G = B = 1 W/(m2 sr)
+
+// One channel of the file: values[pixel * stride + offset] of a layer.
+struct Channel {
+  std::string name;
+  const float* values;
+  std::size_t stride;
+  std::size_t offset;
+};
+
+// As EXR viewers expect them: colour in R G B, a single value in Y, else the wavelength.
+std::string channel_name(const BandSet& bands, std::size_t band) {
+  switch (bands.kind()) {
+    case BandKind::kGrey:
+      return "Y";
+    case BandKind::kRgb:
+      return std::string(1, "RGB"[band]);
+    case BandKind::kSpectral:
+      break;
+  }
+  return bands.name(band) + "nm";
+}
+
+std::vector<Channel> channels_of(const StillImage& image, std::span<const float> rgb) {
+  std::vector<Channel> channels;
+  for (std::size_t c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), rgb.data(), 3, c});
+  const std::size_t bands = image.bands.count();
+  const auto add_bands = [&](const std::string& layer, const std::vector<float>& values) {
+    if (values.empty()) return;
+    for (std::size_t band = 0; band < bands; ++band)
+      channels.push_back({layer + "." + channel_name(image.bands, band), values.data(), bands, band});
+  };
+  if (image.bands.kind() != BandKind::kRgb) add_bands("radiance", image.radiance);
+  add_bands("direct", image.direct);
+  add_bands("indirect", image.indirect);
+  add_bands("stderr", image.radiance_stderr);
+  add_bands("albedo", image.albedo);
+  if (!image.samples.empty()) channels.push_back({"samples.Y", image.samples.data(), 1, 0});
+  if (!image.depth.empty()) channels.push_back({"depth.Z", image.depth.data(), 1, 0});
+  if (!image.normal.empty())
+    for (std::size_t c = 0; c < 3; ++c)
+      channels.push_back({"normal." + std::string(1, "XYZ"[c]), image.normal.data(), 3, c});
+  return channels;
+}
+
+}  // namespace
+
+void write_exr(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
+               OutputFile& file) {
+  const std::vector<Channel> channels = channels_of(image, rgb);
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+  for (std::size_t c = 0; c < channels.size(); ++c) spec.channelnames[c] = channels[c].name;
+  constexpr std::array<float, 8> kRec709 = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), kRec709.data());
+  spec.attribute("whiteLuminance", kWhiteLuminance);
+  spec.attribute("compression", "zip");
+  spec.attribute("oiio:ColorSpace", "Linear");
+  describe_image(image, spec);
+  spec.attribute("reemit:suggested_display", tone_map.statement());
+
+  std::vector<float> pixels(image.pixel_count() * channels.size());
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
+      pixels[pixel * channels.size() + c] =
+          channels[c].values[pixel * channels[c].stride + channels[c].offset];
+  encode_image("openexr", spec, OIIO::TypeDesc::FLOAT, pixels.data(), file);
+}
+
+}  // namespace reemit

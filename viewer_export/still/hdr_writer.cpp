@@ -1,0 +1,53 @@
+#include "viewer_export/still/hdr_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "scenes/model/error.h"
+#include "viewer_export/still/oiio_output.h"
+
+namespace reemit {
+namespace {
+
+// The lines that OpenImageIO leaves out. They belong between the format line and the empty line that ends the
+// header.
+std::string extra_header(const StillImage& image, const ToneMap& tone_map) {
+  std::string lines = "PRIMARIES=0.640 0.330 0.300 0.600 0.150 0.060 0.3127 0.3290\n";
+  lines += fmt::format("SOFTWARE=reemit {}\n", one_line(image.info.program_version));
+  for (const auto& [name, value] : describe(image.info, image.bands))
+    lines += fmt::format("# {}: {}\n", name, value);
+  lines += fmt::format("# suggested display: {}\n", tone_map.statement());
+  return lines;
+}
+
+// What a shared-exponent pixel can hold: finite and not negative.
+std::vector<float> representable(std::span<const float> rgb) {
+  constexpr float kLargest = 1e38F;
+  std::vector<float> result(rgb.begin(), rgb.end());
+  for (float& value : result) value = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, kLargest);
+  return result;
+}
+
+}  // namespace
+
+void write_hdr(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
+               OutputFile& file) {
+  const OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT);
+  const std::vector<float> pixels = representable(rgb);
+  const std::vector<unsigned char> encoded = encode_image("hdr", spec, OIIO::TypeDesc::FLOAT, pixels.data());
+
+  const std::string_view bytes(reinterpret_cast<const char*>(encoded.data()), encoded.size());
+  const std::size_t header_end = bytes.find("\n\n");
+  if (header_end == std::string_view::npos ||
+      bytes.substr(0, header_end).find("PRIMARIES=") != std::string_view::npos)
+    throw ResourceError("hdr image", "OpenImageIO wrote a header of an unknown form", "Write .exr instead.");
+  file.write(bytes.substr(0, header_end + 1));
+  file.write(extra_header(image, tone_map));
+  file.write(bytes.substr(header_end + 1));
+}
+
+}  // namespace reemit

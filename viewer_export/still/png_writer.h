@@ -1,0 +1,15 @@
+#pragma once
+#include <span>
+
+#include "scenes/io/output_file.h"
+#include "viewer_export/still/still_image.h"
+#include "viewer_export/still/tone_map.h"
+
+namespace reemit {
+
+/// 8-bit sRGB, tone-mapped and dithered; the exposure is stated in the metadata. The same picture gives the
+/// same bytes. `rgb`: the picture in linear Rec.709, 3 values per pixel. Throws ResourceError.
+void write_png(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
+               OutputFile& file);
+
+}  // namespace reemit

@@ -1,0 +1,23 @@
+#include "viewer_export/still/still_image.h"
+
+#include <stdexcept>
+
+namespace reemit {
+
+void check_consistent(const StillImage& image) {
+  if (image.width <= 0 || image.height <= 0) throw std::invalid_argument("still image without pixels");
+  const std::size_t pixels = image.pixel_count();
+  const std::size_t values = pixels * image.bands.count();
+  const auto check = [](const std::vector<float>& layer, std::size_t size, bool may_be_empty) {
+    if (layer.size() != size && !(may_be_empty && layer.empty()))
+      throw std::invalid_argument("still image with a layer of the wrong size");
+  };
+  check(image.radiance, values, false);
+  for (const auto* layer : {&image.direct, &image.indirect, &image.radiance_stderr, &image.albedo})
+    check(*layer, values, true);
+  check(image.samples, pixels, true);
+  check(image.depth, pixels, true);
+  check(image.normal, 3 * pixels, true);
+}
+
+}  // namespace reemit
