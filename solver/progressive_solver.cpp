@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
@@ -29,7 +30,7 @@ Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSetting
   solution.room_hash = content_hash(scene);
   solution.settings = settings;
   solution.bands = scene.bands;
-  for (const Surface& s : scene.surfaces) solution.surface_names.push_back(s.name);
+  keep_surfaces(scene, solution);
   solution.mesh_report = std::move(mesh.report);
   solution.mesh = std::move(mesh.mesh);
   const std::size_t values = solution.mesh.zone_count() * scene.bands.count();
@@ -101,7 +102,8 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
   }
   refuse_closed_perfect_reflector(transport, emission, settings.seed);
 
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
     run_batches(transport, emission, solution, progress, interrupt);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums, true);

@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <functional>
 
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
@@ -9,14 +10,18 @@
 
 namespace reemit {
 
+/// Is shown every block of rays before it is traced; called from all threads.
+using RayObserver = std::function<void(const Ray16& rays, int count)>;
+
 /// Everything one batch needs to know.
 struct BatchTask {
   const TransportScene& transport;
   const Emission& emission;
   const SolverSettings& settings;
-  std::uint32_t batch;               ///< Number of the batch: selects its random numbers.
-  std::uint32_t packets;             ///< Aimed at; each luminaire zone sends at least one.
-  const std::atomic<bool>* abandon;  ///< Looked at now and then; may be null.
+  std::uint32_t batch;                         ///< Number of the batch: selects its random numbers.
+  std::uint32_t packets;                       ///< Aimed at; each luminaire zone sends at least one.
+  const std::atomic<bool>* abandon = nullptr;  ///< Looked at now and then; may be null.
+  const RayObserver* ray_observer = nullptr;   ///< May be null.
 };
 
 /// One batch of absorb-and-re-emit shooting: an independent estimate of the whole solution ([GI98] Monte

@@ -20,31 +20,30 @@ constexpr std::uint32_t kPacketsPerTask = 4096;
 constexpr std::uint32_t kMostSweeps = 200'000;
 
 /// Traces a flight and books every packet where it ends; `incident` receives what zones catch.
-void trace_flight(const TransportScene& transport, const Flight& flight, const FlightNumbers& numbers,
+void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumbers& numbers,
                   std::vector<std::int64_t>& incident, BatchBooks& books) {
+  const TransportScene& transport = batch.transport;
   const std::size_t bands = transport.bands();
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     LocalBooks local(books);
+    std::vector<std::int64_t> power(16 * bands);
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
       const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
       FlightCursor cursor(transport, flight, begin);
       Ray16 rays;
       Hit16 hits;
-      std::uint32_t source[16];
       for (std::uint32_t first = begin; first < end; first += 16) {
         const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-        cursor.start16(first, count, numbers, rays, source);
+        cursor.start16(first, count, numbers, rays, power.data());
+        if (batch.ray_observer != nullptr) (*batch.ray_observer)(rays, count);
         transport.rays().closest16(rays, count, hits);
         for (int lane = 0; lane < count; ++lane) {
-          const std::uint32_t s = source[lane];
-          const std::uint32_t k = first + static_cast<std::uint32_t>(lane) - flight.first_packet[s];
-          const std::uint32_t n = flight.first_packet[s + 1] - flight.first_packet[s];
-          const std::int64_t* quanta = &flight.quanta[s * bands];
+          const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands];
           if (hits.triangle[lane] == RayScene::kMiss) {
             for (std::size_t b = 0; b < bands; ++b)
-              local.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, packet_share(quanta[b], k, n));
+              local.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
             continue;
           }
           const ZoneId zone =
@@ -56,7 +55,7 @@ void trace_flight(const TransportScene& transport, const Flight& flight, const F
             account =
                 &books.absorbed_on_backs
                      [transport.mesh().triangle(TriangleId(hits.triangle[lane])).surface.index() * bands];
-          for (std::size_t b = 0; b < bands; ++b) book(account[b], packet_share(quanta[b], k, n));
+          for (std::size_t b = 0; b < bands; ++b) book(account[b], quanta[b]);
         }
       }
     }
@@ -214,9 +213,8 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   Allocation allocation(transport.zones(), bands);
   for (std::uint32_t sweep = 0; sweep < kMostSweeps; ++sweep) {
     if (task.abandon != nullptr && task.abandon->load(std::memory_order_relaxed)) return false;
-    trace_flight(transport, flight,
-                 FlightNumbers(task.settings.sampling, task.settings.seed, task.batch, sweep), incident,
-                 books);
+    trace_flight(task, flight, FlightNumbers(task.settings.sampling, task.settings.seed, task.batch, sweep),
+                 incident, books);
     reflect(transport, incident, sweep == 0 ? books.direct : books.indirect, unshot, books);
     const auto left = static_cast<double>(sum(unshot));
     if (left <= task.settings.stop_share * emitted) break;

@@ -7,6 +7,7 @@
 #include "mesh/zone_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/bands.h"
+#include "scenes/model/scene.h"
 #include "solver/solver_settings.h"
 #include "solver/tally/energy_audit.h"
 
@@ -53,15 +54,32 @@ struct Solution {
   SolverSettings settings;
   SolveRecord record;
   BandSet bands = BandSet::grey();
-  std::vector<std::string> surface_names;  ///< By SurfaceId.
+  std::vector<std::string> surface_names;     ///< By SurfaceId.
+  std::vector<MaterialId> surface_materials;  ///< By SurfaceId, into materials.
+  std::vector<Material>
+      materials;  ///< As in the room, without their non-diffuse parts. Filled by keep_surfaces.
   MeshReport mesh_report;
   ZoneMesh mesh{BaseMesh{}};
   ZoneSums sums;
   EnergyAudit audit;
 
+  // Batch means: mean = sum/n, standard error = sqrt((sum of squares - sum^2/n) / (n(n-1))). One batch alone
+  // says nothing about its error: the standard error is then +infinity, never 0. Exceptions that are known to
+  // be exact: no batch at all, which only a room without luminaire ends with, and a zone that met no packet
+  // in n >= 2 batches.
   Estimate direct_irradiance(ZoneId z, std::size_t band) const;    ///< [W/m2]
   Estimate indirect_irradiance(ZoneId z, std::size_t band) const;  ///< [W/m2]
   Estimate irradiance(ZoneId z, std::size_t band) const;           ///< [W/m2]
+
+  const Material& zone_material(ZoneId z) const {
+    return materials[surface_materials[mesh.zone_surface(z).index()].index()];
+  }
+  double emitted_radiosity(ZoneId z,
+                           std::size_t band) const;      ///< M_e = pi L_e of the side the zone is on [W/m2].
+  Estimate radiosity(ZoneId z, std::size_t band) const;  ///< B = M_e + rho E [W/m2].
 };
+
+/// Copies into a solution what it keeps of the room's surfaces: their names and materials.
+void keep_surfaces(const Scene& scene, Solution& solution);
 
 }  // namespace reemit

@@ -1,0 +1,56 @@
+#include "solver/gather/direct_light.h"
+
+namespace reemit {
+
+DirectLight::DirectLight(const Scene& scene, const RayScene& rays) : rays_(&rays), table_(scene, rays) {}
+
+const float* DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
+                                   const std::array<float, kDimensions>& u, float& factor) const {
+  if (choice.empty()) return nullptr;
+  // u[0] chooses and is then used again; u[2] has placed the candidates where there are many luminaires.
+  float u_choice = u[0];
+  float inverse_probability = 0;
+  const std::size_t entry = choice.pick(u_choice, inverse_probability);
+  LuminaireSample sample;
+  if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return nullptr;
+  const Vec3f towards = sample.at_infinity ? sample.target : Vec3f(sample.target - origin);
+  if (!(towards.dot(side_normal(*rays_, x.triangle, x.front)) > 0)) return nullptr;
+  const bool visible =
+      sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
+  if (!visible) return nullptr;
+  factor = sample.factor * inverse_probability;
+  return table_.emission(entry);
+}
+
+void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
+                             const float* weight, float* sum) const {
+  if (empty()) return;
+  const Vec3f origin = rays_->ray_origin(x.triangle, x.u, x.v, x.front);
+  const LuminaireChoice choice(table_, origin, x.normal, u[2]);
+  float factor = 0;
+  const float* emission = estimate(x, origin, choice, u, factor);
+  if (emission == nullptr) return;
+  for (std::size_t b = 0; b < band_count(); ++b) sum[b] += weight[b] * factor * emission[b];
+}
+
+void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first,
+                              int count, double* sum, double* sum_of_squares) const {
+  if (empty()) return;
+  const Vec3f origin = rays_->ray_origin(x.triangle, x.u, x.v, x.front);
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t index = first + static_cast<std::uint32_t>(i);
+    const std::array<float, kDimensions> u{sequence.sample(index, 0), sequence.sample(index, 1),
+                                           sequence.sample(index, 2)};
+    const LuminaireChoice choice(table_, origin, x.normal, u[2]);
+    float factor = 0;
+    const float* emission = estimate(x, origin, choice, u, factor);
+    if (emission == nullptr) continue;
+    for (std::size_t b = 0; b < band_count(); ++b) {
+      const double e = static_cast<double>(factor) * static_cast<double>(emission[b]);
+      sum[b] += e;
+      if (sum_of_squares != nullptr) sum_of_squares[b] += e * e;
+    }
+  }
+}
+
+}  // namespace reemit

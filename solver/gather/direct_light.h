@@ -1,0 +1,45 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "scenes/model/scene.h"
+#include "solver/emit/luminaire_table.h"
+#include "solver/gather/surface_point.h"
+#include "solver/sampling/sobol.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// Irradiance straight from the luminaires at a point, by shadow rays to sampled luminaire points [SWZ96].
+/// Const members may be called from any thread.
+class DirectLight {
+ public:
+  static constexpr int kDimensions =
+      3;  ///< Uniform numbers that one sample takes; the first two matter most.
+
+  DirectLight(const Scene& scene, const RayScene& rays);
+
+  std::size_t band_count() const { return table_.band_count(); }
+  bool empty() const { return table_.empty(); }
+
+  /// One sample: adds weight[b] E_b to sum[b], E_b an unbiased estimate of the irradiance [W/m2]. Exactly
+  /// nothing is added where no luminaire is visible.
+  void add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
+                  float* sum) const;
+
+  /// Adds, for samples first .. first+count-1 of the sequence (dimensions 0-2), E_b to sum[b] [W/m2] and, if
+  /// given, E_b^2 to sum_of_squares[b].
+  void add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first, int count,
+                   double* sum, double* sum_of_squares = nullptr) const;
+
+ private:
+  /// Estimates the irradiance as factor * emission; null if nothing arrives.
+  const float* estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
+                        const std::array<float, kDimensions>& u, float& factor) const;
+
+  const RayScene* rays_;
+  LuminaireTable table_;
+};
+
+}  // namespace reemit

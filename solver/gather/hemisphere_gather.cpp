@@ -1,0 +1,97 @@
+#include "solver/gather/hemisphere_gather.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "solver/reflect/lambert.h"
+
+namespace reemit {
+
+HemisphereGather::HemisphereGather(const RayScene& rays, const RadianceField& field,
+                                   const DirectLight& direct, const GatherSettings& settings)
+    : rays_(&rays),
+      field_(&field),
+      direct_(&direct),
+      close_hit_(static_cast<float>(settings.close_hit)),
+      most_bounces_(settings.most_bounces),
+      rng_(settings.seed, RngPurpose::kHemisphere) {}
+
+void HemisphereGather::add_close(const Hit& y, const PathKey& key, float* weight, float* sum) const {
+  const std::size_t bands = band_count();
+  Hit hit = y;
+  for (int bounce = 0;; ++bounce) {
+    const std::size_t t = hit.triangle.index();
+    if (bounce == most_bounces_ || !is_close(t, hit.distance)) {
+      const float* radiance = field_->reflected(t, hit.u, hit.v, hit.front);
+      for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
+      return;
+    }
+    const float* reflectance = field_->reflectance(t, hit.front);
+    bool dark = true;
+    for (std::size_t b = 0; b < bands; ++b) {
+      weight[b] *= lambert_brdf_per_sr(reflectance[b]);
+      dark = dark && weight[b] == 0;
+    }
+    if (dark) return;
+    const auto number = static_cast<std::uint32_t>(2 * bounce);
+    const std::array<float, 4> u = rng_.uniform4(key.index, key.batch, key.step(number));
+    const std::array<float, 4> u_ray = rng_.uniform4(key.index, key.batch, key.step(number + 1));
+    const SurfacePoint point = surface_point(*rays_, hit);
+    direct_->add_sample(point, {u[0], u[1], u[2]}, weight, sum);
+    // A cosine-distributed ray estimates E/pi, so the weight of what it reads is rho again.
+    for (std::size_t b = 0; b < bands; ++b) weight[b] *= std::numbers::pi_v<float>;
+    if (!rays_->closest(rays_->ray_origin(point.triangle, point.u, point.v, point.front),
+                        sample_lambert(point.normal, u_ray[0], u_ray[1]), hit))
+      return;
+  }
+}
+
+GatherBatch::GatherBatch(const HemisphereGather& gather)
+    : gather_(&gather),
+      bands_(gather.band_count()),
+      rays_{},
+      keys_{},
+      sums_{},
+      weights_(static_cast<std::size_t>(kWidth) * bands_) {}
+
+void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
+                      float* sum) {
+  const RayScene& rays = gather_->rays();
+  const Vec3f direction = sample_lambert(x.normal, u0, u1);
+  // Below a shading normal's horizon there is only the surface itself.
+  if (!(direction.dot(side_normal(rays, x.triangle, x.front)) > 0)) return;
+  const Vec3f origin = rays.ray_origin(x.triangle, x.u, x.v, x.front);
+  const auto lane = static_cast<std::size_t>(count_);
+  rays_.ox[lane] = origin.x();
+  rays_.oy[lane] = origin.y();
+  rays_.oz[lane] = origin.z();
+  rays_.dx[lane] = direction.x();
+  rays_.dy[lane] = direction.y();
+  rays_.dz[lane] = direction.z();
+  keys_[lane] = key;
+  sums_[lane] = sum;
+  std::copy_n(weight, bands_, &weights_[lane * bands_]);
+  if (++count_ == kWidth) flush();
+}
+
+void GatherBatch::flush() {
+  if (count_ == 0) return;
+  const RadianceField& field = gather_->field();
+  Hit16 hits;
+  gather_->rays().closest16(rays_, count_, hits);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
+    const std::uint32_t t = hits.triangle[i];
+    if (t == RayScene::kMiss) continue;
+    float* weight = &weights_[i * bands_];
+    if (gather_->is_close(t, hits.distance[i])) {
+      const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
+      gather_->add_close(hit, keys_[i], weight, sums_[i]);
+      continue;
+    }
+    const float* radiance = field.reflected(t, hits.u[i], hits.v[i], hits.front[i]);
+    for (std::size_t b = 0; b < bands_; ++b) sums_[i][b] += weight[b] * radiance[b];
+  }
+  count_ = 0;
+}
+
+}  // namespace reemit

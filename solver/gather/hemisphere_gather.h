@@ -1,0 +1,77 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "solver/gather/direct_light.h"
+#include "solver/gather/radiance_field.h"
+#include "solver/gather/surface_point.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// How gather rays read the zone solution.
+struct GatherSettings {
+  /// A hit nearer than this many zone sizes is continued by another bounce instead of read, so that corners
+  /// show no zone-sized steps; >= 0, 0 = always read.
+  double close_hit = 1.0;
+  int most_bounces = 4;  ///< Bounces after which a close hit is read all the same [0, 64].
+  std::uint64_t seed = 1;
+};
+
+/// Indirect light at points: cosine-distributed rays that read the *reflected* radiance of the zones they hit
+/// ([GI98] final gather). Self-emission of what they hit is not read: DirectLight has counted it.
+/// A hit y closer than about the size of its zone is not read; its radiance is taken as
+/// rho_y/pi (E_direct(y) + pi L_reflected(z)) with its own shadow ray and one more cosine-distributed ray to
+/// z. Const members may be called from any thread.
+class HemisphereGather {
+ public:
+  HemisphereGather(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
+                   const GatherSettings& settings);
+
+  const RayScene& rays() const { return *rays_; }
+  std::size_t band_count() const { return field_->band_count(); }
+  /// True if a hit at this distance [normalised units] is too close to be read.
+  bool is_close(std::size_t triangle, float distance) const {
+    return distance < close_hit_ * field_->zone_size(triangle);
+  }
+  const RadianceField& field() const { return *field_; }
+
+  /// Adds weight[b] times the reflected radiance of a close hit y to sum[b]. `weight` is used up.
+  void add_close(const Hit& y, const PathKey& key, float* weight, float* sum) const;
+
+ private:
+  const RayScene* rays_;
+  const RadianceField* field_;
+  const DirectLight* direct_;
+  float close_hit_;
+  int most_bounces_;
+  CounterRng rng_;
+};
+
+/// Gather rays of any points in packets of 16. One per thread; the order of the calls decides the order of
+/// the sums, so results do not depend on threads. Every ray adds weight[b] * L_b to its sum; with
+/// weight = 1/n over n cosine-distributed rays, pi times the sum is the irradiance.
+class GatherBatch {
+ public:
+  explicit GatherBatch(const HemisphereGather& gather);
+
+  /// Queues a ray from x in direction (u0,u1) of the cosine-weighted hemisphere. `weight` has one value per
+  /// band and is copied; `sum` must live until flush().
+  void add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum);
+  /// Traces what is queued. Call it before the sums are read.
+  void flush();
+
+ private:
+  static constexpr int kWidth = 16;
+
+  const HemisphereGather* gather_;
+  std::size_t bands_;
+  int count_ = 0;
+  Ray16 rays_;
+  std::array<PathKey, kWidth> keys_;
+  std::array<float*, kWidth> sums_;
+  std::vector<float> weights_;
+};
+
+}  // namespace reemit

@@ -1,0 +1,73 @@
+#include "solver/gather/radiance_field.h"
+
+#include <cmath>
+
+#include "scenes/model/error.h"
+#include "solver/reflect/lambert.h"
+
+namespace reemit {
+
+RadianceField::RadianceField(const Scene& scene, const Solution& solution, const RayScene& rays)
+    : bands_(scene.bands.count()), zero_(bands_, 0.0F) {
+  if (!(scene.bands == solution.bands) || scene.surfaces.size() != solution.surface_names.size())
+    throw InputError(scene.source, "the room is not the one that was solved",
+                     "Solve it again: its surfaces or bands have changed since.");
+  const ZoneMesh& mesh = rays.mesh();
+  read_surfaces(scene);
+  sides_.resize(2 * mesh.triangle_count());
+  zone_size_.resize(mesh.triangle_count());
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    const BaseTriangle& triangle = mesh.triangle(t);
+    const Material& material = scene.material_of(scene.surfaces[triangle.surface.index()]);
+    for (const bool front : {true, false}) {
+      TriangleSide& side = sides_[2 * i + (front ? 0 : 1)];
+      side.surface = static_cast<std::uint32_t>(triangle.surface.index());
+      side.emits = material.emits() && (front || (material.emits_both_sides && triangle.two_sided));
+      if (!front && !triangle.two_sided) continue;
+      side.first_zone = mesh.first_zone(t, front).index();
+      side.divisions = triangle.divisions;
+    }
+    zone_size_[i] = static_cast<float>(std::sqrt(2 * mesh.triangle_area(t)) / triangle.divisions /
+                                       rays.metres_per_unit());
+  }
+  read_zones(solution);
+}
+
+void RadianceField::read_surfaces(const Scene& scene) {
+  surface_emitted_.reserve(scene.surfaces.size() * bands_);
+  surface_reflectance_.reserve(scene.surfaces.size() * bands_);
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.material_of(surface);
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const auto k = static_cast<Eigen::Index>(b);
+      surface_emitted_.push_back(static_cast<float>(material.emitted_radiance[k]));
+      surface_reflectance_.push_back(static_cast<float>(material.reflectance[k]));
+    }
+  }
+}
+
+void RadianceField::read_zones(const Solution& solution) {
+  const ZoneSums& sums = solution.sums;
+  const std::size_t zones = solution.mesh.zone_count();
+  reflected_.assign(zones * bands_, 0.0F);
+  reflected_direct_.assign(zones * bands_, 0.0F);
+  if (sums.batches <= 0) return;
+  if (sums.direct.size() != reflected_.size() || sums.indirect.size() != reflected_.size())
+    throw InputError(solution.room_path, "the solution does not hold one value per zone and band",
+                     "Solve the room again: the file is damaged.");
+  const auto batches = static_cast<double>(sums.batches);
+  for (std::size_t z = 0; z < zones; ++z) {
+    const std::size_t surface = solution.mesh.zone_surface(ZoneId(z)).index();
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const std::size_t k = z * bands_ + b;
+      const float reflectance = surface_reflectance_[surface * bands_ + b];
+      const double irradiance = (sums.direct[k] + sums.indirect[k]) / batches;
+      reflected_[k] = lambert_reflected_radiance(reflectance, static_cast<float>(irradiance));
+      reflected_direct_[k] =
+          lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / batches));
+    }
+  }
+}
+
+}  // namespace reemit

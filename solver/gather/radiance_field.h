@@ -1,0 +1,69 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "scenes/model/scene.h"
+#include "solver/solution/solution.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// What gather rays read: the zone solution and the materials as flat float arrays, all values per band.
+class RadianceField {
+ public:
+  /// Throws InputError when the room is not the one that was solved (bands or surfaces differ).
+  RadianceField(const Scene& scene, const Solution& solution, const RayScene& rays);
+
+  std::size_t band_count() const { return bands_; }
+
+  /// Reflected radiance rho (E_direct + E_indirect)/pi [W/(m2 sr)] of the zone at a point; self-emission is
+  /// not in it. Zero on sides that have no zones.
+  const float* reflected(std::size_t triangle, float u, float v, bool front) const {
+    return zone_value(reflected_, triangle, u, v, front);
+  }
+  /// The part rho E_direct/pi of reflected() [W/(m2 sr)].
+  const float* reflected_direct(std::size_t triangle, float u, float v, bool front) const {
+    return zone_value(reflected_direct_, triangle, u, v, front);
+  }
+  /// Self-emitted radiance [W/(m2 sr)] of one side of a triangle; zero where it does not emit.
+  const float* emitted(std::size_t triangle, bool front) const {
+    const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
+    return side.emits ? &surface_emitted_[side.surface * bands_] : zero_.data();
+  }
+  /// Diffuse reflectance [0,1] of one side of a triangle; zero on backs that absorb.
+  const float* reflectance(std::size_t triangle, bool front) const {
+    const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
+    return side.divisions == 0 ? zero_.data() : &surface_reflectance_[side.surface * bands_];
+  }
+  /// Edge length of the square that two zones of this triangle make up [normalised units].
+  float zone_size(std::size_t triangle) const { return zone_size_[triangle]; }
+
+ private:
+  struct TriangleSide {
+    std::size_t first_zone = 0;
+    std::uint32_t divisions = 0;  // 0: no zones on this side
+    std::uint32_t surface = 0;
+    bool emits = false;
+  };
+
+  const float* zone_value(const std::vector<float>& values, std::size_t triangle, float u, float v,
+                          bool front) const {
+    const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
+    if (side.divisions == 0) return zero_.data();
+    return &values[(side.first_zone + zone_in_triangle(side.divisions, u, v)) * bands_];
+  }
+  void read_surfaces(const Scene& scene);
+  void read_zones(const Solution& solution);
+
+  std::size_t bands_;
+  std::vector<TriangleSide> sides_;  // front, back of each triangle
+  std::vector<float> reflected_;     // by zone
+  std::vector<float> reflected_direct_;
+  std::vector<float> surface_emitted_;
+  std::vector<float> surface_reflectance_;
+  std::vector<float> zone_size_;
+  std::vector<float> zero_;
+};
+
+}  // namespace reemit

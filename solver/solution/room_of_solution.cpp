@@ -1,0 +1,54 @@
+#include "solver/solution/room_of_solution.h"
+
+#include <algorithm>
+
+#include "scenes/io/scene_reader.h"
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path find_room(const Solution& solution, const fs::path& solution_file,
+                   const std::optional<fs::path>& override) {
+  std::error_code code;
+  if (override) {
+    if (fs::exists(*override, code)) return *override;
+    throw InputError(override->string(), "no such room file", "Check the spelling of the name.");
+  }
+  const fs::path stored = solution.room_path;
+  if (fs::exists(stored, code)) return stored;
+  const fs::path beside = solution_file.parent_path() / stored.filename();
+  if (stored.has_filename() && fs::exists(beside, code)) return beside;
+  throw InputError(solution_file.string(), "the room it was solved from is gone: " + stored.string(),
+                   "Put the room file back, or beside the solution, or name it with --room.");
+}
+
+// The hash says that the rooms are the same; what is left to check are numbers of the solution file itself.
+bool fits(const Solution& solution, const Scene& scene) {
+  if (!(solution.bands == scene.bands) || solution.surface_names.size() != scene.surfaces.size())
+    return false;
+  const auto& triangles = solution.mesh.base().triangles;
+  return std::all_of(triangles.begin(), triangles.end(), [&scene](const BaseTriangle& t) {
+    return t.surface.index() < scene.surfaces.size() &&
+           t.face < scene.surfaces[t.surface.index()].faces.size();
+  });
+}
+
+}  // namespace
+
+Scene read_room_of(const Solution& solution, const fs::path& solution_file,
+                   const std::optional<fs::path>& override) {
+  const fs::path room = find_room(solution, solution_file, override);
+  Scene scene = read_scene(room, solution.read_options);
+  if (content_hash(scene) != solution.room_hash)
+    throw InputError(room.string(),
+                     "the room has changed since " + solution_file.string() + " was solved from it",
+                     "Solve it again, or restore the file as it was.");
+  if (!fits(solution, scene))
+    throw InputError(solution_file.string(), "is damaged: its zones do not fit the room " + room.string(),
+                     "Restore a copy of the file or solve the room again.");
+  return scene;
+}
+
+}  // namespace reemit

@@ -1,0 +1,316 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "scenes/model/error.h"
+#include "solver/solution/hdf5_group.h"
+#include "solver/solution/solution_file.h"
+#include "solver/solution/solution_layout.h"
+
+namespace reemit {
+namespace {
+
+// Something in the file that cannot be; becomes an InputError that names the file.
+class Damage : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void require(bool condition, const std::string& problem) {
+  if (!condition) throw Damage(problem);
+}
+
+template <class Enum>
+Enum enum_from(const std::string& text, std::span<const Enum> values) {
+  for (const Enum value : values)
+    if (to_string(value) == text) return value;
+  throw Damage("unknown word '" + text + "'");
+}
+
+// The reading side of solution_layout.h.
+struct AttributeReader {
+  const Hdf5Group& group;
+
+  void attribute(const char* name, bool& value) { value = group.read_attribute<std::uint8_t>(name) != 0; }
+  void attribute(const char* name, int& value) { value = group.read_attribute<std::int32_t>(name); }
+  void attribute(const char* name, std::uint64_t& value) {
+    value = group.read_attribute<std::uint64_t>(name);
+  }
+  void attribute(const char* name, double& value) { value = group.read_attribute<double>(name); }
+  void attribute(const char* name, std::optional<double>& value) {
+    if (group.has_attribute(name)) value = group.read_attribute<double>(name);
+  }
+  void attribute(const char* name, EmissiveUnits& value) {
+    parse<EmissiveUnits>(name, value, kAllEmissiveUnits);
+  }
+  void attribute(const char* name, SolveMethod& value) { parse<SolveMethod>(name, value, kAllSolveMethods); }
+  void attribute(const char* name, SamplingKind& value) {
+    parse<SamplingKind>(name, value, kAllSamplingKinds);
+  }
+  void attribute(const char* name, StopReason& value) { parse<StopReason>(name, value, kAllStopReasons); }
+
+ private:
+  template <class Enum>
+  void parse(const char* name, Enum& value, std::span<const Enum> values) {
+    value = enum_from(group.read_text_attribute(name), values);
+  }
+};
+
+void read_settings(const Hdf5Group& root, Solution& solution) {
+  const Hdf5Group settings = root.open_group("settings");
+  const Hdf5Group read = settings.open_group("read");
+  const Hdf5Group mesh = settings.open_group("mesh");
+  const Hdf5Group solve = settings.open_group("solve");
+  const Hdf5Group record = root.open_group("record");
+  AttributeReader from_read{read};
+  AttributeReader from_mesh{mesh};
+  AttributeReader from_solve{solve};
+  AttributeReader from_record{record};
+  transfer_read_options(from_read, solution.read_options);
+  transfer_mesh_settings(from_mesh, solution.mesh_settings);
+  transfer_solver_settings(from_solve, solution.settings);
+  transfer_record(from_record, solution.record);
+}
+
+BandSet read_bands(const Hdf5Group& root) {
+  const Hdf5Group group = root.open_group("bands");
+  switch (enum_from<BandKind>(group.read_text_attribute("kind"), kAllBandKinds)) {
+    case BandKind::kGrey:
+      return BandSet::grey();
+    case BandKind::kRgb:
+      return BandSet::rgb();
+    case BandKind::kSpectral:
+      break;
+  }
+  const Hdf5Shape shape = group.shape("centre");
+  require(shape.size() == 1, "bad list of wavelengths");
+  return BandSet::spectral(group.read<double>("centre", shape));
+}
+
+std::uint64_t rows_of(const Hdf5Group& group, const char* name) {
+  return group.shape(name).at(0);
+}
+
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+void read_materials(const Hdf5Group& root, Solution& solution) {
+  const Hdf5Group group = root.open_group("materials");
+  const std::vector<std::string> names = group.read_texts("name");
+  const std::uint64_t bands = solution.bands.count();
+  const std::uint64_t count = names.size();
+  const auto reflectance = group.read<double>("reflectance", {count, bands});
+  const auto emitted = group.read<double>("emitted_radiance", {count, bands});
+  const auto two_sided = group.read<std::uint8_t>("two_sided", {count});
+  const auto emits_both_sides = group.read<std::uint8_t>("emits_both_sides", {count});
+  const auto in_range = [](double low, double high) {
+    return [low, high](double x) { return x >= low && x <= high; };
+  };
+  require(std::all_of(reflectance.begin(), reflectance.end(), in_range(0, 1)), "reflectance outside [0,1]");
+  require(std::all_of(emitted.begin(), emitted.end(), in_range(0, std::numeric_limits<double>::max())),
+          "negative or infinite emission");
+  const auto size = static_cast<Eigen::Index>(bands);
+  for (std::size_t m = 0; m < count; ++m) {
+    Material material;
+    material.name = names[m];
+    material.reflectance = Spectrum::Map(reflectance.data() + m * bands, size);
+    material.emitted_radiance = Spectrum::Map(emitted.data() + m * bands, size);
+    material.two_sided = two_sided[m] != 0;
+    material.emits_both_sides = emits_both_sides[m] != 0;
+    solution.materials.push_back(std::move(material));
+  }
+}
+
+void read_surfaces(const Hdf5Group& root, Solution& solution) {
+  const Hdf5Group group = root.open_group("surfaces");
+  solution.surface_names = group.read_texts("name");
+  const std::uint64_t count = solution.surface_names.size();
+  for (const std::uint32_t material : group.read<std::uint32_t>("material", {count})) {
+    require(material < solution.materials.size(), "surface with a material out of range");
+    solution.surface_materials.emplace_back(material);
+  }
+  const auto input = group.read<double>("area_input", {count});
+  const auto meshed = group.read<double>("area_meshed", {count});
+  const auto removed = group.read<double>("area_removed", {count});
+  for (std::size_t s = 0; s < count; ++s)
+    solution.mesh_report.surfaces.push_back({input[s], meshed[s], removed[s]});
+}
+
+std::vector<Vec3> read_vectors(const Hdf5Group& group, const char* name) {
+  const std::uint64_t count = rows_of(group, name);
+  const auto flat = group.read<double>(name, {count, 3});
+  require(all_finite(flat), std::string(name) + " that are not finite");
+  std::vector<Vec3> vectors;
+  vectors.reserve(count);
+  for (std::size_t i = 0; i < flat.size(); i += 3) vectors.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  return vectors;
+}
+
+// `zone_count` comes from the size of the sums, which were compared with the size of the file: a damaged
+// number of divisions must not make us allocate zones that are not there.
+ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone_count) {
+  const Hdf5Group group = root.open_group("mesh");
+  BaseMesh base;
+  base.vertices = read_vectors(group, "vertices");
+  base.normals = read_vectors(group, "normals");
+  const std::uint64_t count = rows_of(group, "triangles");
+  const auto vertex = group.read<std::uint32_t>("triangles", {count, 3});
+  const auto normal = group.read<std::uint32_t>("triangle_normals", {count, 3});
+  const auto surface = group.read<std::uint32_t>("triangle_surface", {count});
+  const auto face = group.read<std::uint32_t>("triangle_face", {count});
+  const auto divisions = group.read<std::uint32_t>("triangle_divisions", {count});
+  const auto two_sided = group.read<std::uint8_t>("triangle_two_sided", {count});
+  std::uint64_t zones = 0;
+  for (std::size_t t = 0; t < count; ++t) {
+    require(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
+    require(divisions[t] > 0 && divisions[t] < 65536, "triangle with an impossible number of zones");
+    zones += std::uint64_t{divisions[t]} * divisions[t] * (two_sided[t] != 0 ? 2U : 1U);
+    require(zones <= zone_count, "more zones in the mesh than in the sums");
+    BaseTriangle triangle;
+    std::copy_n(vertex.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, triangle.vertex.begin());
+    std::copy_n(normal.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, triangle.normal.begin());
+    triangle.surface = SurfaceId(surface[t]);
+    triangle.face = face[t];
+    triangle.divisions = divisions[t];
+    triangle.two_sided = two_sided[t] != 0;
+    base.triangles.push_back(triangle);
+  }
+  require(zones == zone_count, "fewer zones in the mesh than in the sums");
+  AttributeReader counts{group};
+  transfer_mesh_counts(counts, solution.mesh_report);
+  solution.mesh_report.warnings = group.read_texts("warnings");
+  return ZoneMesh(std::move(base));
+}
+
+ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
+  const Hdf5Group group = root.open_group("sums");
+  ZoneSums sums;
+  sums.batches = group.read_attribute<std::int64_t>("batches");
+  require(sums.batches >= 0, "a negative number of batches");
+  const Hdf5Shape shape{rows_of(group, "direct"), bands};
+  const std::pair<const char*, std::vector<double>*> columns[] = {
+      {"direct", &sums.direct},
+      {"direct_squared", &sums.direct_squared},
+      {"indirect", &sums.indirect},
+      {"indirect_squared", &sums.indirect_squared},
+      {"total_squared", &sums.total_squared}};
+  for (const auto& [name, values] : columns) {
+    *values = group.read<double>(name, shape);
+    require(all_finite(*values), std::string("/sums/") + name + " holds a number that is not finite");
+  }
+  return sums;
+}
+
+EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
+  const Hdf5Group group = root.open_group("audit");
+  const std::uint64_t bands = solution.bands.count();
+  const std::uint64_t surfaces = solution.surface_names.size();
+  EnergyAudit audit;
+  audit.batches = group.read_attribute<std::int64_t>("batches");
+  require(audit.batches >= 0, "a negative number of batches");
+  const std::vector<std::string> names = group.read_texts("band");
+  require(names.size() == bands, "an audit of another number of bands");
+  const auto watts = group.read<double>("watts_per_quantum", {bands});
+  const auto escaped = group.read<std::int64_t>("escaped", {bands, 6});
+  const auto absorbed = group.read<std::int64_t>("absorbed", {bands, surfaces});
+  const auto on_backs = group.read<std::int64_t>("absorbed_on_backs", {bands, surfaces});
+  audit.bands.resize(bands);
+  const auto row = [](const std::vector<std::int64_t>& values, std::size_t b, std::uint64_t columns) {
+    return values.begin() + static_cast<std::ptrdiff_t>(b * columns);
+  };
+  for (std::size_t b = 0; b < bands; ++b) {
+    BandAudit& band = audit.bands[b];
+    band.band = names[b];
+    band.watts_per_quantum = watts[b];
+    std::copy_n(row(escaped, b, 6), 6, band.escaped.begin());
+    band.absorbed.assign(row(absorbed, b, surfaces), row(absorbed, b + 1, surfaces));
+    band.absorbed_on_backs.assign(row(on_backs, b, surfaces), row(on_backs, b + 1, surfaces));
+  }
+  const std::pair<const char*, std::int64_t BandAudit::*> columns[] = {
+      {"emitted", &BandAudit::emitted},
+      {"unshot", &BandAudit::unshot},
+      {"roulette_gain", &BandAudit::roulette_gain},
+      {"roulette_loss", &BandAudit::roulette_loss}};
+  for (const auto& [name, member] : columns) {
+    const auto values = group.read<std::int64_t>(name, {bands});
+    for (std::size_t b = 0; b < bands; ++b) audit.bands[b].*member = values[b];
+  }
+  return audit;
+}
+
+Solution read_all(const Hdf5Group& root) {
+  Solution solution;
+  solution.program_version = root.read_text_attribute("program_version");
+  solution.room_path = root.read_text_attribute("room_path");
+  solution.room_hash = root.read_text_attribute("room_hash");
+  read_settings(root, solution);
+  solution.bands = read_bands(root);
+  read_materials(root, solution);
+  read_surfaces(root, solution);
+  const std::uint64_t bands = solution.bands.count();
+  solution.sums = read_sums(root, bands);
+  solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / bands);
+  solution.audit = read_audit(root, solution);
+  return solution;
+}
+
+void check_format(const Hdf5Group& root, const std::string& file) {
+  const char* advice = "Give the file that `reemit solve -o` wrote.";
+  if (!root.has_attribute("format"))
+    throw InputError(file, "is an HDF5 file, but no reemit solution", advice);
+  const std::string format = root.read_text_attribute("format");
+  if (format != kSolutionFormat)
+    throw InputError(file, "holds '" + format + "', not a reemit solution", advice);
+  const auto version = root.read_attribute<std::uint32_t>("format_version");
+  if (version != kSolutionFormatVersion)
+    throw InputError(file,
+                     "is a solution of format version " + std::to_string(version) +
+                         "; this program reads version " + std::to_string(kSolutionFormatVersion),
+                     version > kSolutionFormatVersion ? "Use a newer reemit." : "Solve the room again.");
+}
+
+}  // namespace
+
+bool is_solution_file(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code)) return false;
+  const Hdf5Quiet quiet;
+  return H5Fis_hdf5(file.c_str()) > 0;
+}
+
+Solution load_solution(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::error_code code;
+  const auto status = std::filesystem::status(file, code);
+  if (!std::filesystem::exists(status))
+    throw InputError(name, "no such file", "Check the spelling of the name.");
+  if (!std::filesystem::is_regular_file(status))
+    throw InputError(name, "is not a regular file", "Give the file that `reemit solve -o` wrote.");
+  const Hdf5Quiet quiet;
+  const char* damaged = "Restore a copy of the file or solve the room again.";
+  try {
+    const htri_t is_hdf5 = H5Fis_hdf5(file.c_str());
+    if (is_hdf5 < 0) throw InputError(name, "cannot be read", "Check its permissions.");
+    if (is_hdf5 == 0)
+      throw InputError(name, "is not a solution file (no HDF5)",
+                       "Give the file that `reemit solve -o` wrote.");
+    const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot make file properties");
+    check_hdf5(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), "cannot set file properties");
+    const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose, "cannot open it");
+    const Hdf5Group root(Hdf5Id(H5Gopen2(id.get(), "/", H5P_DEFAULT), H5Gclose, "no root group"), "/");
+    check_format(root, name);
+    return read_all(root);
+  } catch (const Hdf5Error& error) {
+    throw InputError(name, std::string("is damaged or incomplete: ") + error.what(), damaged);
+  } catch (const Damage& error) {
+    throw InputError(name, std::string("is damaged: ") + error.what(), damaged);
+  } catch (const std::invalid_argument& error) {  // from the checks of the mesh and the bands
+    throw InputError(name, std::string("is damaged: ") + error.what(), damaged);
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(name, "does not fit into memory",
+                        "Close other programs or use a machine with more memory.");
+  }
+}
+
+}  // namespace reemit

@@ -1,0 +1,322 @@
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+
+#include "scenes/io/output_file.h"
+#include "scenes/model/error.h"
+#include "solver/solution/hdf5_group.h"
+#include "solver/solution/solution_file.h"
+#include "solver/solution/solution_layout.h"
+
+namespace reemit {
+namespace {
+
+// The writing side of solution_layout.h.
+struct AttributeWriter {
+  const Hdf5Group& group;
+
+  void attribute(const char* name, bool value) {
+    group.write_attribute(name, static_cast<std::uint8_t>(value));
+  }
+  void attribute(const char* name, int value) { group.write_attribute(name, std::int32_t{value}); }
+  void attribute(const char* name, std::uint64_t value) { group.write_attribute(name, value); }
+  void attribute(const char* name, double value) { group.write_attribute(name, value); }
+  void attribute(const char* name, const std::optional<double>& value) {
+    if (value) group.write_attribute(name, *value);
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void attribute(const char* name, Enum value) { group.write_attribute(name, to_string(value)); }
+};
+
+void check_consistent(const Solution& solution) {
+  const auto require = [](bool condition, const char* problem) {
+    if (!condition) throw std::invalid_argument(std::string("solution: ") + problem);
+  };
+  const std::size_t bands = solution.bands.count();
+  const std::size_t surfaces = solution.surface_names.size();
+  require(solution.surface_materials.size() == surfaces,
+          "surfaces without materials; keep_surfaces was not called");
+  for (const MaterialId m : solution.surface_materials)
+    require(m.index() < solution.materials.size(), "surface with a material out of range");
+  for (const Material& m : solution.materials)
+    require(static_cast<std::size_t>(m.reflectance.size()) == bands &&
+                static_cast<std::size_t>(m.emitted_radiance.size()) == bands,
+            "material with another number of bands");
+  for (const BaseTriangle& t : solution.mesh.base().triangles)
+    require(t.surface.index() < surfaces, "triangle with a surface out of range");
+  require(solution.mesh_report.surfaces.size() == surfaces,
+          "one row of the mesh report per surface expected");
+  const ZoneSums& sums = solution.sums;
+  for (const auto* values :
+       {&sums.direct, &sums.direct_squared, &sums.indirect, &sums.indirect_squared, &sums.total_squared})
+    require(values->size() == solution.mesh.zone_count() * bands, "one sum per zone and band expected");
+  require(solution.audit.bands.size() == bands, "one audit per band expected");
+  for (const BandAudit& audit : solution.audit.bands)
+    require(audit.absorbed.size() == surfaces && audit.absorbed_on_backs.size() == surfaces,
+            "one absorbed power per surface expected");
+}
+
+template <class T, class Range, class Function>
+std::vector<T> flattened(const Range& range, Function&& values_of) {
+  std::vector<T> flat;
+  for (const auto& item : range)
+    for (const auto& value : values_of(item)) flat.push_back(static_cast<T>(value));
+  return flat;
+}
+
+template <class T, class Range, class Function>
+std::vector<T> column(const Range& range, Function&& value_of) {
+  std::vector<T> values;
+  for (const auto& item : range) values.push_back(static_cast<T>(value_of(item)));
+  return values;
+}
+
+template <class T>
+void put(const Hdf5Group& group, const char* name, const std::vector<T>& values, std::size_t columns,
+         const char* unit, const char* description) {
+  Hdf5Shape shape{values.size() / columns};
+  if (columns > 1) shape.push_back(columns);
+  group.write<T>(name, values, shape, unit, description);
+}
+
+// Rows of bands keep their second dimension when there is only one band.
+template <class T>
+void put_bands(const Hdf5Group& group, const char* name, const std::vector<T>& values, std::size_t bands,
+               const char* unit, const char* description) {
+  group.write<T>(name, values, {values.size() / bands, bands}, unit, description);
+}
+
+void write_settings(const Hdf5Group& root, const Solution& solution) {
+  const Hdf5Group settings = root.create_group("settings");
+  const Hdf5Group read = settings.create_group("read");
+  const Hdf5Group mesh = settings.create_group("mesh");
+  const Hdf5Group solve = settings.create_group("solve");
+  const Hdf5Group record = root.create_group("record");
+  AttributeWriter to_read{read};
+  AttributeWriter to_mesh{mesh};
+  AttributeWriter to_solve{solve};
+  AttributeWriter to_record{record};
+  transfer_read_options(to_read, solution.read_options);
+  transfer_mesh_settings(to_mesh, solution.mesh_settings);
+  transfer_solver_settings(to_solve, solution.settings);
+  transfer_record(to_record, solution.record);
+}
+
+void write_bands(const Hdf5Group& root, const BandSet& bands) {
+  const Hdf5Group group = root.create_group("bands");
+  group.write_attribute("kind", to_string(bands.kind()));
+  group.write_attribute("luminance", bands.efficacy_statement());
+  group.write("name", bands.names(), "name of each band");
+  if (bands.kind() == BandKind::kSpectral)
+    put(group, "centre", bands.centres_nm(), 1, "nm", "wavelength at the centre of each band");
+  const Spectrum& efficacy = bands.efficacy_lm_per_w();
+  put(group, "efficacy", std::vector<double>(efficacy.begin(), efficacy.end()), 1, "lm/W",
+      "luminous efficacy of each band");
+}
+
+void write_surfaces(const Hdf5Group& root, const Solution& solution) {
+  const Hdf5Group surfaces = root.create_group("surfaces");
+  surfaces.write("name", solution.surface_names, "name of each surface of the room");
+  put(surfaces, "material",
+      column<std::uint32_t>(solution.surface_materials, [](MaterialId m) { return m.index(); }), 1, "",
+      "row of /materials");
+  const std::vector<SurfaceAreas>& areas = solution.mesh_report.surfaces;
+  put(surfaces, "area_input", column<double>(areas, std::mem_fn(&SurfaceAreas::input)), 1, "m2",
+      "area as read, one side");
+  put(surfaces, "area_meshed", column<double>(areas, std::mem_fn(&SurfaceAreas::meshed)), 1, "m2",
+      "area of the base triangles, one side");
+  put(surfaces, "area_removed", column<double>(areas, std::mem_fn(&SurfaceAreas::removed)), 1, "m2",
+      "area of duplicates and of parts covered by a coplanar face");
+
+  const Hdf5Group materials = root.create_group("materials");
+  const std::size_t bands = solution.bands.count();
+  materials.write("name", column<std::string>(solution.materials, std::mem_fn(&Material::name)),
+                  "name of each material");
+  put_bands(materials, "reflectance",
+            flattened<double>(solution.materials,
+                              [](const Material& m) -> const Spectrum& { return m.reflectance; }),
+            bands, "1", "diffuse reflectance");
+  put_bands(materials, "emitted_radiance",
+            flattened<double>(solution.materials,
+                              [](const Material& m) -> const Spectrum& { return m.emitted_radiance; }),
+            bands, "W/(m2 sr)", "radiance emitted by itself");
+  put(materials, "two_sided", column<std::uint8_t>(solution.materials, std::mem_fn(&Material::two_sided)), 1,
+      "", "1 if the back reflects like the front, else it absorbs");
+  put(materials, "emits_both_sides",
+      column<std::uint8_t>(solution.materials, std::mem_fn(&Material::emits_both_sides)), 1, "",
+      "1 if the back emits like the front");
+}
+
+void write_mesh(const Hdf5Group& root, const Solution& solution) {
+  const BaseMesh& base = solution.mesh.base();
+  const auto& triangles = base.triangles;
+  const Hdf5Group mesh = root.create_group("mesh");
+  const auto coordinates = [](const Vec3& v) -> const Vec3& { return v; };
+  put(mesh, "vertices", flattened<double>(base.vertices, coordinates), 3, "m",
+      "corners of the base triangles");
+  put(mesh, "normals", flattened<double>(base.normals, coordinates), 3, "1", "shading normals, unit");
+  put(mesh, "triangles", flattened<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::vertex)), 3, "",
+      "rows of vertices, counter-clockwise from the front");
+  put(mesh, "triangle_normals", flattened<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::normal)), 3,
+      "", "rows of normals; 4294967295 = geometric normal");
+  put(mesh, "triangle_surface",
+      column<std::uint32_t>(triangles, [](const auto& t) { return t.surface.index(); }), 1, "",
+      "row of /surfaces");
+  put(mesh, "triangle_face", column<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::face)), 1, "",
+      "polygon of the surface the triangle was cut from");
+  put(mesh, "triangle_divisions", column<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::divisions)), 1,
+      "", "n: the triangle has n*n zones on each side that has zones");
+  put(mesh, "triangle_two_sided", column<std::uint8_t>(triangles, std::mem_fn(&BaseTriangle::two_sided)), 1,
+      "", "1 if the back has zones, numbered after those of the front");
+  AttributeWriter counts{mesh};
+  transfer_mesh_counts(counts, solution.mesh_report);
+  mesh.write("warnings", solution.mesh_report.warnings, "what meshing warned about");
+}
+
+// One column of zone values, computed zone by zone so that only one is in memory at a time.
+template <class Function>
+void put_zone_bands(const Hdf5Group& zones, const Solution& solution, const char* name,
+                    const char* description, Function&& value_of) {
+  const std::size_t bands = solution.bands.count();
+  std::vector<float> values;
+  values.reserve(solution.mesh.zone_count() * bands);
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    for (std::size_t band = 0; band < bands; ++band)
+      values.push_back(static_cast<float>(value_of(ZoneId(z), band)));
+  put_bands(zones, name, values, bands, "W/m2", description);
+}
+
+void write_zone_geometry(const Hdf5Group& zones, const ZoneMesh& mesh) {
+  std::vector<std::uint32_t> triangle;
+  std::vector<std::uint32_t> surface;
+  std::vector<std::uint8_t> front;
+  std::vector<float> area;
+  std::vector<float> normal;
+  std::vector<float> centroid;
+  for (std::size_t i = 0; i < mesh.zone_count(); ++i) {
+    const ZoneId z(i);
+    triangle.push_back(static_cast<std::uint32_t>(mesh.zone_triangle(z).index()));
+    surface.push_back(static_cast<std::uint32_t>(mesh.zone_surface(z).index()));
+    front.push_back(mesh.zone_is_front(z) ? 1 : 0);
+    area.push_back(static_cast<float>(mesh.zone_area(z)));
+    for (const double x : mesh.zone_normal(z)) normal.push_back(static_cast<float>(x));
+    for (const double x : mesh.zone_centroid(z)) centroid.push_back(static_cast<float>(x));
+  }
+  put(zones, "triangle", triangle, 1, "", "row of /mesh/triangles");
+  put(zones, "surface", surface, 1, "", "row of /surfaces");
+  put(zones, "front", front, 1, "", "1 on the front of the triangle, 0 on its back");
+  put(zones, "area", area, 1, "m2", "area of one zone");
+  put(zones, "normal", normal, 3, "1", "unit normal, away from the side of the zone");
+  put(zones, "centroid", centroid, 3, "m", "centre of the zone");
+}
+
+void write_zone_values(const Hdf5Group& zones, const Solution& s) {
+  const auto reflectance = [&s](ZoneId z, std::size_t band) {
+    return s.zone_material(z).reflectance[static_cast<Eigen::Index>(band)];
+  };
+  put_zone_bands(zones, s, "radiosity", "emitted + direct + indirect",
+                 [&](ZoneId z, std::size_t b) { return s.radiosity(z, b).mean; });
+  put_zone_bands(zones, s, "radiosity_stderr", "standard error of radiosity",
+                 [&](ZoneId z, std::size_t b) { return s.radiosity(z, b).stderr_of_mean; });
+  put_zone_bands(zones, s, "emitted", "part of radiosity that the zone emits by itself",
+                 [&](ZoneId z, std::size_t b) { return s.emitted_radiosity(z, b); });
+  put_zone_bands(zones, s, "direct", "part of radiosity that came straight from a luminaire",
+                 [&](ZoneId z, std::size_t b) { return reflectance(z, b) * s.direct_irradiance(z, b).mean; });
+  put_zone_bands(
+      zones, s, "indirect", "part of radiosity that was reflected before",
+      [&](ZoneId z, std::size_t b) { return reflectance(z, b) * s.indirect_irradiance(z, b).mean; });
+  put_zone_bands(zones, s, "irradiance", "incident power per area",
+                 [&](ZoneId z, std::size_t b) { return s.irradiance(z, b).mean; });
+  put_zone_bands(zones, s, "irradiance_stderr", "standard error of irradiance",
+                 [&](ZoneId z, std::size_t b) { return s.irradiance(z, b).stderr_of_mean; });
+  put_zone_bands(zones, s, "irradiance_direct_stderr",
+                 "standard error of the irradiance straight from luminaires",
+                 [&](ZoneId z, std::size_t b) { return s.direct_irradiance(z, b).stderr_of_mean; });
+  put_zone_bands(zones, s, "irradiance_indirect_stderr", "standard error of the irradiance reflected before",
+                 [&](ZoneId z, std::size_t b) { return s.indirect_irradiance(z, b).stderr_of_mean; });
+}
+
+void write_sums(const Hdf5Group& root, const Solution& solution) {
+  const Hdf5Group group = root.create_group("sums");
+  const ZoneSums& sums = solution.sums;
+  const std::size_t bands = solution.bands.count();
+  group.write_attribute("batches", sums.batches);
+  put_bands(group, "direct", sums.direct, bands, "W/m2", "sum over batches of the direct irradiance");
+  put_bands(group, "direct_squared", sums.direct_squared, bands, "W2/m4", "sum of its squares");
+  put_bands(group, "indirect", sums.indirect, bands, "W/m2", "sum over batches of the indirect irradiance");
+  put_bands(group, "indirect_squared", sums.indirect_squared, bands, "W2/m4", "sum of its squares");
+  put_bands(group, "total_squared", sums.total_squared, bands, "W2/m4",
+            "sum of the squares of direct + indirect");
+}
+
+void write_audit(const Hdf5Group& root, const Solution& solution) {
+  const Hdf5Group group = root.create_group("audit");
+  const auto& bands = solution.audit.bands;
+  const std::size_t surfaces = solution.surface_names.size();
+  group.write_attribute("batches", solution.audit.batches);
+  group.write("band", column<std::string>(bands, std::mem_fn(&BandAudit::band)), "name of each band");
+  put(group, "watts_per_quantum", column<double>(bands, std::mem_fn(&BandAudit::watts_per_quantum)), 1, "W",
+      "power [W] = quanta * watts_per_quantum / batches");
+  const auto put_column = [&](const char* name, std::int64_t BandAudit::*member, const char* description) {
+    put(group, name, column<std::int64_t>(bands, std::mem_fn(member)), 1, "quanta", description);
+  };
+  put_column("emitted", &BandAudit::emitted, "sent out by luminaires");
+  put_column("unshot", &BandAudit::unshot, "reflected but not sent on when a batch ended");
+  put_column("roulette_gain", &BandAudit::roulette_gain, "created by Russian roulette");
+  put_column("roulette_loss", &BandAudit::roulette_loss, "destroyed by Russian roulette");
+  group.write<std::int64_t>("absorbed", flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::absorbed)),
+                            {bands.size(), surfaces}, "quanta", "absorbed by each surface");
+  group.write<std::int64_t>("absorbed_on_backs",
+                            flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::absorbed_on_backs)),
+                            {bands.size(), surfaces}, "quanta", "absorbed on the backs of one-sided faces");
+  put(group, "escaped", flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::escaped)), 6, "quanta",
+      "left the room towards +x -x +y -y +z -z");
+}
+
+void write_all(const Hdf5Group& root, const Solution& solution) {
+  root.write_attribute("format", std::string(kSolutionFormat));
+  root.write_attribute("format_version", kSolutionFormatVersion);
+  root.write_attribute("program_version", solution.program_version);
+  root.write_attribute(
+      "units", std::string("lengths in m, areas in m2, power in W; every band holds the power within it"));
+  root.write_attribute("room_path", solution.room_path);
+  root.write_attribute("room_hash", solution.room_hash);
+  write_settings(root, solution);
+  write_bands(root, solution.bands);
+  write_surfaces(root, solution);
+  write_mesh(root, solution);
+  const Hdf5Group zones = root.create_group("zones");
+  write_zone_geometry(zones, solution.mesh);
+  write_zone_values(zones, solution);
+  write_sums(root, solution);
+  write_audit(root, solution);
+}
+
+}  // namespace
+
+void save_solution(const Solution& solution, const std::filesystem::path& file) {
+  check_consistent(solution);
+  const Hdf5Quiet quiet;
+  OutputFile output(file);
+  try {
+    // Object headers of this version carry checksums, so damage is found before it is believed.
+    const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot make file properties");
+    check_hdf5(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110),
+               "cannot set the file version");
+    check_hdf5(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), "cannot set file properties");
+    Hdf5Id id(H5Fcreate(output.partial_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose,
+              "cannot create the file");
+    write_all(Hdf5Group(Hdf5Id(H5Gopen2(id.get(), "/", H5P_DEFAULT), H5Gclose, "cannot open the root"), "/"),
+              solution);
+    check_hdf5(H5Fflush(id.get(), H5F_SCOPE_GLOBAL), "cannot flush the file");
+    id.close("cannot close the file");
+  } catch (const Hdf5Error& error) {
+    throw ResourceError(file.string(), error.what(),
+                        "The previous file, if any, is unchanged. Check the free space.");
+  }
+  output.commit();
+}
+
+}  // namespace reemit

@@ -1,0 +1,13 @@
+#pragma once
+
+namespace reemit::cli {
+
+/// Exit codes of the program; scripts rely on them.
+enum class ExitCode : int {
+  kDone = 0,
+  kCheckFailed = 1,  ///< The books do not balance.
+  kBadInput = 2,     ///< Bad usage, bad input, or an output that cannot be written.
+  kNoResources = 3,  ///< Out of memory.
+};
+
+}  // namespace reemit::cli

@@ -1,0 +1,88 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "mesh/build_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "scenes/model/error.h"
+#include "solver/solution/room_of_solution.h"
+#include "solver/solution/solution_file.h"
+#include "viewer_export/cli/command_options.h"
+#include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/messages.h"
+#include "viewer_export/cli/room_report.h"
+#include "viewer_export/cli/solution_report.h"
+
+namespace reemit::cli {
+namespace {
+
+struct InfoOptions {
+  std::filesystem::path file;
+  OutputStyle style;
+};
+
+/// A solution file cut short at its start or empty is still meant as one.
+bool is_solution(const std::filesystem::path& path) {
+  return is_solution_file(path) || path.extension() == ".h5" || path.extension() == ".hdf5";
+}
+
+/// Whether the room of a solution can still be read and is the one that was solved.
+std::string room_status(const Solution& solution, const std::filesystem::path& file) {
+  try {
+    read_room_of(solution, file);
+    return "unchanged";
+  } catch (const InputError& problem) {
+    const std::string message = problem.what();
+    return message.substr(0, message.find('\n'));
+  }
+}
+
+ExitCode show_solution(const InfoOptions& options) {
+  const Solution solution = load_solution(options.file);
+  const std::string status = room_status(solution, options.file);
+  if (options.style.json) {
+    fmt::print("{}\n", solution_json(solution, options.file, status).dump(2));
+  } else {
+    fmt::print("{}", solution_text(solution, options.file, status));
+    print_warnings(solution.mesh_report.warnings);
+  }
+  return ExitCode::kDone;
+}
+
+ExitCode show_room(const InfoOptions& options) {
+  const Scene scene = read_scene(options.file);
+  const MeshResult meshed = build_mesh(scene);
+  if (options.style.json) {
+    fmt::print("{}\n", room_json(scene, meshed).dump(2));
+  } else {
+    fmt::print("{}", room_text(scene, meshed));
+    std::fflush(stdout);
+    print_warnings(scene.warnings);
+    print_warnings(meshed.report.warnings);
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App& info = *program.add_subcommand("info", "Say what a room or a solution holds");
+  info.footer(
+      "Warnings about the geometry go to stderr, and into the document with --json.\n"
+      "Example:\n"
+      "  reemit info room.json");
+  info.add_option("file", options->file, "Room (.json .obj .gltf .glb .mgf) or solution file")
+      ->required()
+      ->type_name("ROOM|SOLUTION");
+  add_json_option(info, options->style);
+  info.callback([options, &action] {
+    action = [options] { return is_solution(options->file) ? show_solution(*options) : show_room(*options); };
+  });
+}
+
+}  // namespace reemit::cli

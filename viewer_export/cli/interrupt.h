@@ -1,0 +1,29 @@
+#pragma once
+#include <atomic>
+
+namespace reemit::cli {
+
+/// While it lives, the first SIGINT or SIGTERM asks long work to stop and the second one ends the program at
+/// once. At most one may live at a time: signals belong to the process.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  /// Becomes true at the first signal.
+  const std::atomic<bool>& requested() const;
+};
+
+/// While it lives, a signal that would end the program waits until the file in work is complete or removed,
+/// so that no half-written file stays behind.
+class FinishWriting {
+ public:
+  FinishWriting();
+  ~FinishWriting();
+  FinishWriting(const FinishWriting&) = delete;
+  FinishWriting& operator=(const FinishWriting&) = delete;
+};
+
+}  // namespace reemit::cli

@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+
+namespace reemit::cli {
+
+/// An output cannot be written: the program ends with the exit code of bad input, not that of lacking memory.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws InputError or OutputError unless a file can be created or replaced at `output`; call it before long
+/// work. Leaves nothing behind and does not touch an existing file. `input` is refused as output: it would be
+/// lost.
+void check_output_file(const std::filesystem::path& output, const std::filesystem::path& input);
+
+/// The same for a directory that will hold several files; it is created if it is missing, its parent is not.
+void make_output_directory(const std::filesystem::path& output);
+
+/// Runs a writer such that signals wait for it, and turns its ResourceError (disk full, not writable) into an
+/// OutputError.
+void write_output(const std::function<void()>& writer);
+
+}  // namespace reemit::cli

@@ -1,0 +1,229 @@
+#include "viewer_export/cli/room_report.h"
+
+#include <cctype>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "viewer_export/cli/luminaire_list.h"
+#include "viewer_export/cli/text_table.h"
+
+namespace reemit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string format_name(const Scene& scene) {
+  std::string extension = std::filesystem::path(scene.source).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  for (char& c : extension) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+std::string point_text(const Vec3& p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+}
+
+Json point_json(const Vec3& p) {
+  return {p.x(), p.y(), p.z()};
+}
+
+Json spectrum_json(const Spectrum& value) {
+  return std::vector<double>(value.begin(), value.end());
+}
+
+void add_cells(std::vector<std::string>& cells, const Spectrum& value) {
+  for (const double v : value) cells.push_back(number_text(v));
+}
+
+std::size_t face_count(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Surface& surface : scene.surfaces) count += surface.faces.size();
+  return count;
+}
+
+double input_area(const MeshReport& report) {
+  double area = 0;
+  for (const SurfaceAreas& surface : report.surfaces) area += surface.input;
+  return area;
+}
+
+/// {name, count} of every kind of repair the mesh stage made.
+std::vector<std::pair<const char*, std::size_t>> repairs(const MeshReport& report) {
+  return {{"degenerate_faces", report.degenerate_faces},   {"duplicate_faces", report.duplicate_faces},
+          {"overlapping_faces", report.overlapping_faces}, {"flipped_faces", report.flipped_faces},
+          {"nonplanar_faces", report.nonplanar_faces},     {"cut_faces", report.cut_faces}};
+}
+
+std::string sides_text(const Material& material) {
+  if (material.emits_both_sides) return "both, both emit";
+  return material.two_sided ? "both" : "front";
+}
+
+std::string materials_text(const Scene& scene) {
+  TextTable table;
+  std::vector<std::string> head{"material"};
+  for (const std::string& band : scene.bands.names()) head.push_back("rho " + band);
+  for (const std::string& band : scene.bands.names()) head.push_back("L_e " + band);
+  head.emplace_back("sides");
+  table.row(std::move(head));
+  for (const Material& material : scene.materials) {
+    std::vector<std::string> cells{"  " + material.name};
+    add_cells(cells, material.reflectance);
+    add_cells(cells, material.emitted_radiance);
+    cells.push_back(sides_text(material));
+    table.row(std::move(cells));
+  }
+  return "Materials: diffuse reflectance rho [1], emitted radiance L_e [W/(m2 sr)]\n" + table.text();
+}
+
+std::string surfaces_text(const Scene& scene, const MeshReport& report) {
+  TextTable table;
+  table.row({"surface", "faces", "area [m2]", "removed [m2]", "material"});
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    const Surface& surface = scene.surfaces[s];
+    table.row({"  " + surface.name, std::to_string(surface.faces.size()),
+               number_text(report.surfaces[s].input), number_text(report.surfaces[s].removed),
+               scene.material_of(surface).name});
+  }
+  return table.text();
+}
+
+std::string luminaires_text(const Scene& scene, const MeshReport& report) {
+  const std::vector<LuminaireRow> rows = list_luminaires(scene, report);
+  if (rows.empty()) return "Luminaires: none\n";
+  TextTable table;
+  std::vector<std::string> head{"luminaire", "kind", "area [m2]"};
+  for (const std::string& band : scene.bands.names()) head.push_back("power " + band + " [W]");
+  head.emplace_back("flux [lm]");
+  table.row(std::move(head));
+  Spectrum total = Spectrum::Zero(static_cast<Eigen::Index>(scene.bands.count()));
+  for (const LuminaireRow& luminaire : rows) {
+    std::vector<std::string> cells{"  " + luminaire.name, luminaire.kind,
+                                   luminaire.area > 0 ? number_text(luminaire.area) : "-"};
+    if (luminaire.power.size() > 0) {
+      add_cells(cells, luminaire.power);
+      cells.push_back(number_text(lumens(luminaire.power, scene.bands)));
+      total += luminaire.power;
+    }
+    table.row(std::move(cells));
+  }
+  std::vector<std::string> cells{"  total", "", ""};
+  add_cells(cells, total);
+  cells.push_back(number_text(lumens(total, scene.bands)));
+  table.row(std::move(cells));
+  return table.text();
+}
+
+std::string cameras_text(const Scene& scene) {
+  if (scene.cameras.empty()) return "Cameras: none; render chooses some inside the free space\n";
+  TextTable table;
+  table.row({"camera", "eye [m]", "look at [m]", "fov [deg]", "size [px]"});
+  for (const Camera& camera : scene.cameras) {
+    table.row({"  " + camera.name, point_text(camera.eye), point_text(camera.look_at),
+               number_text(camera.vertical_fov_deg), fmt::format("{}x{}", camera.width, camera.height)});
+  }
+  return table.text();
+}
+
+Json luminaire_json(const LuminaireRow& luminaire, const BandSet& bands) {
+  Json json{{"name", luminaire.name}, {"kind", luminaire.kind}};
+  if (luminaire.area > 0) json["area_m2"] = luminaire.area;
+  if (luminaire.power.size() > 0) {
+    json["power_W"] = spectrum_json(luminaire.power);
+    json["flux_lm"] = lumens(luminaire.power, bands);
+  }
+  if (luminaire.power_per_area.size() > 0)
+    json["power_per_area_W_m2"] = spectrum_json(luminaire.power_per_area);
+  return json;
+}
+
+}  // namespace
+
+std::string room_text(const Scene& scene, const MeshResult& meshed) {
+  const Box box = bounds(scene);
+  std::string text = fmt::format("{}: room, {}\n", scene.source, format_name(scene));
+  text += fmt::format("hash          {}\n", content_hash(scene));
+  text += fmt::format("bands         {} ({})\n", fmt::join(scene.bands.names(), " "),
+                      scene.bands.efficacy_statement());
+  text += fmt::format("bounding box  {} to {} m\n", point_text(box.min), point_text(box.max));
+  text += fmt::format("size          {:.6g} x {:.6g} x {:.6g} m\n", box.size().x(), box.size().y(),
+                      box.size().z());
+  text += fmt::format("geometry      {} surfaces, {} faces, {:.6g} m2 (one side)\n", scene.surfaces.size(),
+                      face_count(scene), input_area(meshed.report));
+  text += fmt::format("mesh          {} base triangles, {} zones with default settings\n",
+                      meshed.mesh.triangle_count(), meshed.mesh.zone_count());
+  std::string repaired;
+  for (const auto& [name, count] : repairs(meshed.report)) {
+    if (count == 0) continue;
+    std::string words = name;
+    words.replace(words.find('_'), 1, " ");
+    repaired += fmt::format("{}{} {}", repaired.empty() ? "" : ", ", count, words);
+  }
+  text += fmt::format("repairs       {}\n", repaired.empty() ? "none" : repaired);
+  text += '\n' + materials_text(scene) + '\n' + surfaces_text(scene, meshed.report) + '\n' +
+          luminaires_text(scene, meshed.report) + '\n' + cameras_text(scene);
+  for (const std::string& note : scene.notes) text += "note: " + note + '\n';
+  return text;
+}
+
+Json room_json(const Scene& scene, const MeshResult& meshed) {
+  const Box box = bounds(scene);
+  Json json{{"kind", "room"},
+            {"file", scene.source},
+            {"format", format_name(scene)},
+            {"name", scene.name},
+            {"hash", content_hash(scene)},
+            {"bands", scene.bands.names()},
+            {"efficacy_lm_per_W", spectrum_json(scene.bands.efficacy_lm_per_w())},
+            {"bounding_box_m", {{"min", point_json(box.min)}, {"max", point_json(box.max)}}},
+            {"size_m", point_json(box.size())},
+            {"faces", face_count(scene)},
+            {"area_m2", input_area(meshed.report)},
+            {"base_triangles", meshed.mesh.triangle_count()},
+            {"zones_by_default", meshed.mesh.zone_count()}};
+  for (const auto& [name, count] : repairs(meshed.report)) json["repairs"][name] = count;
+  json["materials"] = Json::array();
+  for (const Material& material : scene.materials) {
+    json["materials"].push_back({{"name", material.name},
+                                 {"reflectance", spectrum_json(material.reflectance)},
+                                 {"emitted_radiance_W_sr_m2", spectrum_json(material.emitted_radiance)},
+                                 {"two_sided", material.two_sided},
+                                 {"emits_both_sides", material.emits_both_sides}});
+  }
+  json["surfaces"] = Json::array();
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    json["surfaces"].push_back({{"name", scene.surfaces[s].name},
+                                {"material", scene.material_of(scene.surfaces[s]).name},
+                                {"faces", scene.surfaces[s].faces.size()},
+                                {"area_m2", meshed.report.surfaces[s].input},
+                                {"removed_m2", meshed.report.surfaces[s].removed}});
+  }
+  json["luminaires"] = Json::array();
+  Spectrum total = Spectrum::Zero(static_cast<Eigen::Index>(scene.bands.count()));
+  for (const LuminaireRow& luminaire : list_luminaires(scene, meshed.report)) {
+    json["luminaires"].push_back(luminaire_json(luminaire, scene.bands));
+    if (luminaire.power.size() > 0) total += luminaire.power;
+  }
+  json["total_power_W"] = spectrum_json(total);
+  json["total_flux_lm"] = lumens(total, scene.bands);
+  json["cameras"] = Json::array();
+  for (const Camera& camera : scene.cameras) {
+    json["cameras"].push_back({{"name", camera.name},
+                               {"eye_m", point_json(camera.eye)},
+                               {"look_at_m", point_json(camera.look_at)},
+                               {"up", point_json(camera.up)},
+                               {"vertical_fov_deg", camera.vertical_fov_deg},
+                               {"width_px", camera.width},
+                               {"height_px", camera.height}});
+  }
+  json["warnings"] = scene.warnings;
+  for (const std::string& warning : meshed.report.warnings) json["warnings"].push_back(warning);
+  json["notes"] = scene.notes;
+  return json;
+}
+
+}  // namespace reemit::cli

@@ -1,0 +1,15 @@
+#pragma once
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "mesh/build_mesh.h"
+#include "scenes/model/scene.h"
+
+namespace reemit::cli {
+
+/// What `info` says about a room: units, size, materials, surfaces, luminaires with their power, cameras.
+std::string room_text(const Scene& scene, const MeshResult& meshed);
+nlohmann::ordered_json room_json(const Scene& scene, const MeshResult& meshed);
+
+}  // namespace reemit::cli

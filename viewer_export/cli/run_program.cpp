@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <new>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "scenes/model/error.h"
+#include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/output_path.h"
+
+#include "reemit/version.h"
+
+namespace reemit::cli {
+namespace {
+
+constexpr const char* kDescription =
+    "Solves the light in a room once and answers every later question from that solution:\n"
+    "radiance at every vertex, stills from any viewpoint, and where every watt went.";
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  reemit solve room.json -o room.h5 --error 1%\n"
+    "  reemit render room.h5 --camera all -o pictures/\n"
+    "  reemit export room.h5 -o room.ply\n"
+    "  reemit audit room.h5\n"
+    "'reemit COMMAND --help' explains a command.\n"
+    "Exit codes: 0 done, 1 a check failed, 2 bad usage, input or output, 3 out of memory.";
+
+/// Number of letters to change, add or drop to get from one word to the other (Levenshtein distance).
+std::size_t letters_apart(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The known word nearest to a mistyped one; empty if none is near.
+std::string nearest(const std::string& word, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3);
+  for (const std::string& candidate : known) {
+    const std::size_t distance = letters_apart(word, candidate);
+    if (distance <= best_distance && (best.empty() || distance < best_distance)) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::vector<std::string> known_words(const CLI::App& command) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
+  }
+  for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; })) {
+    words.push_back(subcommand->get_name());
+  }
+  return words;
+}
+
+/// What to say about a command line that does not parse.
+std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
+  const auto chosen = program.get_subcommands();
+  const CLI::App& command = chosen.empty() ? program : *chosen.front();
+  std::string message = error.what();
+  const std::vector<std::string> unknown = program.remaining(true);
+  if (!unknown.empty()) {
+    message = fmt::format("unknown argument '{}'", unknown.front());
+    const std::string word = unknown.front().substr(0, unknown.front().find('='));
+    const std::string suggestion = nearest(word, known_words(command));
+    if (!suggestion.empty()) message += fmt::format("; did you mean '{}'?", suggestion);
+  }
+  const std::string name = chosen.empty() ? "reemit" : "reemit " + command.get_name();
+  return fmt::format("{}\n  '{} --help' lists what it takes", message, name);
+}
+
+ExitCode fail(const std::string& message, ExitCode code) {
+  std::fflush(stdout);
+  fmt::print(stderr, "reemit: error: {}\n", message);
+  return code;
+}
+
+/// What printed last may still wait in a buffer when the disk behind stdout is full.
+ExitCode checked_output(ExitCode code) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
+  return fail("standard output: cannot write", ExitCode::kBadInput);
+}
+
+ExitCode parse_and_run(CLI::App& program, const Action& action, int argc, const char* const* argv) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
+      return fail(usage_message(program, error), ExitCode::kBadInput);
+    }
+    program.exit(error);  // prints the help or the version
+    return checked_output(ExitCode::kDone);
+  }
+  return checked_output(action());
+}
+
+}  // namespace
+
+ExitCode run_program(int argc, const char* const* argv) {
+  constexpr const char* kMemoryAdvice =
+      "out of memory\n  use larger zones (solve --zone-area) or a smaller picture (render --size)";
+  try {
+    CLI::App program(kDescription, "reemit");
+    program.footer(kFooter);
+    program.set_version_flag("--version", fmt::format("reemit {}", kProgramVersion),
+                             "Print the version and exit");
+    program.require_subcommand(1);
+    Action action;
+    add_solve_command(program, action);
+    add_render_command(program, action);
+    add_export_command(program, action);
+    add_audit_command(program, action);
+    add_info_command(program, action);
+    return parse_and_run(program, action, argc, argv);
+  } catch (const ResourceError& problem) {
+    return fail(problem.what(), ExitCode::kNoResources);
+  } catch (const std::bad_alloc&) {
+    return fail(kMemoryAdvice, ExitCode::kNoResources);
+  } catch (const std::length_error&) {
+    return fail(kMemoryAdvice, ExitCode::kNoResources);
+  } catch (
+      const std::exception& problem) {  // InputError, OutputError, and what a library throws on bad input
+    return fail(problem.what(), ExitCode::kBadInput);
+  }
+}
+
+}  // namespace reemit::cli

@@ -1,0 +1,82 @@
+#include "viewer_export/cli/solution_report.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "viewer_export/cli/text_table.h"
+
+namespace reemit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json record_json(const Solution& solution) {
+  const SolveRecord& record = solution.record;
+  return {{"stopped", to_string(record.stopped)},
+          {"packets", record.packets},
+          {"rays", record.rays},
+          {"seconds", record.seconds},
+          {"error", record.error},
+          {"error_95th_percentile", record.error_95th_percentile},
+          {"zones", solution.mesh.zone_count()},
+          {"unreached_zones", record.unreached_zones},
+          {"batches", solution.sums.batches},
+          {"seed", solution.settings.seed},
+          {"method", to_string(solution.settings.method)},
+          {"sampling", to_string(solution.settings.sampling)},
+          {"balanced", solution.audit.balanced()},
+          {"bands", solution.bands.names()},
+          {"room", solution.room_path},
+          {"room_hash", solution.room_hash}};
+}
+
+}  // namespace
+
+std::string solve_line(const Solution& solution) {
+  const SolveRecord& record = solution.record;
+  return fmt::format("stopped: {}; {} packets, {} rays, {:.2f} s, error {}", to_string(record.stopped),
+                     record.packets, record.rays, record.seconds, percent_text(record.error));
+}
+
+Json solve_json(const Solution& solution, const std::filesystem::path& file) {
+  Json json = record_json(solution);
+  json["solution"] = file.string();
+  return json;
+}
+
+std::string solution_text(const Solution& solution, const std::filesystem::path& file,
+                          const std::string& room_status) {
+  const SolveRecord& record = solution.record;
+  std::string text =
+      fmt::format("{}: solution, written by reemit {}\n", file.string(), solution.program_version);
+  text += fmt::format("room      {} ({})\n", solution.room_path, room_status);
+  text += fmt::format("hash      {}\n", solution.room_hash);
+  text += fmt::format("bands     {} ({})\n", fmt::join(solution.bands.names(), " "),
+                      solution.bands.efficacy_statement());
+  text += fmt::format("method    {}, {} sampling, seed {}\n", to_string(solution.settings.method),
+                      to_string(solution.settings.sampling), solution.settings.seed);
+  text += fmt::format("stopped   {}\n", to_string(record.stopped));
+  text += fmt::format("effort    {} packets, {} rays, {} batches, {:.2f} s\n", record.packets, record.rays,
+                      solution.sums.batches, record.seconds);
+  text += fmt::format("error     {} (95 % of the lit zones within {})\n", percent_text(record.error),
+                      percent_text(record.error_95th_percentile));
+  text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",
+                      solution.mesh.triangle_count(), solution.mesh.zone_count(), record.unreached_zones);
+  text += fmt::format("books     {}\n", solution.audit.balanced() ? "balance exactly" : "DO NOT BALANCE");
+  return text;
+}
+
+Json solution_json(const Solution& solution, const std::filesystem::path& file,
+                   const std::string& room_status) {
+  Json json{{"kind", "solution"},
+            {"file", file.string()},
+            {"program_version", solution.program_version},
+            {"room_status", room_status}};
+  json.update(record_json(solution));
+  json["base_triangles"] = solution.mesh.triangle_count();
+  json["surfaces"] = solution.surface_names;
+  json["warnings"] = solution.mesh_report.warnings;
+  return json;
+}
+
+}  // namespace reemit::cli

@@ -1,0 +1,22 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "solver/solution/solution.h"
+
+namespace reemit::cli {
+
+/// The line `solve` ends with: why it stopped, packets, rays, seconds, error.
+std::string solve_line(const Solution& solution);
+/// The same as the document of `solve --json` (docs/file_formats.md).
+nlohmann::ordered_json solve_json(const Solution& solution, const std::filesystem::path& file);
+
+/// What `info` says about a solution. `room_status` in words: whether the room is still the one solved.
+std::string solution_text(const Solution& solution, const std::filesystem::path& file,
+                          const std::string& room_status);
+nlohmann::ordered_json solution_json(const Solution& solution, const std::filesystem::path& file,
+                                     const std::string& room_status);
+
+}  // namespace reemit::cli

@@ -1,0 +1,159 @@
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "mesh/build_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "solver/progressive_solver.h"
+#include "solver/solution/solution_file.h"
+#include "viewer_export/cli/command_options.h"
+#include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/messages.h"
+#include "viewer_export/cli/option_values.h"
+#include "viewer_export/cli/output_path.h"
+#include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/solution_report.h"
+#include "viewer_export/cli/text_table.h"
+
+namespace reemit::cli {
+namespace {
+
+constexpr double kDefaultErrorTarget = 0.02;
+
+struct SolveOptions {
+  std::filesystem::path room;
+  std::filesystem::path output;
+  ReadOptions read;
+  MeshSettings mesh;
+  SolverSettings solver;
+  OutputStyle style;
+};
+
+bool has_stopping_rule(const SolverSettings& settings) {
+  return settings.error_target > 0 || settings.time_limit_s > 0 || settings.packets > 0;
+}
+
+ProgressCallback progress_callback(Progress& progress) {
+  return [&progress](const SolveProgress& now) {
+    progress.update(
+        now.fraction,
+        fmt::format("error {}, {:.3g} Mrays/s", percent_text(now.error), now.rays_per_second * 1e-6),
+        now.seconds_left);
+  };
+}
+
+ExitCode run_solve(const SolveOptions& options) {
+  check_output_file(options.output, options.room);
+  const Scene scene = read_scene(options.room, options.read);
+  if (!options.style.quiet) print_warnings(scene.warnings);
+  MeshResult meshed = build_mesh(scene, options.mesh);
+  if (!options.style.quiet) print_warnings(meshed.report.warnings);
+
+  SolverSettings settings = options.solver;
+  if (!has_stopping_rule(settings)) {
+    settings.error_target = kDefaultErrorTarget;
+    if (!options.style.quiet) {
+      print_note(fmt::format("no stopping rule given; solving to --error {:g}%", 100 * kDefaultErrorTarget));
+    }
+  }
+  const InterruptGuard interrupt;
+  Progress progress("solving", progress_style(options.style.quiet, options.style.verbose));
+  Solution solution =
+      solve(scene, std::move(meshed), settings, progress_callback(progress), interrupt.requested());
+  progress.finish();
+  solution.room_path = std::filesystem::absolute(options.room).lexically_normal().string();
+  solution.read_options = options.read;
+  solution.mesh_settings = options.mesh;
+  write_output([&] { save_solution(solution, options.output); });
+
+  if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {
+    print_note(fmt::format("interrupted; the solution so far is in {}", options.output.string()));
+  }
+  if (options.style.json) {
+    fmt::print("{}\n", solve_json(solution, options.output).dump(2));
+  } else {
+    fmt::print("{}\n", solve_line(solution));
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+void add_solve_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<SolveOptions>();
+  CLI::App& solve =
+      *program.add_subcommand("solve", "Solve the light in a room and keep it in a solution file");
+  solve.footer(
+      "The run ends when the first stopping rule holds; without any it is --error 2%. Ctrl-C ends it "
+      "cleanly\n"
+      "and keeps the solution so far; a second Ctrl-C ends it at once.\n"
+      "Examples:\n"
+      "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
+      "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7");
+  solve.add_option("room", options->room, "Room file: .json .obj .gltf .glb .mgf")
+      ->required()
+      ->type_name("ROOM");
+  solve.add_option("-o,--output", options->output, "Solution file to write (HDF5)")
+      ->required()
+      ->type_name("SOLUTION");
+
+  solve.option_defaults()->group("Stopping rules");
+  add_parsed_option(solve, "--error", options->solver.error_target, parse_share, "SHARE",
+                    "Stop at this relative standard error of radiosity (area-weighted rms over zones,\n"
+                    "worst band): 1% or 0.01");
+  add_parsed_option(solve, "--time", options->solver.time_limit_s, parse_seconds, "TIME",
+                    "Stop after this wall time: 60, 60s, 2min, 1h");
+  add_parsed_option(solve, "--packets", options->solver.packets, parse_count, "N",
+                    "Stop after this many packets from luminaires: 250000 or 1e6");
+
+  solve.option_defaults()->group("Method");
+  solve
+      .add_option("--method", options->solver.method,
+                  "Estimator: shooting (absorb and re-emit) or walk (Russian roulette)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SolveMethod>{
+          {"shooting", SolveMethod::kShooting}, {"walk", SolveMethod::kWalk}}))
+      ->type_name("NAME")
+      ->default_str("shooting");
+  solve
+      .add_option("--sampling", options->solver.sampling, "Points and directions of packets: sobol or random")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SamplingKind>{
+          {"random", SamplingKind::kRandom}, {"sobol", SamplingKind::kSobol}}))
+      ->type_name("NAME")
+      ->default_str("sobol");
+  solve
+      .add_option("--seed", options->solver.seed,
+                  "Seed; the same seed gives the same bits on any thread count")
+      ->type_name("S")
+      ->capture_default_str();
+  solve.add_option("--threads", options->solver.threads, "Threads; 0 = all cores")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+
+  solve.option_defaults()->group("Room");
+  add_parsed_option(solve, "--zone-area", options->mesh.zone_area, parse_positive, "M2",
+                    "Largest zone area [m2] (default: area of the room / 4000)");
+  solve.add_flag("--two-sided", options->read.force_two_sided,
+                 "Let every face reflect on both sides (rooms with mixed winding)");
+  solve
+      .add_option("--emissive-units", options->read.gltf_emissive_units,
+                  "Unit of emissive factors in glTF: cd/m2 (the specification) or W/sr/m2")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, EmissiveUnits>{
+          {"cd/m2", EmissiveUnits::kCandela}, {"W/sr/m2", EmissiveUnits::kWatt}}))
+      ->type_name("UNIT")
+      ->default_str("cd/m2");
+
+  solve.option_defaults()->group("Output");
+  add_json_option(solve, options->style);
+  add_progress_options(solve, options->style);
+  solve.callback([options, &action] { action = [options] { return run_solve(*options); }; });
+}
+
+}  // namespace reemit::cli

@@ -1,0 +1,25 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace reemit::cli {
+
+/// Columns of text for people: the first is aligned left, the others right.
+class TextTable {
+ public:
+  /// Cells beyond the longest row so far make new columns; missing ones stay empty.
+  void row(std::vector<std::string> cells);
+  void blank_line() { rows_.emplace_back(); }
+  /// All rows, each ended by a newline, without trailing spaces.
+  std::string text() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// Six significant digits, as in all tables.
+std::string number_text(double value);
+/// "1.25 %".
+std::string percent_text(double share);
+
+}  // namespace reemit::cli
