@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
@@ -101,7 +102,8 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
   }
   refuse_closed_perfect_reflector(transport, emission, settings.seed);
 
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
     run_batches(transport, emission, solution, progress, interrupt);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums, true);

@@ -18,7 +18,7 @@ struct SolverSettings {
   int smallest_batch_count = 8;     ///< Batches before an error is believed [2, 65536].
   double stop_share = 1e-5;         ///< Shooting: a batch ends when unshot/emitted falls below this (0, 0.1].
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0 = all cores.
+  int threads = 0;  ///< 0 = all cores; more than there are cores means all.
 };
 
 std::string to_string(SolveMethod method);     ///< "shooting" or "walk".

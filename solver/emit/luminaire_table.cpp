@@ -3,22 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <variant>
+
+#include "solver/shoot/emission.h"
 
 namespace reemit {
 namespace {
 
 double band_sum(const Spectrum& s) {
   return s.sum();
-}
-
-/// Power that chooses between luminaires [W]; that of a directional light is what falls on the room.
-double power_of(const PunctualLight& light, double room_radius) {
-  using std::numbers::pi;
-  if (const auto* point = std::get_if<PointLight>(&light)) return 4 * pi * band_sum(point->intensity);
-  if (const auto* spot = std::get_if<SpotLight>(&light))
-    return 2 * pi * (1 - std::cos(spot->outer_angle)) * band_sum(spot->intensity);
-  return pi * room_radius * room_radius * band_sum(std::get<DirectionalLight>(light).irradiance);
 }
 
 }  // namespace
@@ -45,7 +37,7 @@ void LuminaireTable::add_triangles(const Scene& scene) {
     const double metres = rays_->metres_per_unit();
     const double power = std::numbers::pi * mesh.triangle_area(t) * band_sum(material.emitted_radiance);
     for (const bool front : {true, false}) {
-      if (!front && !material.emits_both_sides) continue;
+      if (!front && !(material.emits_both_sides && mesh.triangle(t).two_sided)) continue;
       TriangleLight light;
       light.a = rays_->corner(t, 0);
       light.b = rays_->corner(t, 1);
@@ -61,9 +53,8 @@ void LuminaireTable::add_triangles(const Scene& scene) {
 }
 
 void LuminaireTable::add_punctual(const Scene& scene) {
-  const double room_radius = std::numbers::sqrt3 * rays_->metres_per_unit();
   for (const PunctualLight& light : scene.lights) {
-    const double power = power_of(light, room_radius);
+    const double power = band_sum(light_power(light, *rays_));
     if (!(power > 0)) continue;
     punctual_.push_back(make_punctual_emitter(light, *rays_));
     add_emission(emission_of(light), power);

@@ -7,12 +7,12 @@ DirectLight::DirectLight(const Scene& scene, const RayScene& rays) : rays_(&rays
 const float* DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
                                    const std::array<float, kDimensions>& u, float& factor) const {
   if (choice.empty()) return nullptr;
-  // u[0] places the candidates where there are many luminaires; u[1] chooses and is then used again.
-  float u_choice = u[1];
+  // u[0] chooses and is then used again; u[2] has placed the candidates where there are many luminaires.
+  float u_choice = u[0];
   float inverse_probability = 0;
   const std::size_t entry = choice.pick(u_choice, inverse_probability);
   LuminaireSample sample;
-  if (!table_.sample(entry, origin, x.normal, u_choice, u[2], sample)) return nullptr;
+  if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return nullptr;
   const Vec3f towards = sample.at_infinity ? sample.target : Vec3f(sample.target - origin);
   if (!(towards.dot(side_normal(*rays_, x.triangle, x.front)) > 0)) return nullptr;
   const bool visible =
@@ -26,7 +26,7 @@ void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDim
                              const float* weight, float* sum) const {
   if (empty()) return;
   const Vec3f origin = rays_->ray_origin(x.triangle, x.u, x.v, x.front);
-  const LuminaireChoice choice(table_, origin, x.normal, u[0]);
+  const LuminaireChoice choice(table_, origin, x.normal, u[2]);
   float factor = 0;
   const float* emission = estimate(x, origin, choice, u, factor);
   if (emission == nullptr) return;
@@ -41,7 +41,7 @@ void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequen
     const std::uint32_t index = first + static_cast<std::uint32_t>(i);
     const std::array<float, kDimensions> u{sequence.sample(index, 0), sequence.sample(index, 1),
                                            sequence.sample(index, 2)};
-    const LuminaireChoice choice(table_, origin, x.normal, u[0]);
+    const LuminaireChoice choice(table_, origin, x.normal, u[2]);
     float factor = 0;
     const float* emission = estimate(x, origin, choice, u, factor);
     if (emission == nullptr) continue;

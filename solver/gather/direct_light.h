@@ -15,7 +15,8 @@ namespace reemit {
 /// Const members may be called from any thread.
 class DirectLight {
  public:
-  static constexpr int kDimensions = 3;  ///< Uniform numbers that one sample takes.
+  static constexpr int kDimensions =
+      3;  ///< Uniform numbers that one sample takes; the first two matter most.
 
   DirectLight(const Scene& scene, const RayScene& rays);
 

@@ -23,7 +23,7 @@ RadianceField::RadianceField(const Scene& scene, const Solution& solution, const
     for (const bool front : {true, false}) {
       TriangleSide& side = sides_[2 * i + (front ? 0 : 1)];
       side.surface = static_cast<std::uint32_t>(triangle.surface.index());
-      side.emits = material.emits() && (front || material.emits_both_sides);
+      side.emits = material.emits() && (front || (material.emits_both_sides && triangle.two_sided));
       if (!front && !triangle.two_sided) continue;
       side.first_zone = mesh.first_zone(t, front).index();
       side.divisions = triangle.divisions;
@@ -51,6 +51,7 @@ void RadianceField::read_zones(const Solution& solution) {
   const ZoneSums& sums = solution.sums;
   const std::size_t zones = solution.mesh.zone_count();
   reflected_.assign(zones * bands_, 0.0F);
+  reflected_direct_.assign(zones * bands_, 0.0F);
   if (sums.batches <= 0) return;
   if (sums.direct.size() != reflected_.size() || sums.indirect.size() != reflected_.size())
     throw InputError(solution.room_path, "the solution does not hold one value per zone and band",
@@ -60,9 +61,11 @@ void RadianceField::read_zones(const Solution& solution) {
     const std::size_t surface = solution.mesh.zone_surface(ZoneId(z)).index();
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = z * bands_ + b;
+      const float reflectance = surface_reflectance_[surface * bands_ + b];
       const double irradiance = (sums.direct[k] + sums.indirect[k]) / batches;
-      reflected_[k] = lambert_reflected_radiance(surface_reflectance_[surface * bands_ + b],
-                                                 static_cast<float>(irradiance));
+      reflected_[k] = lambert_reflected_radiance(reflectance, static_cast<float>(irradiance));
+      reflected_direct_[k] =
+          lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / batches));
     }
   }
 }

@@ -20,9 +20,11 @@ class RadianceField {
   /// Reflected radiance rho (E_direct + E_indirect)/pi [W/(m2 sr)] of the zone at a point; self-emission is
   /// not in it. Zero on sides that have no zones.
   const float* reflected(std::size_t triangle, float u, float v, bool front) const {
-    const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
-    if (side.divisions == 0) return zero_.data();
-    return &reflected_[(side.first_zone + zone_in_triangle(side.divisions, u, v)) * bands_];
+    return zone_value(reflected_, triangle, u, v, front);
+  }
+  /// The part rho E_direct/pi of reflected() [W/(m2 sr)].
+  const float* reflected_direct(std::size_t triangle, float u, float v, bool front) const {
+    return zone_value(reflected_direct_, triangle, u, v, front);
   }
   /// Self-emitted radiance [W/(m2 sr)] of one side of a triangle; zero where it does not emit.
   const float* emitted(std::size_t triangle, bool front) const {
@@ -45,12 +47,19 @@ class RadianceField {
     bool emits = false;
   };
 
+  const float* zone_value(const std::vector<float>& values, std::size_t triangle, float u, float v,
+                          bool front) const {
+    const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
+    if (side.divisions == 0) return zero_.data();
+    return &values[(side.first_zone + zone_in_triangle(side.divisions, u, v)) * bands_];
+  }
   void read_surfaces(const Scene& scene);
   void read_zones(const Solution& solution);
 
   std::size_t bands_;
   std::vector<TriangleSide> sides_;  // front, back of each triangle
   std::vector<float> reflected_;     // by zone
+  std::vector<float> reflected_direct_;
   std::vector<float> surface_emitted_;
   std::vector<float> surface_reflectance_;
   std::vector<float> zone_size_;

@@ -1,0 +1,242 @@
+// Shooting and walks against closed forms, against each other, and against themselves on other numbers of
+// threads.
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "scenes/model/error.h"
+#include "solver/progressive_solver.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/test_rooms.h"
+
+namespace reemit {
+namespace {
+
+using test::RoomBuilder;
+
+Solution run(const RoomBuilder& room, SolverSettings settings) {
+  const std::atomic<bool> interrupt = false;
+  return solve(room.scene(), room.mesh(), settings, nullptr, interrupt);
+}
+
+SolverSettings settings_of(SolveMethod method, std::uint64_t packets,
+                           SamplingKind sampling = SamplingKind::kSobol) {
+  SolverSettings s;
+  s.method = method;
+  s.sampling = sampling;
+  s.packets = packets;
+  s.batch_packets = packets / 32;
+  s.seed = 2024;
+  s.threads = 2;
+  return s;
+}
+
+constexpr std::array kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
+
+/// Every face emits M and reflects rho: radiosity is M/(1-rho) and irradiance M/(1-rho) everywhere.
+RoomBuilder furnace(double rho, std::uint32_t divisions) {
+  RoomBuilder room;
+  const MaterialId m = room.material("all", rho, 1.0);
+  room.box(Vec3::Zero(), Vec3(3, 2, 1), {m, m, m, m, m, m}, divisions);
+  return room;
+}
+
+/// Coloured box with one bright wall, in three bands.
+RoomBuilder coloured_box(bool open = false, std::uint32_t divisions = 4) {
+  RoomBuilder room(BandSet::rgb());
+  const auto rgb = [](double r, double g, double b) { return Spectrum(Eigen::Array3d(r, g, b)); };
+  const MaterialId lamp = room.material("lamp", rgb(0.2, 0.2, 0.2), rgb(10, 5, 1));
+  const MaterialId red = room.material("red", rgb(0.8, 0.1, 0.05), rgb(0, 0, 0));
+  const MaterialId green = room.material("green", rgb(0.1, 0.7, 0.0), rgb(0, 0, 0));
+  const MaterialId white = room.material("white", rgb(0.75, 0.7, 0.65), rgb(0, 0, 0));
+  room.box(Vec3::Zero(), Vec3(1, 1, 1), {red, green, white, lamp, white, open ? MaterialId() : white},
+           divisions);
+  return room;
+}
+
+/// Mean over zones of the squared deviation from `truth` in standard errors, tested as chi-square.
+double furnace_fit(const Solution& s, double truth) {
+  std::vector<test::Measured> measured;
+  std::vector<test::Measured> expected;
+  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
+    const Estimate e = s.irradiance(ZoneId(z), 0);
+    measured.push_back({e.mean, e.stderr_of_mean});
+    expected.push_back({truth, 0});
+  }
+  return test::agreement(measured, expected, static_cast<double>(s.sums.batches));
+}
+
+TEST(Methods, FurnaceHasItsClosedForm) {
+  for (const SolveMethod method : kMethods)
+    for (const SamplingKind sampling : {SamplingKind::kRandom, SamplingKind::kSobol})
+      for (const double rho : {0.0, 0.5, 0.9}) {
+        const Solution s = run(furnace(rho, 4), settings_of(method, 640'000, sampling));
+        EXPECT_GT(furnace_fit(s, 1 / (1 - rho)), test::kFalseAlarm)
+            << to_string(method) << " " << to_string(sampling) << " rho " << rho;
+      }
+}
+
+TEST(Methods, FurnaceHarnessRejectsTwoPercentBias) {
+  for (const SolveMethod method : kMethods) {
+    const Solution s = run(furnace(0.5, 4), settings_of(method, 640'000));
+    EXPECT_LT(furnace_fit(s, 1.02 / (1 - 0.5)), test::kFalseAlarm) << to_string(method);
+  }
+}
+
+std::vector<test::Measured> irradiances(const Solution& s) {
+  std::vector<test::Measured> all;
+  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)
+    for (std::size_t b = 0; b < s.bands.count(); ++b) {
+      const Estimate e = s.irradiance(ZoneId(z), b);
+      all.push_back({e.mean, e.stderr_of_mean});
+    }
+  return all;
+}
+
+TEST(Methods, ShootingAndWalkAgreeZoneByZone) {
+  for (const bool open : {false, true}) {
+    const RoomBuilder room = coloured_box(open);
+    const auto shooting = irradiances(run(room, settings_of(SolveMethod::kShooting, 1'600'000)));
+    auto walk = irradiances(run(room, settings_of(SolveMethod::kWalk, 1'600'000)));
+    EXPECT_GT(test::agreement(shooting, walk, 32), test::kFalseAlarm) << (open ? "open" : "closed");
+    for (auto& w : walk) w.mean *= 1.02;
+    EXPECT_LT(test::agreement(shooting, walk, 32), test::kFalseAlarm) << "a bias of 2 % went unseen";
+  }
+}
+
+TEST(Methods, BooksBalanceToTheQuantumInEveryBand) {
+  for (const SolveMethod method : kMethods)
+    for (const bool open : {false, true}) {
+      const Solution s = run(coloured_box(open), settings_of(method, 100'000));
+      ASSERT_EQ(s.audit.bands.size(), 3U);
+      for (const BandAudit& b : s.audit.bands) {
+        EXPECT_EQ(b.balance(), 0);
+        EXPECT_EQ(b.emitted - b.total_absorbed() - b.total_escaped() - b.unshot, 0) << "roulette must cancel";
+        EXPECT_EQ(b.total_escaped() > 0, open);
+        EXPECT_EQ(b.emitted, s.audit.batches << 42);
+      }
+      // 1 m2 of lamp emits its exitance.
+      EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].emitted), 10, 1e-9);
+      EXPECT_NEAR(s.audit.watts(s.audit.bands[2], s.audit.bands[2].emitted), 1, 1e-9);
+      if (open) {
+        const auto& out = s.audit.bands[1].escaped;
+        EXPECT_GT(out[4], out[0] + out[1] + out[2] + out[3]) << "most leaves through the opening, towards +z";
+        EXPECT_EQ(out[5], 0);
+      }
+    }
+}
+
+TEST(Methods, SameSeedSameBitsOnAnyNumberOfThreads) {
+  for (const SolveMethod method : kMethods) {
+    SolverSettings settings = settings_of(method, 60'000);
+    settings.threads = 1;
+    const Solution one = run(coloured_box(), settings);
+    settings.threads = 0;
+    const Solution many = run(coloured_box(), settings);
+    EXPECT_EQ(one.sums.direct, many.sums.direct);
+    EXPECT_EQ(one.sums.indirect, many.sums.indirect);
+    EXPECT_EQ(one.sums.total_squared, many.sums.total_squared);
+    EXPECT_EQ(one.record.error, many.record.error);
+    EXPECT_EQ(one.record.rays, many.record.rays);
+    settings.seed = 7;
+    EXPECT_NE(one.sums.direct, run(coloured_box(), settings).sums.direct);
+  }
+}
+
+TEST(Methods, SealedDarkBoxInABrightRoomIsExactlyBlack) {
+  RoomBuilder room;
+  const MaterialId bright = room.material("bright", 0.6, 1.0);
+  const MaterialId shell = room.material("shell", 0.7, 0, true);
+  room.box(Vec3(-2, -2, -2), Vec3(2, 2, 2), {bright, bright, bright, bright, bright, bright}, 2);
+  const std::size_t first = room.mesh().mesh.zone_count();
+  room.box(Vec3(-0.3, -0.3, -0.3), Vec3(0.3, 0.3, 0.3), {shell, shell, shell, shell, shell, shell}, 2);
+  for (const SolveMethod method : kMethods) {
+    const Solution s = run(room, settings_of(method, 200'000));
+    double inside = 0;
+    std::size_t outside_lit = 0;
+    for (std::size_t z = first; z < s.mesh.zone_count(); ++z) {
+      const double e = s.irradiance(ZoneId(z), 0).mean;
+      if (s.mesh.zone_is_front(ZoneId(z)))
+        inside += e;
+      else
+        outside_lit += e > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(inside, 0);
+    EXPECT_EQ(outside_lit, (s.mesh.zone_count() - first) / 2);
+    EXPECT_EQ(s.record.unreached_zones, (s.mesh.zone_count() - first) / 2) << "dark zones are reported";
+  }
+}
+
+TEST(Methods, PointSpotAndDirectionalLightsDeliverTheirPower) {
+  // All walls black: what arrives is what was emitted, and a wall's mean irradiance has a closed form.
+  RoomBuilder room;
+  const MaterialId black = room.material("black", 0.0);
+  room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {black, black, black, black, black, black}, 1);
+  Scene& scene = room.scene();
+  scene.lights = {PointLight{"p", Vec3::Zero(), room.flat(3)}};
+  Solution s = run(room, settings_of(SolveMethod::kShooting, 320'000));
+  EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].emitted), 12 * std::numbers::pi, 1e-9);
+  for (std::size_t f = 0; f < 6; ++f)  // each wall takes one sixth
+    EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].absorbed[f]), 2 * std::numbers::pi, 0.03);
+
+  scene.lights = {SpotLight{"s", Vec3::Zero(), Vec3(0, 0, -1), room.flat(2), 0.2, 0.5}};
+  s = run(room, settings_of(SolveMethod::kWalk, 32'000));
+  const double inner = std::cos(0.2);
+  const double outer = std::cos(0.5);
+  EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].absorbed[4]),
+              2 * 2 * std::numbers::pi * ((1 - inner) + (inner - outer) / 3), 1e-6);
+
+  RoomBuilder slab;
+  const MaterialId m = slab.material("black", 0.0);
+  slab.quad(m, {Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)}, 1);
+  slab.scene().lights = {DirectionalLight{"d", Vec3(0, 0.6, -0.8), slab.flat(5)}};
+  s = run(slab, settings_of(SolveMethod::kShooting, 640'000));
+  EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].absorbed[0]), 5 * 0.8 * 4, 0.05);
+  EXPECT_GT(s.audit.bands[0].total_escaped(), 0);
+}
+
+TEST(Methods, NoLuminaireGivesExactlyBlack) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5);
+  room.box(Vec3::Zero(), Vec3(1, 1, 1), {m, m, m, m, m, m}, 2);
+  const Solution s = run(room, settings_of(SolveMethod::kShooting, 1000));
+  EXPECT_EQ(s.record.stopped, StopReason::kNoLuminaire);
+  EXPECT_EQ(s.record.rays, 0U);
+  EXPECT_EQ(s.irradiance(ZoneId(0), 0).mean, 0);
+  EXPECT_TRUE(s.audit.balanced());
+}
+
+TEST(Methods, PerfectReflectorIsRefusedWhenClosedAndSolvedWhenOpen) {
+  RoomBuilder closed = furnace(1.0, 1);
+  EXPECT_THROW(run(closed, settings_of(SolveMethod::kShooting, 1000)), InputError);
+  RoomBuilder open;
+  const MaterialId m = open.material("mirror-white", 1.0, 1.0);
+  open.box(Vec3::Zero(), Vec3(1, 1, 1), {m, m, m, m, m, MaterialId()}, 2);
+  for (const SolveMethod method : kMethods) {
+    const Solution s = run(open, settings_of(method, 50'000));
+    EXPECT_EQ(s.audit.bands[0].total_absorbed(), 0);
+    EXPECT_TRUE(s.audit.balanced());
+    // All 5 W leave, but for what was still unshot.
+    EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].total_escaped()), 5, 1e-3);
+  }
+}
+
+TEST(Methods, InterruptKeepsTheBatchesThatAreDone) {
+  std::atomic<bool> interrupt = false;
+  SolverSettings settings = settings_of(SolveMethod::kShooting, 100'000'000);
+  settings.batch_packets = 10'000;
+  const RoomBuilder room = coloured_box();
+  const Solution s = solve(
+      room.scene(), room.mesh(), settings,
+      [&](const SolveProgress& p) {
+        if (p.batches == 3) interrupt = true;
+      },
+      interrupt);
+  EXPECT_EQ(s.record.stopped, StopReason::kInterrupted);
+  EXPECT_EQ(s.sums.batches, 3);
+  EXPECT_TRUE(s.audit.balanced());
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,112 @@
+#include "solver/trace/ray_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "solver/sampling/counter_rng.h"
+#include "solver/sampling/warp.h"
+#include "tests/support/test_rooms.h"
+
+namespace reemit {
+namespace {
+
+using test::RoomBuilder;
+
+/// Counts rays from everywhere on the inside of a closed box that hit nothing or a back.
+int leaks(double scale, const Vec3& shift) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5);
+  room.box(shift, shift + scale * Vec3(1, 0.7, 0.4), {m, m, m, m, m, m}, 2);
+  const MeshResult built = room.mesh();
+  const RayScene scene(built.mesh);
+  const CounterRng rng(1, RngPurpose::kProbe);
+  int lost = 0;
+  for (std::uint32_t i = 0; i < 200'000; ++i) {
+    const TriangleId t(i % built.mesh.triangle_count());
+    const auto u = rng.uniform4(i, 0, 0);
+    auto [a, b] = sample_triangle(u[0], u[1]);
+    if (i % 7 == 0) a = 0;  // exactly on edges and corners as well
+    if (i % 11 == 0) b = i % 2 == 0 ? 0.0F : 1 - a;
+    const Vec3f d = Frame(scene.normal(t)).to_world(sample_cosine_hemisphere(u[2], u[3]));
+    Hit hit;
+    if (!scene.closest(scene.ray_origin(t, a, b, true), d, hit) || !hit.front) ++lost;
+  }
+  return lost;
+}
+
+TEST(RayScene, ClosedBoxLosesNoRayAtAnyScaleAndPlace) {
+  EXPECT_EQ(leaks(1, Vec3::Zero()), 0);
+  EXPECT_EQ(leaks(1e-3, Vec3::Zero()), 0);
+  EXPECT_EQ(leaks(1e6, Vec3::Zero()), 0);
+  EXPECT_EQ(leaks(1, Vec3(1e4, -1e4, 1e4)), 0);
+}
+
+TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5);
+  room.box(Vec3::Zero(), Vec3(1, 1, 1), {m, m, m, m, m, MaterialId()}, 1);
+  const MeshResult built = room.mesh();
+  const RayScene scene(built.mesh);
+  const CounterRng rng(2, RngPurpose::kProbe);
+  int misses = 0;
+  for (std::uint32_t block = 0; block < 200; ++block) {
+    Ray16 rays;
+    Hit16 hits;
+    for (int i = 0; i < 16; ++i) {
+      const auto u = rng.uniform4(block, 0, static_cast<std::uint32_t>(i));
+      const Vec3f d = sample_sphere(u[0], u[1]);
+      rays.ox[i] = 0.1F * u[2];
+      rays.oy[i] = 0.1F * u[3];
+      rays.oz[i] = 0;
+      rays.dx[i] = d.x();
+      rays.dy[i] = d.y();
+      rays.dz[i] = d.z();
+    }
+    scene.closest16(rays, 13, hits);
+    for (int i = 0; i < 13; ++i) {
+      Hit hit;
+      const bool found =
+          scene.closest({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, hit);
+      ASSERT_EQ(found, hits.triangle[i] != RayScene::kMiss);
+      if (!found) {
+        ++misses;
+        continue;
+      }
+      EXPECT_EQ(hit.triangle.index(), hits.triangle[i]);
+      EXPECT_EQ(hit.front, hits.front[i]);
+      EXPECT_NEAR(hit.distance, hits.distance[i], 1e-5);
+    }
+  }
+  EXPECT_GT(misses, 50);  // the box is open on one side
+}
+
+TEST(RayScene, VisibilityStopsAtWallsAndNotAtItsEnds) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5, 0, true);
+  room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
+  room.quad(m, {Vec3(0, -0.5, -0.5), Vec3(0, 0.5, -0.5), Vec3(0, 0.5, 0.5), Vec3(0, -0.5, 0.5)}, 1);
+  const MeshResult built = room.mesh();
+  const RayScene scene(built.mesh);
+  const Vec3f left = scene.ray_origin(TriangleId(0), 0.3F, 0.3F, true);
+  const Vec3f right = scene.ray_origin(TriangleId(2), 0.3F, 0.3F, true);
+  const Vec3f floor = scene.ray_origin(TriangleId(4), 0.2F, 0.2F, true);
+  EXPECT_FALSE(scene.visible(left, right));
+  EXPECT_TRUE(scene.visible(left, floor));
+  EXPECT_TRUE(scene.visible(floor, floor));
+}
+
+TEST(RayScene, CamerasSeeThroughTheBacksOfOneSidedFaces) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5);
+  room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
+  const MeshResult built = room.mesh();
+  const RayScene scene(built.mesh);
+  Hit hit;
+  ASSERT_TRUE(scene.closest(Vec3f(-3, 0.1F, 0.2F), Vec3f(1, 0, 0), hit));
+  EXPECT_FALSE(hit.front);
+  ASSERT_TRUE(scene.closest_for_camera(Vec3f(-3, 0.1F, 0.2F), Vec3f(1, 0, 0), hit));
+  EXPECT_TRUE(hit.front);
+  EXPECT_NEAR(hit.distance, 4, 1e-5);
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,86 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "mesh/build_mesh.h"
+#include "scenes/model/scene.h"
+
+namespace reemit::test {
+
+/// A room built quad by quad with its zones, without readers or mesher, so that tests of the solver stand on
+/// their own.
+class RoomBuilder {
+ public:
+  explicit RoomBuilder(BandSet bands = BandSet::grey()) { scene_.bands = std::move(bands); }
+
+  Spectrum flat(double value) const {
+    return Spectrum::Constant(static_cast<Eigen::Index>(scene_.bands.count()), value);
+  }
+
+  /// Lambertian material; reflectance [1] and exitance [W/m2] the same in all bands.
+  MaterialId material(const std::string& name, double reflectance, double exitance = 0,
+                      bool two_sided = false) {
+    return material(name, flat(reflectance), flat(exitance), two_sided);
+  }
+  MaterialId material(const std::string& name, const Spectrum& reflectance, const Spectrum& exitance,
+                      bool two_sided = false) {
+    Material m;
+    m.name = name;
+    m.reflectance = reflectance;
+    m.emitted_radiance = exitance / 3.14159265358979323846;
+    m.two_sided = two_sided;
+    scene_.materials.push_back(m);
+    return MaterialId(scene_.materials.size() - 1);
+  }
+
+  /// Planar quad as a surface of its own, corners counter-clockwise from the front, two base triangles of n*n
+  /// zones.
+  RoomBuilder& quad(MaterialId material, const std::array<Vec3, 4>& corners, std::uint32_t divisions) {
+    Surface s;
+    s.name = "quad" + std::to_string(scene_.surfaces.size());
+    s.material = material;
+    s.positions.assign(corners.begin(), corners.end());
+    s.faces.push_back({{0, 1, 2, 3}, {}, {}, 0});
+    scene_.surfaces.push_back(s);
+    const auto first = static_cast<std::uint32_t>(base_.vertices.size());
+    base_.vertices.insert(base_.vertices.end(), corners.begin(), corners.end());
+    for (const std::array<std::uint32_t, 3> v : {std::array<std::uint32_t, 3>{0, 1, 2}, {0, 2, 3}}) {
+      BaseTriangle t;
+      t.vertex = {first + v[0], first + v[1], first + v[2]};
+      t.surface = SurfaceId(scene_.surfaces.size() - 1);
+      t.divisions = divisions;
+      t.two_sided = scene_.materials[material.index()].two_sided;
+      base_.triangles.push_back(t);
+    }
+    return *this;
+  }
+
+  /// Inside of an axis-parallel box; materials of x0, x1, y0, y1, z0, z1. An invalid id leaves that side
+  /// open.
+  RoomBuilder& box(const Vec3& low, const Vec3& high, const std::array<MaterialId, 6>& m,
+                   std::uint32_t divisions) {
+    const auto p = [&](int x, int y, int z) {
+      return Vec3(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z());
+    };
+    const std::array<std::array<Vec3, 4>, 6> faces{{{p(0, 0, 0), p(0, 1, 0), p(0, 1, 1), p(0, 0, 1)},
+                                                    {p(1, 0, 0), p(1, 0, 1), p(1, 1, 1), p(1, 1, 0)},
+                                                    {p(0, 0, 0), p(0, 0, 1), p(1, 0, 1), p(1, 0, 0)},
+                                                    {p(0, 1, 0), p(1, 1, 0), p(1, 1, 1), p(0, 1, 1)},
+                                                    {p(0, 0, 0), p(1, 0, 0), p(1, 1, 0), p(0, 1, 0)},
+                                                    {p(0, 0, 1), p(0, 1, 1), p(1, 1, 1), p(1, 0, 1)}}};
+    for (std::size_t i = 0; i < 6; ++i)
+      if (m[i].valid()) quad(m[i], faces[i], divisions);
+    return *this;
+  }
+
+  Scene& scene() { return scene_; }
+  const Scene& scene() const { return scene_; }
+  MeshResult mesh() const { return {ZoneMesh(base_), MeshReport{}}; }
+
+ private:
+  Scene scene_;
+  BaseMesh base_;
+};
+
+}  // namespace reemit::test

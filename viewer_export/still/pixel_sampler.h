@@ -1,0 +1,64 @@
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "solver/sampling/counter_rng.h"
+#include "solver/sampling/sobol.h"
+
+namespace reemit {
+
+/// The uniform numbers of one pixel in one pass: randomised Sobol' points, scrambled afresh for every pixel
+/// and pass, so that neighbours share no pattern and passes are independent. Film, luminaires and hemisphere
+/// have sequences of their own whose order is shuffled against each other within the pass.
+class PixelSampler {
+ public:
+  /// `samples`: camera rays of the pass, a power of two.
+  PixelSampler(std::uint64_t seed, std::uint64_t pixel, int pass, int samples)
+      : PixelSampler(CounterRng(seed, RngPurpose::kPixel), pixel, static_cast<std::uint32_t>(pass),
+                     static_cast<std::uint32_t>(samples)) {}
+
+  std::array<float, 2> film(int sample) const {
+    const auto i = static_cast<std::uint32_t>(sample);
+    return {film_.sample(i, 0), film_.sample(i, 1)};
+  }
+  /// Shadow ray `ray` of `rays` of a camera ray.
+  std::array<float, 3> light(int sample, int ray, int rays) const {
+    const std::uint32_t i = position(sample, light_shuffle_, ray, rays);
+    return {light_.sample(i, 0), light_.sample(i, 1), light_.sample(i, 2)};
+  }
+  /// Gather ray `ray` of `rays` of a camera ray.
+  std::array<float, 2> hemisphere(int sample, int ray, int rays) const {
+    const std::uint32_t i = position(sample, hemisphere_shuffle_, ray, rays);
+    return {hemisphere_.sample(i, 0), hemisphere_.sample(i, 1)};
+  }
+
+ private:
+  PixelSampler(const CounterRng& rng, std::uint64_t pixel, std::uint32_t pass, std::uint32_t samples)
+      : PixelSampler(rng.bits4(pixel, pass, 0), rng.bits4(pixel, pass, 1), samples) {}
+  PixelSampler(const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b,
+               std::uint32_t samples)
+      : film_(join(a[0], a[1])),
+        light_(join(a[2], a[3])),
+        hemisphere_(join(b[0], b[1])),
+        light_shuffle_(b[2]),
+        hemisphere_shuffle_(b[3]),
+        free_bits_(32 - std::countr_zero(samples)) {}
+
+  static std::uint64_t join(std::uint32_t high, std::uint32_t low) {
+    return (std::uint64_t{high} << 32) | low;
+  }
+  /// Nested uniform shuffle of the samples of a pass [BUR20, sec. 4]: keeps every aligned block together.
+  std::uint32_t position(int sample, std::uint32_t shuffle, int ray, int rays) const {
+    std::uint32_t i = 0;
+    if (free_bits_ < 32)
+      i = owen_scramble(static_cast<std::uint32_t>(sample) << free_bits_, shuffle) >> free_bits_;
+    return i * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(ray);
+  }
+
+  SobolSequence film_, light_, hemisphere_;
+  std::uint32_t light_shuffle_, hemisphere_shuffle_;
+  int free_bits_;
+};
+
+}  // namespace reemit

@@ -1,0 +1,221 @@
+#include "viewer_export/still/render_still.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "scenes/model/error.h"
+#include "viewer_export/still/tile_renderer.h"
+
+namespace reemit {
+namespace {
+
+/// Passes before an error is believed.
+constexpr int kFewestPasses = 4;
+/// Camera rays of a pass towards an error target: enough to be stratified, few enough to stop in time.
+constexpr int kAdaptiveSamples = 4;
+/// Larger passes would not lower the error of a fixed number of rays, but cost the standard error its basis.
+constexpr int kMostSamples = 64;
+
+struct TileState {
+  Tile tile;
+  int passes = 0;
+  bool active = true;
+};
+
+void check(const StillSettings& s) {
+  const auto require = [](bool good, const char* name, const char* range) {
+    if (!good)
+      throw InputError("still", std::string(name) + " is out of range", std::string("Choose ") + range);
+  };
+  require(s.spp >= 1 && s.spp <= 1 << 20, "samples per pixel", "1 to 1048576.");
+  require(s.most_spp >= 1 && s.most_spp <= 1 << 20, "largest number of samples per pixel", "1 to 1048576.");
+  require(s.gathers >= 1 && s.gathers <= 1024, "gather rays per sample", "1 to 1024.");
+  require(s.light_samples >= 1 && s.light_samples <= 1024, "light samples", "1 to 1024.");
+  require(s.error_target >= 0 && s.error_target < 1, "error", "a share below 1, such as 2%.");
+  require(s.error_floor >= 0 && s.error_floor <= 1, "error floor", "a share of at most 1, such as 1%.");
+  require(s.close_hit >= 0 && std::isfinite(s.close_hit), "close-hit distance", "0 or more zone sizes.");
+  require(s.threads >= 0, "number of threads", "0 (all cores) or more.");
+}
+
+std::vector<TileState> make_tiles(int width, int height) {
+  std::vector<TileState> tiles;
+  for (int y = 0; y < height; y += Tile::kSize)
+    for (int x = 0; x < width; x += Tile::kSize)
+      tiles.push_back({{x, y, std::min(x + Tile::kSize, width), std::min(y + Tile::kSize, height)}});
+  return tiles;
+}
+
+/// Sum over the pixels of a tile of (s/(L + floor))^2 for one band.
+double tile_error(const Film& film, const Tile& tile, std::size_t band, double floor) {
+  double sum = 0;
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
+                         static_cast<std::size_t>(x);
+      const double variance = film.squared_error(pixel, band);
+      if (variance == 0) continue;
+      const double scale = film.radiance(pixel, band) + floor;
+      sum += variance / (scale * scale);
+    }
+  return sum;
+}
+
+/// The passes of one picture: renders them, measures the error and decides which tiles go on.
+class Rendering {
+ public:
+  Rendering(const TileRenderer& renderer, const StillSettings& settings, Film& film,
+            const StillProgressCallback& progress, const std::atomic<bool>& interrupt)
+      : renderer_(renderer),
+        settings_(settings),
+        film_(film),
+        progress_(progress),
+        interrupt_(interrupt),
+        tiles_(make_tiles(film.image().width, film.image().height)),
+        to_target_(settings.error_target > 0) {
+    const auto quarter = static_cast<unsigned>(std::max(1, settings.spp / kFewestPasses));
+    samples_ = to_target_ ? std::min(kAdaptiveSamples, settings.most_spp)
+                          : std::min(static_cast<int>(std::bit_floor(quarter)), kMostSamples);
+    if (to_target_) samples_ = static_cast<int>(std::bit_floor(static_cast<unsigned>(samples_)));
+    most_passes_ = ((to_target_ ? settings.most_spp : settings.spp) + samples_ - 1) / samples_;
+  }
+
+  void run() {
+    for (int pass = 0; pass < most_passes_ && !interrupt_; ++pass) {
+      render_pass(pass);
+      if (interrupt_) break;
+      progress_now_.passes = pass + 1;
+      measure();
+      if (std::none_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.active; })) break;
+    }
+  }
+
+  double error() const { return progress_now_.error; }
+
+ private:
+  void render_pass(int pass) {
+    std::vector<TileState*> active;
+    for (TileState& t : tiles_)
+      if (t.active) active.push_back(&t);
+    std::size_t done = 0;
+    tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t i) {
+      if (interrupt_) return;
+      renderer_.render(active[i]->tile, pass, samples_, film_);
+      active[i]->passes = pass + 1;
+      const std::lock_guard lock(progress_mutex_);
+      ++done;
+      report((pass + static_cast<double>(done) / static_cast<double>(active.size())) / most_passes_);
+    });
+  }
+
+  /// Pre: the mutex is held, or no tile is being rendered.
+  void report(double of_passes) {
+    if (!progress_) return;
+    const double by_error =
+        to_target_ ? std::min(1.0, std::pow(settings_.error_target / progress_now_.error, 2)) : 0.0;
+    progress_now_.fraction = std::max({progress_now_.fraction, of_passes, by_error});
+    progress_now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    progress_(progress_now_);
+  }
+
+  /// Error of the picture; tiles below the target are done. A tile decides by all its pixels together, which
+  /// keeps the choice from favouring pixels that happen to look quiet.
+  void measure() {
+    if (progress_now_.passes < 2) return;
+    const std::size_t pixels = film_.image().pixel_count();
+    const std::size_t bands = film_.image().bands.count();
+    const double target2 = settings_.error_target * settings_.error_target;
+    const bool may_stop = to_target_ && progress_now_.passes >= std::min(kFewestPasses, most_passes_);
+    std::vector<double> worst(tiles_.size(), 0.0);
+    double error2 = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+      double mean = 0;
+      for (std::size_t p = 0; p < pixels; ++p) mean += film_.radiance(p, b);
+      mean /= static_cast<double>(pixels);
+      const double floor = settings_.error_floor * mean;
+      double sum = 0;
+      for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        const Tile& t = tiles_[i].tile;
+        const double tile_sum = tile_error(film_, t, b, floor);
+        sum += tile_sum;
+        worst[i] = std::max(worst[i], tile_sum / ((t.x1 - t.x0) * (t.y1 - t.y0)));
+      }
+      error2 = std::max(error2, sum / static_cast<double>(pixels));
+    }
+    progress_now_.error = std::sqrt(error2);
+    if (may_stop)
+      for (std::size_t i = 0; i < tiles_.size(); ++i)
+        tiles_[i].active = error2 > target2 && worst[i] > target2;
+    report(0);
+  }
+
+  const TileRenderer& renderer_;
+  const StillSettings& settings_;
+  Film& film_;
+  const StillProgressCallback& progress_;
+  const std::atomic<bool>& interrupt_;
+  std::vector<TileState> tiles_;
+  bool to_target_;
+  int samples_ = 1;
+  int most_passes_ = 1;
+  std::mutex progress_mutex_;
+  StillProgress progress_now_{.error = std::numeric_limits<double>::infinity()};
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+ExportInfo describe_still(const Scene& scene, const Solution& solution, const StillSettings& settings,
+                          double error) {
+  ExportInfo info;
+  info.program_version = solution.program_version;
+  info.room = scene.source.empty() ? scene.name : scene.source;
+  info.room_hash = solution.room_hash;
+  info.seed = solution.settings.seed;
+  info.error = std::isfinite(error) ? error : 0;
+  info.settings = {{"integrator", to_string(settings.integrator)},
+                   {"pixel filter", to_string(settings.filter)},
+                   {"still seed", std::to_string(settings.seed)}};
+  if (settings.integrator != Integrator::kZones)
+    info.settings.emplace_back("shadow rays per sample", std::to_string(settings.light_samples));
+  if (settings.integrator == Integrator::kGather)
+    info.settings.emplace_back("gather rays per sample", std::to_string(settings.gathers));
+  return info;
+}
+
+}  // namespace
+
+std::string to_string(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::kGather:
+      return "gather";
+    case Integrator::kPath:
+      return "path";
+    case Integrator::kZones:
+      return "zones";
+  }
+  return "";
+}
+
+StillImage render_still(const Scene& scene, const Solution& solution, const RayScene& rays,
+                        const Camera& camera, const StillSettings& settings,
+                        const StillProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  check(settings);
+  const int width = settings.width != 0 ? settings.width : camera.width;
+  const int height = settings.height != 0 ? settings.height : camera.height;
+  const PinholeCamera pinhole(camera, width, height, rays);
+  const TileRenderer renderer(scene, solution, rays, pinhole, settings);
+  Film film(scene.bands, width, height);
+  Rendering rendering(renderer, settings, film, progress, interrupt);
+  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  arena.execute([&] { rendering.run(); });
+  StillImage image = film.finish();
+  image.info = describe_still(scene, solution, settings, rendering.error());
+  return image;
+}
+
+}  // namespace reemit

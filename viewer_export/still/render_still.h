@@ -1,0 +1,61 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "scenes/model/camera.h"
+#include "scenes/model/scene.h"
+#include "solver/solution/solution.h"
+#include "solver/trace/ray_scene.h"
+#include "viewer_export/still/film.h"
+#include "viewer_export/still/still_image.h"
+
+namespace reemit {
+
+enum class Integrator {
+  kGather,  ///< Direct light by shadow rays, the rest by gather rays that read the zone solution.
+  kPath,    ///< Path tracing: the unbiased reference; reads no zone.
+  kZones,   ///< The zone solution as it stands, one value per zone.
+};
+std::string to_string(Integrator integrator);  ///< "gather", "path" or "zones".
+
+struct StillSettings {
+  int width = 0;   ///< [px] 0 = as the camera says, [1, 65536].
+  int height = 0;  ///< [px] 0 = as the camera says, [1, 65536].
+  Integrator integrator = Integrator::kGather;
+  PixelFilter filter = PixelFilter::kBox;
+  int spp = 16;     ///< Camera rays per pixel, rounded up to whole passes [1, 1048576]; see error_target.
+  int gathers = 4;  ///< Gather rays per camera ray [1, 1024]; kPath always follows one.
+  int light_samples = 1;  ///< Shadow rays per camera ray [1, 1024].
+  /// Relative error to reach as a fraction [0, 1): rms over pixels of s/(L + floor), worst band, with s the
+  /// standard error of radiance L. 0 = stop by spp; else spp is ignored.
+  double error_target = 0;
+  /// `floor` above as a share of the picture's mean radiance [0, 1]: keeps black pixels from asking for more
+  /// than anyone can see.
+  double error_floor = 0.01;
+  int most_spp = 65536;    ///< Camera rays per pixel at which an error target is given up.
+  double close_hit = 1.0;  ///< GatherSettings::close_hit.
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0 = all cores. The picture does not depend on it.
+};
+
+struct StillProgress {
+  double fraction = 0;  ///< Of the work, an estimate [0,1].
+  double error = 0;     ///< As error_target; infinite before two passes.
+  int passes = 0;       ///< Finished over the whole picture.
+  double seconds = 0;
+};
+using StillProgressCallback = std::function<void(const StillProgress&)>;
+
+/// Renders a picture in passes over tiles. A pass is an independent randomised quasi-Monte Carlo estimate of
+/// each pixel, so the standard error follows from the passes; with an error target, tiles that have reached
+/// it get no more passes. Bit for bit the same for any number of threads. `progress` (may be empty) is called
+/// from one thread at a time. When `interrupt` becomes true, returns what stands.
+/// Throws InputError for settings or a camera out of range and a room that is not the one solved,
+/// ResourceError when the picture does not fit into memory.
+StillImage render_still(const Scene& scene, const Solution& solution, const RayScene& rays,
+                        const Camera& camera, const StillSettings& settings,
+                        const StillProgressCallback& progress, const std::atomic<bool>& interrupt);
+
+}  // namespace reemit

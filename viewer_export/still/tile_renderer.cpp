@@ -1,0 +1,147 @@
+#include "viewer_export/still/tile_renderer.h"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "solver/reflect/lambert.h"
+#include "viewer_export/still/pixel_sampler.h"
+
+namespace reemit {
+
+struct TileRenderer::PixelSums {
+  PixelSampler sampler;
+  std::uint64_t index;  // of the pixel in the picture
+  int pass;
+  float share;  // 1 / samples
+  float* direct;
+  float* indirect;
+  float* albedo;
+  std::vector<float>* weight;  // scratch, one per band
+  PixelPass seen;
+};
+
+TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
+                           const PinholeCamera& camera, const StillSettings& settings)
+    : rays_(&rays),
+      camera_(&camera),
+      settings_(&settings),
+      field_(scene, solution, rays),
+      direct_(scene, rays),
+      gather_(rays, field_, direct_, GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
+      path_(rays, field_, direct_, settings.seed) {}
+
+void TileRenderer::render(const Tile& tile, int pass, int samples, Film& film) const {
+  const std::size_t bands = field_.band_count();
+  const auto width = static_cast<std::size_t>(tile.x1 - tile.x0);
+  const auto height = static_cast<std::size_t>(tile.y1 - tile.y0);
+  std::vector<float> values(3 * bands * width * height, 0.0F);
+  std::vector<float> weight(bands);
+  std::vector<PixelPass> passes;
+  passes.reserve(width * height);
+  GatherBatch batch(gather_);
+  float* next = values.data();
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int x = tile.x0; x < tile.x1; ++x, next += 3 * bands) {
+      const auto index = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(film.image().width) +
+                         static_cast<std::uint64_t>(x);
+      PixelSums sums{PixelSampler(settings_->seed, index, pass, samples),
+                     index,
+                     pass,
+                     1.0F / static_cast<float>(samples),
+                     next,
+                     next + bands,
+                     next + 2 * bands,
+                     &weight,
+                     {next, next + bands, next + 2 * bands, Vec3(0, 0, 0), 0, 0, samples}};
+      for (int s = 0; s < samples; ++s) {
+        const std::array<float, 2> u = sums.sampler.film(s);
+        add_sample(x + 0.5 + sample_filter(settings_->filter, u[0]),
+                   y + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
+      }
+      passes.push_back(sums.seen);
+    }
+  batch.flush();
+  auto pixel_pass = passes.begin();
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int x = tile.x0; x < tile.x1; ++x)
+      film.add(static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
+                   static_cast<std::size_t>(x),
+               *pixel_pass++);
+}
+
+void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const {
+  const PinholeCamera::Ray ray = camera_->ray(x, y);
+  Hit hit;
+  if (!rays_->closest_for_camera(ray.origin, ray.direction, hit)) return;
+  const std::size_t bands = field_.band_count();
+  const std::size_t t = hit.triangle.index();
+  const SurfacePoint point = seen_point(hit);
+  sums.seen.normal += point.normal.cast<double>();
+  sums.seen.depth += (ray.skipped + static_cast<double>(hit.distance)) * rays_->metres_per_unit();
+  ++sums.seen.seen;
+
+  const float* emitted = field_.emitted(t, hit.front);
+  const float* reflectance = field_.reflectance(t, hit.front);
+  for (std::size_t b = 0; b < bands; ++b) {
+    sums.direct[b] += sums.share * emitted[b];
+    sums.albedo[b] += sums.share * reflectance[b];
+  }
+  if (settings_->integrator != Integrator::kZones) {
+    add_light(point, sample, sums, batch);
+    return;
+  }
+  const float* all = field_.reflected(t, hit.u, hit.v, hit.front);
+  const float* direct = field_.reflected_direct(t, hit.u, hit.v, hit.front);
+  for (std::size_t b = 0; b < bands; ++b) {
+    sums.direct[b] += sums.share * direct[b];
+    sums.indirect[b] += sums.share * (all[b] - direct[b]);
+  }
+}
+
+void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums, GatherBatch& batch) const {
+  const std::size_t bands = field_.band_count();
+  const float* reflectance = field_.reflectance(x.triangle.index(), x.front);
+  if (std::all_of(reflectance, reflectance + bands, [](float rho) { return rho == 0; })) return;
+  std::vector<float>& weight = *sums.weight;
+
+  const int shadow_rays = settings_->light_samples;
+  for (std::size_t b = 0; b < bands; ++b)
+    weight[b] = lambert_brdf_per_sr(reflectance[b]) * sums.share / static_cast<float>(shadow_rays);
+  for (int i = 0; i < shadow_rays; ++i)
+    direct_.add_sample(x, sums.sampler.light(sample, i, shadow_rays), weight.data(), sums.direct);
+
+  // Reflected radiance is rho/pi times pi times the mean radiance over cosine-distributed rays.
+  const bool path = settings_->integrator == Integrator::kPath;
+  const int gathers = path ? 1 : settings_->gathers;
+  for (int i = 0; i < gathers; ++i) {
+    const std::array<float, 2> u = sums.sampler.hemisphere(sample, i, gathers);
+    const PathKey key{sums.index, static_cast<std::uint32_t>(sums.pass),
+                      static_cast<std::uint32_t>(sample * gathers + i)};
+    for (std::size_t b = 0; b < bands; ++b)
+      weight[b] = reflectance[b] * sums.share / static_cast<float>(gathers);
+    if (path)
+      path_.add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect);
+    else
+      batch.add(x, u[0], u[1], key, weight.data(), sums.indirect);
+  }
+}
+
+SurfacePoint TileRenderer::seen_point(const Hit& hit) const {
+  SurfacePoint point = surface_point(*rays_, hit);
+  const BaseMesh& base = rays_->mesh().base();
+  const BaseTriangle& triangle = rays_->mesh().triangle(hit.triangle);
+  if (triangle.normal[0] == BaseTriangle::kFlat) return point;
+  const auto corner = [&](std::size_t k) {
+    const std::uint32_t n = triangle.normal[k];
+    return n == BaseTriangle::kFlat ? rays_->normal(hit.triangle) : Vec3f(base.normals[n].cast<float>());
+  };
+  Vec3f shading = (1 - hit.u - hit.v) * corner(0) + hit.u * corner(1) + hit.v * corner(2);
+  if (!hit.front) shading = -shading;
+  const float length = shading.norm();
+  // A shading normal that points into the surface is an error of the room; the true one is safe.
+  if (length > 0 && shading.dot(point.normal) > 0) point.normal = shading / length;
+  return point;
+}
+
+}  // namespace reemit
