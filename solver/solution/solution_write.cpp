@@ -4,6 +4,7 @@
 
 #include "scenes/io/output_file.h"
 #include "scenes/model/error.h"
+#include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/hdf5_memory_file.h"
 #include "solver/solution/solution_file.h"
@@ -305,6 +306,7 @@ void save_solution(const Solution& solution, const std::filesystem::path& file) 
     write_all(memory.root(), solution);
     const std::string_view bytes = memory.close();
     output.write(bytes);
+    output.write(seal_of(bytes));
   } catch (const Hdf5Error& error) {
     throw ResourceError(file.string(), error.what(),
                         "The previous file, if any, is unchanged. Check the free memory.");
