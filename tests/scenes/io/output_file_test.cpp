@@ -6,20 +6,20 @@
 
 #include "scenes/model/error.h"
 #include "tests/support/small_disk.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace reemit {
 namespace {
 
 using test::read_bytes;
 using test::SmallDisk;
-using test::TemporaryFolder;
+using test::TempFolder;
 using test::write_bytes;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(OutputFile, AppearsOnlyWhenCommitted) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   const auto target = folder / "a.txt";
   write_bytes(target, "old");
   OutputFile file(target);
@@ -28,21 +28,21 @@ TEST(OutputFile, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(read_bytes(target), "old");
   file.commit();
   EXPECT_EQ(read_bytes(target), "new text");
-  EXPECT_EQ(folder.entries(), 1U);
+  EXPECT_EQ(folder.listing().size(), 1U);
 }
 
 TEST(OutputFile, LeavesNothingBehindWithoutCommit) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   {
     OutputFile file(folder / "a.txt");
     file.write("half");
-    EXPECT_EQ(folder.entries(), 1U);
+    EXPECT_EQ(folder.listing().size(), 1U);
   }
-  EXPECT_EQ(folder.entries(), 0U);
+  EXPECT_EQ(folder.listing().size(), 0U);
 }
 
 TEST(OutputFile, WritesAtOffsetsAfterAppending) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   OutputFile file(folder / "a.txt");
   file.write("0123456789");
   file.write_at(3, "abc", 3);
@@ -51,7 +51,7 @@ TEST(OutputFile, WritesAtOffsetsAfterAppending) {
 }
 
 TEST(OutputFile, ReplacesTheFileBehindALink) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   std::filesystem::create_directory(folder / "real");
   write_bytes(folder / "real/a.txt", "old");
   std::filesystem::create_symlink("real/a.txt", folder / "link.txt");
@@ -63,7 +63,7 @@ TEST(OutputFile, ReplacesTheFileBehindALink) {
 }
 
 TEST(OutputFile, KeepsThePermissionsOfTheFileItReplaces) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   const auto target = folder / "a.txt";
   write_bytes(target, "old");
   ASSERT_EQ(chmod(target.c_str(), 0640), 0);
@@ -75,7 +75,7 @@ TEST(OutputFile, KeepsThePermissionsOfTheFileItReplaces) {
 }
 
 TEST(OutputFile, FullDiskKeepsThePreviousFile) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   const auto target = folder / "a.txt";
   write_bytes(target, "old");
   {
@@ -90,11 +90,11 @@ TEST(OutputFile, FullDiskKeepsThePreviousFile) {
         ResourceError);
   }
   EXPECT_EQ(read_bytes(target), "old");
-  EXPECT_EQ(folder.entries(), 1U);
+  EXPECT_EQ(folder.listing().size(), 1U);
 }
 
 TEST(OutputFile, TwoFilesOfOneNameDoNotMeet) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   OutputFile first(folder / "a.txt");
   OutputFile second(folder / "a.txt");
   first.write("first");
@@ -103,20 +103,20 @@ TEST(OutputFile, TwoFilesOfOneNameDoNotMeet) {
   EXPECT_EQ(read_bytes(folder / "a.txt"), "first");
   second.commit();
   EXPECT_EQ(read_bytes(folder / "a.txt"), "second");
-  EXPECT_EQ(folder.entries(), 1U);
+  EXPECT_EQ(folder.listing().size(), 1U);
 }
 
 TEST(CheckWritable, AcceptsNewAndExistingFilesWithoutTouchingThem) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   check_writable(folder / "new.txt");
-  EXPECT_EQ(folder.entries(), 0U);
+  EXPECT_EQ(folder.listing().size(), 0U);
   write_bytes(folder / "old.txt", "old");
   check_writable(folder / "old.txt");
   EXPECT_EQ(read_bytes(folder / "old.txt"), "old");
 }
 
 TEST(CheckWritable, RefusesWhatCannotBeWritten) {
-  const TemporaryFolder folder;
+  const TempFolder folder;
   write_bytes(folder / "file", "");
   std::filesystem::create_symlink("loop", folder / "loop");
   EXPECT_THAT([&] { check_writable(folder / "nowhere/a.txt"); },

@@ -11,7 +11,7 @@
 #include "solver/solution/file_seal.h"
 #include "tests/solver/solution/sample_solution.h"
 #include "tests/support/small_disk.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace reemit {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 using test::read_bytes;
 using test::sample_solution;
 using test::SmallDisk;
-using test::TemporaryFolder;
+using test::TempFolder;
 using test::write_bytes;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -124,7 +124,7 @@ class SolutionFile : public testing::Test {
     H5Dclose(data);
   }
 
-  TemporaryFolder folder_;
+  TempFolder folder_;
   std::filesystem::path file_ = folder_ / "room.solution";
 };
 
@@ -300,7 +300,7 @@ TEST_F(SolutionFile, FullDiskKeepsThePreviousFile) {
   for (const std::size_t limit : {std::size_t{0}, std::size_t{2048}, before.size() / 2, before.size() - 1}) {
     const SmallDisk disk(limit);
     EXPECT_THROW(save_solution(solution, file_), ResourceError) << limit;
-    EXPECT_EQ(folder_.entries(), 1U);
+    EXPECT_EQ(folder_.listing().size(), 1U);
   }
   EXPECT_EQ(read_bytes(file_), before);
   save_solution(solution, file_);
@@ -314,7 +314,7 @@ TEST_F(SolutionFile, RefusesToSaveWhatDoesNotFitTogether) {
   solution = sample_solution(BandSet::grey());
   solution.surface_materials.clear();
   EXPECT_THROW(save_solution(solution, file_), std::invalid_argument);
-  EXPECT_EQ(folder_.entries(), 0U);
+  EXPECT_EQ(folder_.listing().size(), 0U);
 }
 
 }  // namespace
