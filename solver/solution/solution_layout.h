@@ -71,7 +71,7 @@ inline constexpr BandKind kAllBandKinds[] = {BandKind::kGrey, BandKind::kRgb, Ba
 inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, SolveMethod::kWalk};
 inline constexpr SamplingKind kAllSamplingKinds[] = {SamplingKind::kRandom, SamplingKind::kSobol};
 inline constexpr StopReason kAllStopReasons[] = {StopReason::kErrorTarget, StopReason::kTimeLimit,
-                                                 StopReason::kPacketCount, StopReason::kInterrupted,
-                                                 StopReason::kNoLuminaire};
+                                                 StopReason::kPacketCount, StopReason::kBatchLimit,
+                                                 StopReason::kInterrupted, StopReason::kNoLuminaire};
 
 }  // namespace reemit

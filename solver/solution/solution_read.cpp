@@ -272,6 +272,13 @@ void check_format(const Hdf5Group& root, const std::string& file) {
 
 }  // namespace
 
+bool is_solution_file(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code)) return false;
+  const Hdf5Quiet quiet;
+  return H5Fis_hdf5(file.c_str()) > 0;
+}
+
 Solution load_solution(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::error_code code;

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/error.h"
+#include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
@@ -23,20 +25,25 @@ struct InfoOptions {
   OutputStyle style;
 };
 
+/// A solution file cut short at its start or empty is still meant as one.
+bool is_solution(const std::filesystem::path& path) {
+  return is_solution_file(path) || path.extension() == ".h5" || path.extension() == ".hdf5";
+}
+
 /// Whether the room of a solution can still be read and is the one that was solved.
-std::string room_status(const Solution& solution) {
-  if (!std::filesystem::exists(solution.room_path)) return "missing";
+std::string room_status(const Solution& solution, const std::filesystem::path& file) {
   try {
-    const Scene scene = read_scene(solution.room_path, solution.read_options);
-    return content_hash(scene) == solution.room_hash ? "unchanged" : "changed since the solve";
-  } catch (const InputError&) {
-    return "no longer readable";
+    read_room_of(solution, file);
+    return "unchanged";
+  } catch (const InputError& problem) {
+    const std::string message = problem.what();
+    return message.substr(0, message.find('\n'));
   }
 }
 
 ExitCode show_solution(const InfoOptions& options) {
   const Solution solution = load_solution(options.file);
-  const std::string status = room_status(solution);
+  const std::string status = room_status(solution, options.file);
   if (options.style.json) {
     fmt::print("{}\n", solution_json(solution, options.file, status).dump(2));
   } else {
@@ -74,9 +81,7 @@ void add_info_command(CLI::App& program, Action& action) {
       ->type_name("ROOM|SOLUTION");
   add_json_option(info, options->style);
   info.callback([options, &action] {
-    action = [options] {
-      return is_solution_file(options->file) ? show_solution(*options) : show_room(*options);
-    };
+    action = [options] { return is_solution(options->file) ? show_solution(*options) : show_room(*options); };
   });
 }
 

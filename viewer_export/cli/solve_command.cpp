@@ -68,6 +68,7 @@ ExitCode run_solve(const SolveOptions& options) {
   Solution solution =
       solve(scene, std::move(meshed), settings, progress_callback(progress), interrupt.requested());
   progress.finish();
+  solution.room_path = std::filesystem::absolute(options.room).lexically_normal().string();
   solution.read_options = options.read;
   solution.mesh_settings = options.mesh;
   write_output([&] { save_solution(solution, options.output); });

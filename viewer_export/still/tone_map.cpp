@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -26,11 +27,6 @@ std::vector<double> lit_luminances(std::span<const float> rgb) {
   return lit;
 }
 
-double finite_part(double value) {
-  if (std::isnan(value) || value <= 0) return 0;
-  return std::min(value, 1e100);
-}
-
 }  // namespace
 
 ToneMap::ToneMap(double exposure, double white) : exposure_(exposure), white_(white) {
@@ -44,23 +40,17 @@ double ToneMap::exposure_ev() const {
 }
 
 double ToneMap::display_luminance(double exposed) const {
-  const double y = finite_part(exposed);
-  if (y >= white_) return 1;
-  return std::min(1.0, y * (1 + y / (white_ * white_)) / (1 + y));  // [RSSF02] eq. 4
+  if (!(exposed > 0)) return 0;
+  if (exposed >= white_) return 1;
+  return std::min(1.0, exposed * (1 + exposed / (white_ * white_)) / (1 + exposed));  // [RSSF02] eq. 4
 }
 
 Eigen::Array3d ToneMap::operator()(const Eigen::Array3d& rgb) const {
+  if (rgb.isNaN().any()) return Eigen::Array3d::Zero();
   if ((rgb == std::numeric_limits<double>::infinity()).any()) return Eigen::Array3d::Ones();
-  const Eigen::Array3d exposed = exposure_ * rgb.unaryExpr(&finite_part);
-  const double y = luminance(exposed);
+  const double y = luminance(rgb);
   if (!(y > 0)) return Eigen::Array3d::Zero();
-  const double shown = display_luminance(y);
-  const Eigen::Array3d colour = exposed * (shown / y);
-  const double largest = colour.maxCoeff();
-  if (largest <= 1) return colour;
-  const double share =
-      (1 - shown) / (largest - shown);  // of the colour, the rest is grey of the same luminance
-  return (shown + share * (colour - shown)).max(0.0).min(1.0);
+  return clamp_to_gamut(rgb * (display_luminance(exposure_ * y) / y), 1.0);
 }
 
 std::string ToneMap::statement() const {

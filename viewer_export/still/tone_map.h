@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "scenes/model/colour.h"
+
 namespace reemit {
 
 /// How radiance becomes what a display shows.
@@ -21,9 +23,9 @@ struct ToneMapSettings {
   static constexpr double kFixedWhite = 8.0;
 };
 
-/// Luminance of linear Rec.709 with the weights of the colour space; 179 lm/W times this is cd/m2.
+/// Luminance of linear Rec.709; 179 lm/W times this is cd/m2.
 inline double luminance(const Eigen::Array3d& rgb) {
-  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+  return (rec709_luminance_weights() * rgb).sum();
 }
 
 /// The global operator of Reinhard et al. 2002 [RSSF02], eq. 4, applied to luminance; the colour keeps its

@@ -1,0 +1,146 @@
+#include "mesh/build_mesh.h"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "mesh/conform_triangles.h"
+#include "mesh/contact_split.h"
+#include "mesh/coplanar_overlap.h"
+#include "mesh/duplicate_faces.h"
+#include "mesh/edge_points.h"
+#include "mesh/mesh_tolerances.h"
+#include "mesh/orientation.h"
+#include "mesh/polygon_repair.h"
+#include "mesh/triangulate_groups.h"
+#include "mesh/zone_sizing.h"
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace {
+
+// Contacts that extend less than this part of a zone's edge are not worth a cut.
+constexpr double kSmallestContact = 0.25;
+// Triangles whose sides are below this many zone edges may have any shape.
+constexpr double kFreeLength = 2;
+
+double area_of(const VertexTable& vertices, const RawTriangle& t) {
+  const Vec3& p0 = vertices[t.vertex[0]];
+  return 0.5 * (vertices[t.vertex[1]] - p0).cross(vertices[t.vertex[2]] - p0).norm();
+}
+
+void book_areas(const VertexTable& vertices, const std::vector<FacePiece>& pieces, const GroupTriangles& cut,
+                MeshReport& report) {
+  std::vector<double> meshed(pieces.size(), 0.0);
+  for (const RawTriangle& t : cut.triangles) meshed[t.piece] += area_of(vertices, t);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    SurfaceAreas& areas = report.surfaces[pieces[p].surface.index()];
+    areas.meshed += meshed[p];
+    areas.removed += cut.covered[p];
+    // What welding and omitted slivers changed; less than that is rounding.
+    const double rest = pieces[p].area - meshed[p] - cut.covered[p];
+    if (std::abs(rest) > 1e-12 * pieces[p].area) areas.removed += rest;
+  }
+}
+
+// Numbers the vertices and normals that triangles use, in the order of their use.
+class BaseMeshBuilder {
+ public:
+  BaseMeshBuilder(const VertexTable& vertices, const std::vector<FacePiece>& pieces)
+      : vertices_(vertices), pieces_(pieces), index_(vertices.size(), BaseTriangle::kFlat) {}
+
+  BaseMesh build(const std::vector<RawTriangle>& triangles) {
+    mesh_.triangles.reserve(triangles.size());
+    for (const RawTriangle& raw : triangles) {
+      const FacePiece& piece = pieces_[raw.piece];
+      BaseTriangle t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        t.vertex[k] = vertex(raw.vertex[k]);
+        if (piece.smooth) t.normal[k] = normal(piece.shading_normal(vertices_[raw.vertex[k]]));
+      }
+      t.surface = piece.surface;
+      t.face = piece.face;
+      t.two_sided = piece.two_sided;
+      mesh_.triangles.push_back(t);
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  std::uint32_t vertex(std::uint32_t v) {
+    if (index_[v] == BaseTriangle::kFlat) {
+      index_[v] = static_cast<std::uint32_t>(mesh_.vertices.size());
+      mesh_.vertices.push_back(vertices_[v]);
+    }
+    return index_[v];
+  }
+  std::uint32_t normal(const Vec3& n) {
+    const auto [it, is_new] =
+        normals_.try_emplace({n.x(), n.y(), n.z()}, static_cast<std::uint32_t>(mesh_.normals.size()));
+    if (is_new) mesh_.normals.push_back(n);
+    return it->second;
+  }
+
+  const VertexTable& vertices_;
+  const std::vector<FacePiece>& pieces_;
+  std::vector<std::uint32_t> index_;
+  std::map<std::array<double, 3>, std::uint32_t> normals_;
+  BaseMesh mesh_;
+};
+
+void check(const Scene& scene) {
+  for (const Surface& s : scene.surfaces)
+    if (s.material.index() >= scene.materials.size())
+      throw InputError("surface '" + s.name + "'", "it refers to a material that does not exist",
+                       "check the material of this surface");
+}
+
+}  // namespace
+
+MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
+  check(scene);
+  if (!(settings.smallest_angle_deg >= 0 && settings.smallest_angle_deg <= 30))
+    throw InputError("smallest angle", fmt::format("{} degrees is out of range", settings.smallest_angle_deg),
+                     "use a value from 0 to 30");
+  MeshReport report;
+  report.surfaces.resize(scene.surfaces.size());
+  const MeshTolerances tolerances = MeshTolerances::of(bounds(scene));
+  VertexTable vertices(tolerances.weld);
+
+  std::vector<FacePiece> pieces = repair_polygons(scene, tolerances, vertices, report);
+  drop_duplicate_faces(scene, pieces, report);
+  orient_faces(scene, vertices, pieces, report);
+  double total_area = 0;
+  for (const FacePiece& p : pieces) total_area += p.area;
+  if (!(total_area > 0))
+    throw InputError(scene.source.empty() ? "room" : scene.source, "there is no face with an area",
+                     "check that the file holds polygons, and its unit of length");
+  const double zone_area = wanted_zone_area(settings, total_area);
+  const double zone_edge = std::sqrt(zone_area);
+
+  PieceGroups groups = group_overlapping_pieces(pieces, tolerances, vertices);
+  const ContactCuts cuts =
+      find_contact_cuts(pieces, groups, tolerances, kSmallestContact * zone_edge, vertices);
+  if (cuts.ignored > 0)
+    report.warnings.push_back(fmt::format(
+        "{} faces touch so many others that they were cut along the longest contacts only", cuts.ignored));
+  std::vector<std::uint32_t> on_edges = std::move(groups.crossings);
+  on_edges.insert(on_edges.end(), cuts.on_boundary.begin(), cuts.on_boundary.end());
+  insert_vertices_on_edges(vertices, on_edges, tolerances.weld, pieces);
+
+  const TriangleQuality quality{.smallest_angle_deg = settings.smallest_angle_deg,
+                                .free_length = kFreeLength * zone_edge,
+                                .most_new_points = 1'000'000};
+  GroupTriangles cut = triangulate_groups(scene, pieces, groups, cuts, tolerances, quality, vertices, report);
+  conform_triangles(vertices, tolerances.weld, cut.triangles);
+  book_areas(vertices, pieces, cut, report);
+
+  BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);
+  size_zones(base, zone_area);
+  return {ZoneMesh(std::move(base)), std::move(report)};
+}
+
+}  // namespace reemit

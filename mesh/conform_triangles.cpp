@@ -1,0 +1,79 @@
+#include "mesh/conform_triangles.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "mesh/edge_points.h"
+
+namespace reemit {
+namespace {
+
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
+}
+
+// A triangle with vertices on its sides; side k runs from corner k to corner k+1.
+struct Studded {
+  std::array<std::uint32_t, 3> corner;
+  std::array<std::vector<std::uint32_t>, 3> on_side;
+};
+
+// Cuts from the middle vertex of the most crowded side to the corner opposite, until no vertices are left.
+void split(const Studded& s, std::size_t piece, std::vector<RawTriangle>& out) {
+  std::size_t k = 0;
+  for (std::size_t i = 1; i < 3; ++i)
+    if (s.on_side[i].size() > s.on_side[k].size()) k = i;
+  const std::vector<std::uint32_t>& side = s.on_side[k];
+  if (side.empty()) {
+    out.push_back({s.corner, piece});
+    return;
+  }
+  const auto middle = static_cast<std::ptrdiff_t>(side.size() / 2);
+  const std::uint32_t m = side[static_cast<std::size_t>(middle)];
+  const std::uint32_t a = s.corner[k];
+  const std::uint32_t b = s.corner[(k + 1) % 3];
+  const std::uint32_t c = s.corner[(k + 2) % 3];
+  split({{a, m, c},
+         {std::vector<std::uint32_t>(side.begin(), side.begin() + middle), {}, s.on_side[(k + 2) % 3]}},
+        piece, out);
+  split({{m, b, c},
+         {std::vector<std::uint32_t>(side.begin() + middle + 1, side.end()), s.on_side[(k + 1) % 3], {}}},
+        piece, out);
+}
+
+}  // namespace
+
+void conform_triangles(const VertexTable& vertices, double weld, std::vector<RawTriangle>& triangles) {
+  std::vector<VertexEdge> edges;
+  std::unordered_map<std::uint64_t, std::size_t> edge_index;
+  edge_index.reserve(2 * triangles.size());
+  std::vector<std::uint32_t> ends;
+  ends.reserve(3 * triangles.size());
+  for (const RawTriangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(t.vertex[k], t.vertex[(k + 1) % 3]);
+      if (edge_index.try_emplace(edge_key(a, b), edges.size()).second) edges.push_back({a, b});
+      ends.push_back(a);
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  const auto between = vertices_on_edges(vertices, edges, ends, weld);
+
+  std::vector<RawTriangle> out;
+  out.reserve(triangles.size());
+  for (const RawTriangle& t : triangles) {
+    Studded studded{t.vertex, {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t.vertex[k];
+      const std::uint32_t b = t.vertex[(k + 1) % 3];
+      studded.on_side[k] = between[edge_index.at(edge_key(a, b))];
+      if (a > b) std::reverse(studded.on_side[k].begin(), studded.on_side[k].end());
+      std::erase(studded.on_side[k], t.vertex[(k + 2) % 3]);  // of a needle lower than the weld distance
+    }
+    split(studded, t.piece, out);
+  }
+  triangles = std::move(out);
+}
+
+}  // namespace reemit

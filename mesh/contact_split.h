@@ -1,0 +1,27 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/coplanar_overlap.h"
+#include "mesh/face_piece.h"
+#include "mesh/mesh_tolerances.h"
+#include "mesh/vertex_table.h"
+
+namespace reemit {
+
+/// Where faces are to be cut.
+struct ContactCuts {
+  /// By group: segments inside its pieces, as pairs of vertices.
+  std::vector<std::vector<std::array<std::uint32_t, 2>>> segments;
+  std::vector<std::uint32_t> on_boundary;  ///< Vertices where cuts end on the boundary of a piece.
+  std::size_t ignored = 0;  ///< Groups for which small contacts were ignored because there were too many.
+};
+
+/// Finds the lines along which other pieces stand on a group (edges within the contact distance of its plane)
+/// or pierce it. Contacts that extend less than `smallest` metres are not cut: they are much smaller than a
+/// zone.
+ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
+                              const MeshTolerances& tolerances, double smallest, VertexTable& vertices);
+
+}  // namespace reemit

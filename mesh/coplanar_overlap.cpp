@@ -1,0 +1,217 @@
+#include "mesh/coplanar_overlap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "mesh/disjoint_sets.h"
+#include "mesh/planar_triangulation.h"
+
+namespace reemit {
+namespace {
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+struct Crossing {
+  double t;  // along the first segment
+  double s;  // along the second
+};
+
+// Where two segments cross with all ends farther than `margin` from the other's line.
+std::optional<Crossing> proper_crossing(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1,
+                                        double margin) {
+  const Vec2 a = a1 - a0;
+  const Vec2 b = b1 - b0;
+  const double margin_a = margin * a.norm();
+  const double margin_b = margin * b.norm();
+  const double b0_side = cross(a, b0 - a0);
+  const double b1_side = cross(a, b1 - a0);
+  const double a0_side = cross(b, a0 - b0);
+  const double a1_side = cross(b, a1 - b0);
+  const auto opposite = [](double x, double y, double m) { return (x > m && y < -m) || (x < -m && y > m); };
+  if (!opposite(b0_side, b1_side, margin_a) || !opposite(a0_side, a1_side, margin_b)) return std::nullopt;
+  return Crossing{a0_side / (a0_side - a1_side), b0_side / (b0_side - b1_side)};
+}
+
+class OverlapSearch {
+ public:
+  OverlapSearch(const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances, VertexTable& vertices)
+      : pieces_(pieces),
+        tolerances_(tolerances),
+        margin_(4 * tolerances.weld),
+        vertices_(vertices),
+        inner_point_(pieces.size()) {}
+
+  PieceGroups run();
+
+ private:
+  bool coplanar(const FacePiece& large, const FacePiece& small) const;
+  bool overlap(std::size_t i, std::size_t j, const PlaneFrame& plane);
+  bool pokes_into(const PlanarLoops& inner, const PlanarLoops& outer) const;
+  const Vec3& inner_point(std::size_t i);
+  void add_crossings(const FacePiece& a, const FacePiece& b, const PlaneFrame& plane,
+                     std::vector<std::uint32_t>& crossings);
+
+  const std::vector<FacePiece>& pieces_;
+  const MeshTolerances& tolerances_;
+  double margin_;  // overlap less deep than this is touching
+  VertexTable& vertices_;
+  std::vector<std::optional<Vec3>> inner_point_;
+};
+
+bool OverlapSearch::coplanar(const FacePiece& large, const FacePiece& small) const {
+  if (std::abs(large.plane.normal.dot(small.plane.normal)) < 0.99) return false;
+  for (const Loop& loop : small.loops)
+    for (const std::uint32_t v : loop)
+      if (std::abs(large.plane.height(vertices_[v])) > tolerances_.weld) return false;
+  return true;
+}
+
+const Vec3& OverlapSearch::inner_point(std::size_t i) {
+  if (!inner_point_[i]) {
+    const FacePiece& piece = pieces_[i];
+    inner_point_[i] = piece.plane.origin;  // the centroid of the corners, right for triangles
+    if (!piece.is_triangle()) {
+      const PlanarLoops loops(vertices_, piece, piece.plane);
+      std::vector<Vec2> points;
+      std::vector<std::array<std::uint32_t, 2>> segments;
+      for (const auto& loop : loops.loops) {
+        const auto first = static_cast<std::uint32_t>(points.size());
+        const auto count = static_cast<std::uint32_t>(loop.size());
+        for (std::uint32_t k = 0; k < count; ++k) segments.push_back({first + k, first + (k + 1) % count});
+        points.insert(points.end(), loop.begin(), loop.end());
+      }
+      const auto cut =
+          triangulate_planar(points, segments, [&](const Vec2& p) { return loops.contains(p); }, {});
+      if (!cut.region_point.empty()) inner_point_[i] = piece.plane.lift(cut.region_point[0]);
+    }
+  }
+  return *inner_point_[i];
+}
+
+// A corner or the middle of an edge of `inner` lies inside `outer`, clear of its boundary.
+bool OverlapSearch::pokes_into(const PlanarLoops& inner, const PlanarLoops& outer) const {
+  const auto clearly_inside = [&](const Vec2& p) {
+    return outer.contains(p) && outer.distance_to_boundary(p) > margin_;
+  };
+  for (const auto& loop : inner.loops)
+    for (std::size_t k = 0; k < loop.size(); ++k)
+      if (clearly_inside(loop[k]) || clearly_inside(0.5 * (loop[k] + loop[(k + 1) % loop.size()])))
+        return true;
+  return false;
+}
+
+bool OverlapSearch::overlap(std::size_t i, std::size_t j, const PlaneFrame& plane) {
+  const PlanarLoops a(vertices_, pieces_[i], plane);
+  const PlanarLoops b(vertices_, pieces_[j], plane);
+  const Vec2 depth = a.max.cwiseMin(b.max) - a.min.cwiseMax(b.min);
+  if (depth.minCoeff() <= margin_) return false;
+  for (const auto& la : a.loops)
+    for (std::size_t k = 0; k < la.size(); ++k)
+      for (const auto& lb : b.loops)
+        for (std::size_t m = 0; m < lb.size(); ++m)
+          if (proper_crossing(la[k], la[(k + 1) % la.size()], lb[m], lb[(m + 1) % lb.size()], margin_))
+            return true;
+  if (pokes_into(a, b) || pokes_into(b, a)) return true;
+  const auto inside = [&](const PlanarLoops& loops, const Vec3& p) {
+    const Vec2 q = plane.project(p);
+    return loops.contains(q) && loops.distance_to_boundary(q) > margin_;
+  };
+  return inside(a, inner_point(j)) || inside(b, inner_point(i));
+}
+
+void OverlapSearch::add_crossings(const FacePiece& a, const FacePiece& b, const PlaneFrame& plane,
+                                  std::vector<std::uint32_t>& crossings) {
+  for (const Loop& la : a.loops) {
+    for (std::size_t k = 0; k < la.size(); ++k) {
+      const Vec3 a0 = vertices_[la[k]];
+      const Vec3 a1 = vertices_[la[(k + 1) % la.size()]];
+      for (const Loop& lb : b.loops) {
+        for (std::size_t m = 0; m < lb.size(); ++m) {
+          const Vec3 b0 = vertices_[lb[m]];
+          const Vec3 b1 = vertices_[lb[(m + 1) % lb.size()]];
+          const auto at = proper_crossing(plane.project(a0), plane.project(a1), plane.project(b0),
+                                          plane.project(b1), tolerances_.weld);
+          // Half way between the edges, so that it lies within the weld distance of both.
+          if (at)
+            crossings.push_back(vertices_.weld(0.5 * (a0 + at->t * (a1 - a0) + b0 + at->s * (b1 - b0))));
+        }
+      }
+    }
+  }
+}
+
+PieceGroups OverlapSearch::run() {
+  std::vector<IndexedBox> boxes;
+  boxes.reserve(pieces_.size());
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    boxes.push_back(box_of(vertices_, pieces_[i], i, tolerances_.weld));
+  PieceGroups out;
+  DisjointSets sets(pieces_.size());
+  for_each_box_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
+    const bool i_is_larger = pieces_[i].area >= pieces_[j].area;
+    const FacePiece& large = pieces_[i_is_larger ? i : j];
+    if (!coplanar(large, pieces_[i_is_larger ? j : i]) || !overlap(i, j, large.plane)) return;
+    sets.join(i, j);
+    add_crossings(pieces_[i], pieces_[j], large.plane, out.crossings);
+  });
+  out.group_of.resize(pieces_.size());
+  std::vector<std::size_t> group_of_root(pieces_.size());
+  std::vector<std::size_t> largest;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const std::size_t root = sets.find(i);
+    if (root == i) {
+      group_of_root[i] = out.groups.size();
+      out.groups.emplace_back();
+      largest.push_back(i);
+    }
+    const std::size_t g = out.group_of[i] = group_of_root[root];
+    out.groups[g].pieces.push_back(i);
+    if (pieces_[i].area > pieces_[largest[g]].area) largest[g] = i;
+  }
+  for (std::size_t g = 0; g < out.groups.size(); ++g) out.groups[g].plane = pieces_[largest[g]].plane;
+  return out;
+}
+
+}  // namespace
+
+IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size_t index, double margin) {
+  IndexedBox box{.min = vertices[piece.loops[0][0]], .max = vertices[piece.loops[0][0]]};
+  box.index = static_cast<std::uint32_t>(index);
+  for (const std::uint32_t v : piece.loops[0]) {
+    box.min = box.min.cwiseMin(vertices[v]);
+    box.max = box.max.cwiseMax(vertices[v]);
+  }
+  box.min.array() -= margin;
+  box.max.array() += margin;
+  return box;
+}
+
+PieceGroups group_overlapping_pieces(const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances,
+                                     VertexTable& vertices) {
+  return OverlapSearch(pieces, tolerances, vertices).run();
+}
+
+std::size_t winner_of(const std::vector<FacePiece>& pieces, const std::vector<std::size_t>& covering,
+                      const Vec3& room_centre) {
+  const Vec3& facing = pieces[covering[0]].plane.normal;
+  std::optional<std::size_t> same;
+  std::optional<std::size_t> opposite;
+  for (const std::size_t i : covering) {
+    auto& best = pieces[i].plane.normal.dot(facing) > 0 ? same : opposite;
+    if (!best || (pieces[i].emits && !pieces[*best].emits)) best = i;
+  }
+  if (!opposite) return *same;
+  if (pieces[*same].emits == pieces[*opposite].emits) return std::min(*same, *opposite);
+  const std::size_t lamp = pieces[*same].emits ? *same : *opposite;
+  const std::size_t surface = lamp == *same ? *opposite : *same;
+  if (!pieces[lamp].in_closed_shell) return lamp;
+  if (!pieces[surface].two_sided) return surface;
+  const bool shines_inwards = pieces[lamp].plane.height(room_centre) > 0;
+  return shines_inwards ? lamp : surface;
+}
+
+}  // namespace reemit

@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "mesh/box_pairs.h"
+#include "mesh/face_piece.h"
+#include "mesh/mesh_tolerances.h"
+#include "mesh/vertex_table.h"
+
+namespace reemit {
+
+/// Pieces that lie in one plane and overlap, to be triangulated together; mostly a single piece.
+struct PieceGroup {
+  PlaneFrame plane;  ///< Of the largest piece.
+  std::vector<std::size_t> pieces;
+};
+
+struct PieceGroups {
+  std::vector<PieceGroup> groups;
+  std::vector<std::size_t> group_of;     ///< By piece.
+  std::vector<std::uint32_t> crossings;  ///< Vertices where outlines of overlapping pieces cross.
+};
+
+/// Bounding box of a piece, enlarged by `margin` [m] on all sides.
+IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size_t index, double margin);
+
+/// Finds the pieces that overlap within the weld distance of one plane. Overlap narrower than a few weld
+/// distances is not seen. Adds the crossings of outlines to `vertices`.
+PieceGroups group_overlapping_pieces(const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances,
+                                     VertexTable& vertices);
+
+/// Which of the pieces that cover a spot of their common plane keeps it: `covering` in ascending order.
+/// - Facing the same way, a luminaire wins, else the earlier piece.
+/// - Facing each other, a luminaire wins too if it is an open sheet: it is there to shine, however the other
+/// is wound.
+/// - The side of a closed lamp that is pressed onto a one-sided surface cannot shine, so the surface stays.
+/// Where the
+///   surface is two-sided, its winding says nothing: the lamp wins if it shines towards the centre of the
+///   room.
+std::size_t winner_of(const std::vector<FacePiece>& pieces, const std::vector<std::size_t>& covering,
+                      const Vec3& room_centre);
+
+}  // namespace reemit

@@ -1,0 +1,331 @@
+#include "mesh/polygon_repair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "mesh/face_notes.h"
+#include "mesh/planar_triangulation.h"
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace {
+
+// A corner of a polygon: where it was read and which vertex it became.
+struct Corner {
+  Vec3 read;
+  std::uint32_t vertex;
+  Vec3 normal;  // zero = none
+};
+
+// Outline and holes of one face.
+struct Polygon {
+  std::vector<std::vector<Corner>> loops;
+};
+
+double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
+Vec3 vector_area_as_read(const std::vector<Corner>& loop) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i)
+    sum += (loop[i].read - loop[0].read).cross(loop[i + 1].read - loop[0].read);
+  return 0.5 * sum;
+}
+
+class PolygonRepair {
+ public:
+  PolygonRepair(const Scene& scene, const MeshTolerances& tolerances, VertexTable& vertices,
+                MeshReport& report)
+      : scene_(scene), tolerances_(tolerances), vertices_(vertices), report_(report) {}
+
+  std::vector<FacePiece> run();
+
+ private:
+  void repair(SurfaceId surface, std::uint32_t face);
+  Polygon read(SurfaceId surface, std::uint32_t face);
+  std::vector<Corner> read_loop(SurfaceId surface, std::uint32_t face, const std::vector<std::uint32_t>& loop,
+                                const std::vector<std::uint32_t>& normals);
+  void weld(Polygon& polygon);
+  void drop(const FacePiece& piece, double area);
+  bool finish_plane(FacePiece& piece, const Polygon& polygon, double& deviation) const;
+  void refuse_if_crossed(const FacePiece& piece, const Polygon& polygon) const;
+  void add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners);
+  void add_polygon(FacePiece piece, const Polygon& polygon);
+  void add_split(const FacePiece& piece, const Polygon& polygon);
+  PlanarTriangulation triangulate(const FacePiece& piece, const Polygon& polygon,
+                                  std::vector<Corner>& corners) const;
+  InputError bad_face(const FacePiece& piece, const std::string& problem, const std::string& advice) const {
+    return {"face " + face_name(scene_, piece.surface, piece.face), problem, advice};
+  }
+
+  const Scene& scene_;
+  const MeshTolerances& tolerances_;
+  VertexTable& vertices_;
+  MeshReport& report_;
+  std::vector<FacePiece> pieces_;
+  FaceNotes bent_;
+  FaceNotes crossed_;
+  FaceNotes degenerate_;
+  double largest_bend_ = 0;
+};
+
+std::vector<Corner> PolygonRepair::read_loop(SurfaceId surface, std::uint32_t face,
+                                             const std::vector<std::uint32_t>& loop,
+                                             const std::vector<std::uint32_t>& normals) {
+  const Surface& s = scene_.surfaces[surface.index()];
+  std::vector<Corner> out;
+  out.reserve(loop.size());
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const auto name = [&] { return "face " + face_name(scene_, surface, face); };
+    if (loop[i] >= s.positions.size())
+      throw InputError(name(),
+                       fmt::format("corner {} refers to vertex {} of {}", i, loop[i], s.positions.size()),
+                       "check the vertex indices of this face");
+    const Vec3& p = s.positions[loop[i]];
+    if (!p.allFinite())
+      throw InputError(name(), fmt::format("corner {} has a coordinate that is not a finite number", i),
+                       "correct the vertex in the file");
+    Vec3 normal = Vec3::Zero();
+    if (i < normals.size() && normals[i] < s.normals.size()) normal = s.normals[normals[i]];
+    if (!normal.allFinite()) normal.setZero();
+    out.push_back({p, 0, normal});
+  }
+  return out;
+}
+
+Polygon PolygonRepair::read(SurfaceId surface, std::uint32_t face) {
+  const Face& f = scene_.surfaces[surface.index()].faces[face];
+  Polygon polygon;
+  polygon.loops.push_back(read_loop(surface, face, f.outer, f.normals));
+  for (const auto& hole : f.holes) polygon.loops.push_back(read_loop(surface, face, hole, {}));
+  return polygon;
+}
+
+void PolygonRepair::weld(Polygon& polygon) {
+  for (std::vector<Corner>& loop : polygon.loops) {
+    for (Corner& c : loop) c.vertex = vertices_.weld(c.read);
+    const auto same = [](const Corner& a, const Corner& b) { return a.vertex == b.vertex; };
+    loop.erase(std::unique(loop.begin(), loop.end(), same), loop.end());
+    while (loop.size() > 1 && same(loop.front(), loop.back())) loop.pop_back();
+  }
+  const auto collapsed = [](const std::vector<Corner>& loop) { return loop.size() < 3; };
+  polygon.loops.erase(std::remove_if(polygon.loops.begin() + 1, polygon.loops.end(), collapsed),
+                      polygon.loops.end());
+}
+
+void PolygonRepair::drop(const FacePiece& piece, double area) {
+  ++report_.degenerate_faces;
+  SurfaceAreas& areas = report_.surfaces[piece.surface.index()];
+  areas.input += area;
+  areas.removed += area;
+  degenerate_.add(scene_, piece.surface, piece.face);
+}
+
+// Fits the plane; false if the polygon encloses no area. `deviation`: largest distance of a corner from the
+// plane.
+bool PolygonRepair::finish_plane(FacePiece& piece, const Polygon& polygon, double& deviation) const {
+  if (polygon.loops[0].size() < 3) return false;
+  piece.loops.clear();
+  for (const std::vector<Corner>& loop : polygon.loops) {
+    Loop& out = piece.loops.emplace_back();
+    for (const Corner& c : loop) out.push_back(c.vertex);
+  }
+  const Loop& outline = piece.loops[0];
+  Vec3 low = vertices_[outline[0]];
+  Vec3 high = low;
+  Vec3 sum = Vec3::Zero();
+  for (const std::uint32_t v : outline) {
+    low = low.cwiseMin(vertices_[v]);
+    high = high.cwiseMax(vertices_[v]);
+    sum += vertices_[v] - vertices_[outline[0]];
+  }
+  piece.diameter = (high - low).norm();
+  const Vec3 area = vector_area(vertices_, outline);
+  const double smallest = std::max(kSmallestArea * tolerances_.diagonal * tolerances_.diagonal,
+                                   0.5 * tolerances_.weld * piece.diameter);
+  if (area.norm() <= smallest) return false;
+  const Vec3 centre = vertices_[outline[0]] + sum / static_cast<double>(outline.size());
+  piece.plane = PlaneFrame::make(centre, area.normalized());
+  deviation = 0;
+  for (const Loop& loop : piece.loops)
+    for (const std::uint32_t v : loop)
+      deviation = std::max(deviation, std::abs(piece.plane.height(vertices_[v])));
+  return true;
+}
+
+PlanarTriangulation PolygonRepair::triangulate(const FacePiece& piece, const Polygon& polygon,
+                                               std::vector<Corner>& corners) const {
+  std::vector<Vec2> points;
+  std::vector<std::array<std::uint32_t, 2>> segments;
+  for (const std::vector<Corner>& loop : polygon.loops) {
+    const auto first = static_cast<std::uint32_t>(points.size());
+    const auto count = static_cast<std::uint32_t>(loop.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+      corners.push_back(loop[i]);
+      points.push_back(piece.plane.project(vertices_[loop[i].vertex]));
+      segments.push_back({first + i, first + (i + 1) % count});
+    }
+  }
+  const PlanarLoops loops(vertices_, piece, piece.plane);
+  return triangulate_planar(points, segments, [&](const Vec2& p) { return loops.contains(p); }, {});
+}
+
+// An outline like a figure 8 may enclose area twice in opposite senses, which leaves no front.
+void PolygonRepair::refuse_if_crossed(const FacePiece& piece, const Polygon& polygon) const {
+  const std::vector<Corner>& loop = polygon.loops[0];
+  Vec3 widest = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+    const Vec3 n = (loop[i].read - loop[0].read).cross(loop[i + 1].read - loop[0].read);
+    if (n.squaredNorm() > widest.squaredNorm()) widest = n;
+  }
+  const double size = tolerances_.weld * piece.diameter;
+  if (widest.norm() <= size) return;
+  FacePiece flat = piece;
+  flat.plane = PlaneFrame::make(vertices_[loop[0].vertex], widest.normalized());
+  std::vector<Corner> corners;
+  const PlanarTriangulation cut = triangulate(flat, polygon, corners);
+  double filled = 0;
+  for (const auto& t : cut.triangles) {
+    const Vec2 ab = cut.points[t[1]] - cut.points[t[0]];
+    const Vec2 ac = cut.points[t[2]] - cut.points[t[0]];
+    filled += 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
+  }
+  if (filled > 2 * size)
+    throw bad_face(piece, "the outline crosses itself and encloses as much area backwards as forwards",
+                   "reorder its corners or split it at the crossing");
+}
+
+void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners) {
+  FacePiece piece = like;
+  Polygon polygon;
+  polygon.loops.emplace_back(corners.begin(), corners.end());
+  piece.area = triangle_area(corners[0].read, corners[1].read, corners[2].read);
+  double deviation = 0;
+  if (!finish_plane(piece, polygon, deviation)) {
+    SurfaceAreas& areas = report_.surfaces[piece.surface.index()];
+    areas.input += piece.area;
+    areas.removed += piece.area;
+    return;
+  }
+  piece.smooth = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    piece.corner[k] = vertices_[corners[k].vertex];
+    Vec3 n = corners[k].normal;
+    const double length = n.norm();
+    n = length > 0 ? Vec3(n / length) : piece.plane.normal;
+    if (n.dot(piece.plane.normal) < 0) n = -n;  // the front is where the corners run counter-clockwise
+    constexpr double kSame = 1e-7;              // 1 - cos of about 0.03 degrees
+    piece.smooth |= n.dot(piece.plane.normal) < 1 - kSame;
+    piece.corner_normal[k] = n;
+  }
+  report_.surfaces[piece.surface.index()].input += piece.area;
+  pieces_.push_back(std::move(piece));
+}
+
+void PolygonRepair::add_polygon(FacePiece piece, const Polygon& polygon) {
+  double area = vector_area_as_read(polygon.loops[0]).norm();
+  for (std::size_t i = 1; i < polygon.loops.size(); ++i) area -= vector_area_as_read(polygon.loops[i]).norm();
+  std::vector<Corner> corners;
+  const PlanarTriangulation cut = triangulate(piece, polygon, corners);
+  double filled = 0;
+  for (const auto& t : cut.triangles) {
+    const Vec2 ab = cut.points[t[1]] - cut.points[t[0]];
+    const Vec2 ac = cut.points[t[2]] - cut.points[t[0]];
+    filled += 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
+  }
+  // Welding moves corners by less than the weld distance; a larger gap means crossing loops, whose area is
+  // what they fill.
+  const double slack = 8 * tolerances_.weld * piece.diameter * static_cast<double>(corners.size());
+  if (std::abs(filled - area) > slack + 1e-9 * area) {
+    crossed_.add(scene_, piece.surface, piece.face);
+    area = filled;
+  }
+  piece.area = area;
+  if (filled <= tolerances_.weld * piece.diameter) {
+    drop(piece, area);
+    return;
+  }
+  report_.surfaces[piece.surface.index()].input += area;
+  pieces_.push_back(std::move(piece));
+}
+
+void PolygonRepair::add_split(const FacePiece& piece, const Polygon& polygon) {
+  std::vector<Corner> corners;
+  const PlanarTriangulation cut = triangulate(piece, polygon, corners);
+  for (std::size_t i = corners.size(); i < cut.points.size(); ++i) {
+    const Vec3 p = piece.plane.lift(cut.points[i]);
+    corners.push_back({p, vertices_.weld(p), Vec3::Zero()});
+  }
+  for (const auto& t : cut.triangles) add_triangle(piece, {corners[t[0]], corners[t[1]], corners[t[2]]});
+}
+
+void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
+  const Material& material = scene_.material_of(scene_.surfaces[surface.index()]);
+  FacePiece piece;
+  piece.surface = surface;
+  piece.face = face;
+  piece.two_sided = material.two_sided;
+  piece.emits = material.emits();
+  piece.emits_both_sides = material.emits_both_sides;
+  Polygon polygon = read(surface, face);
+  if (polygon.loops[0].size() < 3)
+    throw bad_face(piece, "fewer than three corners", "remove the face or add corners");
+  const double area_as_read = vector_area_as_read(polygon.loops[0]).norm();
+  weld(polygon);
+  double deviation = 0;
+  if (!finish_plane(piece, polygon, deviation)) {
+    if (polygon.loops[0].size() > 3) refuse_if_crossed(piece, polygon);
+    drop(piece, area_as_read);
+    return;
+  }
+  const std::vector<Corner>& outline = polygon.loops[0];
+  if (outline.size() == 3 && polygon.loops.size() == 1) {
+    add_triangle(piece, {outline[0], outline[1], outline[2]});
+    return;
+  }
+  const bool shaded = std::any_of(outline.begin(), outline.end(), [&](const Corner& c) {
+    return c.normal.squaredNorm() > 0 && std::abs(c.normal.normalized().dot(piece.plane.normal)) < 1 - 1e-7;
+  });
+  if (deviation > kVisiblyBent * piece.diameter) {
+    ++report_.nonplanar_faces;
+    bent_.add(scene_, surface, face);
+    largest_bend_ = std::max(largest_bend_, deviation);
+  }
+  if (shaded || deviation > kPlanar * piece.diameter)
+    add_split(piece, polygon);
+  else
+    add_polygon(std::move(piece), polygon);
+}
+
+std::vector<FacePiece> PolygonRepair::run() {
+  for (std::size_t s = 0; s < scene_.surfaces.size(); ++s)
+    for (std::size_t f = 0; f < scene_.surfaces[s].faces.size(); ++f)
+      repair(SurfaceId(s), static_cast<std::uint32_t>(f));
+  if (degenerate_.count() > 0)
+    report_.warnings.push_back(
+        fmt::format("{} faces without area were left out: {}", degenerate_.count(), degenerate_.names()));
+  if (bent_.count() > 0)
+    report_.warnings.push_back(
+        fmt::format("{} polygons are not planar (by up to {:.3g} m) and were split into "
+                    "triangles: {}",
+                    bent_.count(), largest_bend_, bent_.names()));
+  if (crossed_.count() > 0)
+    report_.warnings.push_back(
+        fmt::format("{} polygons have an outline or holes that cross; the area they enclose was "
+                    "filled: {}",
+                    crossed_.count(), crossed_.names()));
+  return std::move(pieces_);
+}
+
+}  // namespace
+
+std::vector<FacePiece> repair_polygons(const Scene& scene, const MeshTolerances& tolerances,
+                                       VertexTable& vertices, MeshReport& report) {
+  return PolygonRepair(scene, tolerances, vertices, report).run();
+}
+
+}  // namespace reemit

@@ -1,0 +1,19 @@
+#pragma once
+#include <vector>
+
+#include "mesh/build_mesh.h"
+#include "mesh/face_piece.h"
+#include "mesh/mesh_tolerances.h"
+#include "mesh/vertex_table.h"
+
+namespace reemit {
+
+/// Turns every face of the scene into planar pieces with welded vertices: repeated corners are merged, faces
+/// without area dropped, bent polygons and polygons with varying shading normals split into triangles. Books
+/// the areas as read and as removed, the counts, and warnings. Throws InputError for a face that has no
+/// meaning: an index out of range, a position that is not finite, an outline that crosses itself so that it
+/// has no front.
+std::vector<FacePiece> repair_polygons(const Scene& scene, const MeshTolerances& tolerances,
+                                       VertexTable& vertices, MeshReport& report);
+
+}  // namespace reemit

@@ -1,0 +1,234 @@
+#include "mesh/triangulate_groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "mesh/face_notes.h"
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace {
+
+using Segment = std::array<std::uint32_t, 2>;
+
+class GroupTriangulation {
+ public:
+  GroupTriangulation(const Scene& scene, const std::vector<FacePiece>& pieces, const PieceGroups& groups,
+                     const ContactCuts& cuts, const MeshTolerances& tolerances,
+                     const TriangleQuality& quality, VertexTable& vertices, MeshReport& report)
+      : scene_(scene),
+        pieces_(pieces),
+        groups_(groups),
+        cuts_(cuts),
+        tolerances_(tolerances),
+        quality_(quality),
+        vertices_(vertices),
+        report_(report),
+        meshed_(pieces.size(), 0.0),
+        covered_(pieces.size(), 0.0),
+        room_centre_(bounds(scene).centre()) {}
+
+  GroupTriangles run();
+
+ private:
+  void triangulate(std::size_t g);
+  bool emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality);
+  std::vector<std::uint32_t> lift(const PieceGroup& group, const PlanarTriangulation& cut,
+                                  std::vector<std::uint32_t> ids);
+  bool conserves_area(std::size_t piece) const;
+  void report_overlaps();
+
+  double area_of(const std::array<std::uint32_t, 3>& t) const {
+    return 0.5 * (vertices_[t[1]] - vertices_[t[0]]).cross(vertices_[t[2]] - vertices_[t[0]]).norm();
+  }
+
+  const Scene& scene_;
+  const std::vector<FacePiece>& pieces_;
+  const PieceGroups& groups_;
+  const ContactCuts& cuts_;
+  const MeshTolerances& tolerances_;
+  const TriangleQuality& quality_;
+  VertexTable& vertices_;
+  MeshReport& report_;
+  std::vector<RawTriangle> out_;
+  std::vector<double> meshed_;                                     // by piece [m2]
+  std::vector<double> covered_;                                    // by piece, by others that win [m2]
+  std::map<std::pair<std::size_t, std::size_t>, double> overlap_;  // area by (winner, loser) [m2]
+  Vec3 room_centre_;
+};
+
+// Vertices of all points of a triangulation, of which the first ones are known.
+std::vector<std::uint32_t> GroupTriangulation::lift(const PieceGroup& group, const PlanarTriangulation& cut,
+                                                    std::vector<std::uint32_t> ids) {
+  const std::size_t given = ids.size();
+  for (std::size_t i = given; i < cut.points.size(); ++i) {
+    const auto [a, b] = cut.on_segment[i - given];
+    if (a == PlanarTriangulation::kNone) {
+      ids.push_back(vertices_.append(group.plane.lift(cut.points[i])));
+      continue;
+    }
+    // Along the edge in space, from its smaller vertex on, so that neighbours find the very same point.
+    const bool in_order = ids[a] < ids[b];
+    const std::uint32_t first = in_order ? a : b;
+    const std::uint32_t last = in_order ? b : a;
+    const Vec2 along = cut.points[last] - cut.points[first];
+    const double t = (cut.points[i] - cut.points[first]).dot(along) / along.squaredNorm();
+    const Vec3 p = vertices_[ids[first]];
+    ids.push_back(vertices_.weld(p + t * (vertices_[ids[last]] - p)));
+  }
+  return ids;
+}
+
+// Triangulates a group; returns false, leaving no trace but unused vertices, if area was lost.
+bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
+                              const TriangleQuality& quality) {
+  const PieceGroup& group = groups_.groups[g];
+  std::vector<Vec2> points;
+  std::vector<std::uint32_t> ids;
+  std::vector<Segment> segments;
+  std::unordered_map<std::uint32_t, std::uint32_t> local;
+  const auto local_of = [&](std::uint32_t vertex) {
+    const auto [it, is_new] = local.try_emplace(vertex, static_cast<std::uint32_t>(ids.size()));
+    if (is_new) {
+      ids.push_back(vertex);
+      points.push_back(group.plane.project(vertices_[vertex]));
+    }
+    return it->second;
+  };
+  std::vector<PlanarLoops> outlines;
+  for (const std::size_t p : group.pieces) {
+    outlines.emplace_back(vertices_, pieces_[p], group.plane);
+    for (const Loop& loop : pieces_[p].loops)
+      for (std::size_t i = 0; i < loop.size(); ++i)
+        segments.push_back({local_of(loop[i]), local_of(loop[(i + 1) % loop.size()])});
+  }
+  for (const Segment& s : cuts) segments.push_back({local_of(s[0]), local_of(s[1])});
+
+  const auto inside = [&](const Vec2& p) {
+    return std::any_of(outlines.begin(), outlines.end(), [&](const PlanarLoops& l) { return l.contains(p); });
+  };
+  TriangleQuality limited = quality;
+  limited.most_new_points = std::min(quality.most_new_points, 1000 + 10 * points.size());
+  const PlanarTriangulation cut = triangulate_planar(points, segments, inside, limited);
+  ids = lift(group, cut, std::move(ids));
+
+  std::vector<std::vector<std::size_t>> covering(cut.region_point.size());
+  std::vector<std::size_t> winner(cut.region_point.size());
+  for (std::size_t r = 0; r < covering.size(); ++r) {
+    for (std::size_t k = 0; k < group.pieces.size(); ++k)
+      if (group.pieces.size() == 1 || outlines[k].contains(cut.region_point[r]))
+        covering[r].push_back(group.pieces[k]);
+    if (!covering[r].empty()) winner[r] = winner_of(pieces_, covering[r], room_centre_);
+  }
+  const std::size_t before = out_.size();
+  std::map<std::pair<std::size_t, std::size_t>, double> overlap;
+  for (const std::size_t p : group.pieces) meshed_[p] = covered_[p] = 0;
+  for (std::size_t i = 0; i < cut.triangles.size(); ++i) {
+    const std::size_t r = cut.region[i];
+    if (covering[r].empty()) continue;
+    std::array<std::uint32_t, 3> t{ids[cut.triangles[i][0]], ids[cut.triangles[i][1]],
+                                   ids[cut.triangles[i][2]]};
+    const double area = area_of(t);
+    for (const std::size_t p : covering[r]) {
+      if (p == winner[r]) continue;
+      covered_[p] += area;
+      overlap[{winner[r], p}] += area;
+    }
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    if (area <= kSmallestArea * tolerances_.diagonal * tolerances_.diagonal) continue;
+    if (pieces_[winner[r]].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
+    meshed_[winner[r]] += area;
+    out_.push_back({t, winner[r]});
+  }
+  if (!std::all_of(group.pieces.begin(), group.pieces.end(),
+                   [&](std::size_t p) { return conserves_area(p); })) {
+    out_.resize(before);
+    return false;
+  }
+  overlap_.merge(overlap);
+  return true;
+}
+
+// Welding moves corners by up to the weld distance and slivers without area are left out; more must not be
+// lost.
+bool GroupTriangulation::conserves_area(std::size_t piece) const {
+  const FacePiece& p = pieces_[piece];
+  std::size_t corners = 0;
+  for (const Loop& loop : p.loops) corners += loop.size();
+  const double slack = 8 * tolerances_.weld * p.diameter * static_cast<double>(corners) + 1e-9 * p.area;
+  return std::abs(p.area - meshed_[piece] - covered_[piece]) <= slack;
+}
+
+void GroupTriangulation::triangulate(std::size_t g) {
+  const PieceGroup& group = groups_.groups[g];
+  const std::vector<Segment>& cuts = cuts_.segments[g];
+  if (group.pieces.size() == 1 && cuts.empty() && pieces_[group.pieces[0]].is_triangle()) {
+    const Loop& t = pieces_[group.pieces[0]].loops[0];
+    meshed_[group.pieces[0]] = area_of({t[0], t[1], t[2]});
+    out_.push_back({{t[0], t[1], t[2]}, group.pieces[0]});
+    return;
+  }
+  if (emit(g, cuts, quality_)) return;
+  TriangleQuality plain = quality_;
+  plain.most_new_points = 0;
+  if (emit(g, cuts, plain) || emit(g, {}, plain)) return;
+  const auto lost = std::find_if(group.pieces.begin(), group.pieces.end(),
+                                 [&](std::size_t p) { return !conserves_area(p); });
+  const FacePiece& piece = pieces_[lost == group.pieces.end() ? group.pieces[0] : *lost];
+  throw InputError("face " + face_name(scene_, piece.surface, piece.face),
+                   "the polygon cannot be triangulated without changing its area",
+                   "it may cross itself or overlap its holes: split it into simple polygons");
+}
+
+void GroupTriangulation::report_overlaps() {
+  std::map<std::size_t, double> lost;
+  std::map<std::pair<SurfaceId, SurfaceId>, double> by_surface;
+  double total = 0;
+  for (const auto& [pair, area] : overlap_) {
+    lost[pair.second] += area;
+    by_surface[{pieces_[pair.first].surface, pieces_[pair.second].surface}] += area;
+    total += area;
+  }
+  report_.overlapping_faces = lost.size();
+  if (lost.empty()) return;
+  std::vector<std::pair<double, std::pair<SurfaceId, SurfaceId>>> largest;
+  for (const auto& [pair, area] : by_surface) largest.emplace_back(area, pair);
+  std::stable_sort(largest.begin(), largest.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  constexpr std::size_t kNamed = 3;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kNamed, largest.size()); ++i)
+    names += fmt::format("{}'{}' covers {:.4g} m2 of '{}'", i == 0 ? "" : ", ",
+                         scene_.surfaces[largest[i].second.first.index()].name, largest[i].first,
+                         scene_.surfaces[largest[i].second.second.index()].name);
+  if (largest.size() > kNamed) names += fmt::format(" and {} more pairs", largest.size() - kNamed);
+  report_.warnings.push_back(
+      fmt::format("{} faces lie in one plane with a face that covers them; {:.4g} m2 were removed: {}",
+                  lost.size(), total, names));
+}
+
+GroupTriangles GroupTriangulation::run() {
+  for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
+    triangulate(g);
+    if (!cuts_.segments[g].empty()) report_.cut_faces += groups_.groups[g].pieces.size();
+  }
+  report_overlaps();
+  return {std::move(out_), std::move(covered_)};
+}
+
+}  // namespace
+
+GroupTriangles triangulate_groups(const Scene& scene, const std::vector<FacePiece>& pieces,
+                                  const PieceGroups& groups, const ContactCuts& cuts,
+                                  const MeshTolerances& tolerances, const TriangleQuality& quality,
+                                  VertexTable& vertices, MeshReport& report) {
+  return GroupTriangulation(scene, pieces, groups, cuts, tolerances, quality, vertices, report).run();
+}
+
+}  // namespace reemit

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "mesh/build_mesh.h"
+#include "mesh/contact_split.h"
+#include "mesh/coplanar_overlap.h"
+#include "mesh/face_piece.h"
+#include "mesh/mesh_tolerances.h"
+#include "mesh/planar_triangulation.h"
+#include "mesh/vertex_table.h"
+
+namespace reemit {
+
+/// A base triangle before its vertices and normals are numbered for the mesh.
+struct RawTriangle {
+  std::array<std::uint32_t, 3> vertex;  ///< Into the VertexTable, counter-clockwise from the front.
+  std::size_t piece;                    ///< It was cut from.
+};
+
+struct GroupTriangles {
+  std::vector<RawTriangle> triangles;
+  std::vector<double> covered;  ///< By piece: area that went to other pieces of its plane [m2].
+};
+
+/// Triangulates every group with its cuts. Where pieces overlap, one keeps the spot and the others lose it; a
+/// warning says how much. Throws InputError naming the face if its area could not be preserved.
+GroupTriangles triangulate_groups(const Scene& scene, const std::vector<FacePiece>& pieces,
+                                  const PieceGroups& groups, const ContactCuts& cuts,
+                                  const MeshTolerances& tolerances, const TriangleQuality& quality,
+                                  VertexTable& vertices, MeshReport& report);
+
+}  // namespace reemit

@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scenes/io/mgf_contexts.h"
+#include "scenes/io/mgf_scene_builder.h"
+#include "scenes/io/mgf_transform.h"
+#include "scenes/io/text_parse.h"
+#include "scenes/model/scene.h"
+
+namespace reemit {
+
+/// Runs the entities of an MGF file and of what it includes, in order, as an interpreter: contexts,
+/// transforms and objects are its state, geometry its output.
+class MgfInterpreter {
+ public:
+  /// Throws InputError with file and line.
+  void run(const std::filesystem::path& file);
+  /// Moves materials, surfaces and warnings into the scene.
+  void finish(Scene& scene) { builder_.finish(scene); }
+  std::size_t curved_count() const { return curved_count_; }
+
+ private:
+  struct File {
+    std::string name;  // as messages show it
+    std::filesystem::path folder;
+    std::string text;
+    std::vector<TextLine> lines;
+  };
+  // An open xf: its instances run one after the other from the line after it.
+  struct Frame {
+    MgfTransform transform;
+    Eigen::Affine3d outside;  // in effect around it
+    std::int64_t instance = 0;
+    std::size_t first_line = 0;
+  };
+
+  const File& load(const std::filesystem::path& file, const std::string& included_from);
+  void run_file(const File& file);
+  void run_line(const File& file, std::size_t& next);
+  void begin_transform(MgfTransform transform, std::size_t first_line);
+  bool next_instance();  // false: it was the last, and the frame is gone
+  void run_xf(const TextLine& line, const std::string& where, std::size_t& next);
+  void run_object(const TextLine& line, const std::string& where);
+  void run_include(const File& file, const TextLine& line, const std::string& where);
+  void run_ies(const File& file, const TextLine& line, const std::string& where);
+  bool run_geometry(const File& file, const TextLine& line, const std::string& where);
+  std::vector<Polygon> shape_of(const TextLine& line, const std::string& where);
+  std::vector<MgfVertex> vertices_of(const TextLine& line, std::size_t first, std::size_t last,
+                                     const std::string& where) const;
+  std::vector<Polygon> face_with_holes(const TextLine& line, const std::string& where) const;
+  void close_what_is_open(const File& file);
+
+  MgfContexts contexts_;
+  MgfSceneBuilder builder_;
+  std::map<std::filesystem::path, std::unique_ptr<File>> files_;  // by canonical path
+  std::vector<std::filesystem::path> open_files_;                 // chain of includes, canonical
+  std::vector<Frame> frames_;
+  std::vector<std::string> objects_;
+  std::string object_path_;
+  std::size_t frames_before_file_ = 0, objects_before_file_ = 0;
+  Eigen::Affine3d transform_ = Eigen::Affine3d::Identity();
+  std::set<std::string> unknown_entities_;
+  std::uint64_t executed_ = 0;
+  std::size_t curved_count_ = 0;
+};
+
+}  // namespace reemit

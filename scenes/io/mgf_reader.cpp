@@ -1,0 +1,40 @@
+#include "scenes/io/mgf_reader.h"
+
+#include <fmt/format.h>
+
+#include "scenes/io/mgf_interpreter.h"
+#include "scenes/io/mgf_shapes.h"
+
+namespace reemit {
+
+Scene read_mgf_scene(const std::filesystem::path& file, const ReadOptions& /*options*/) {
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.source = file.string();
+  scene.bands = BandSet::rgb();
+  MgfInterpreter interpreter;
+  interpreter.run(file);
+  interpreter.finish(scene);
+  scene.notes.push_back(
+      "MGF: metres; emittance in lm/m2 was divided by pi and 179 lm/W; colours are linear Rec.709, "
+      "equal-energy white is neutral.");
+  if (interpreter.curved_count() > 0)
+    scene.notes.push_back(fmt::format(
+        "{} curved shapes were tessellated: cyl, cone and ring with {} segments per circle, sph and torus "
+        "with 16 to 32.",
+        interpreter.curved_count(), kMgfOpenSegments));
+  std::string emitters;
+  bool one_sided = false;
+  for (const Material& m : scene.materials) {
+    if (m.emits_both_sides) emitters += fmt::format("{}'{}'", emitters.empty() ? "" : ", ", m.name);
+    one_sided = one_sided || !m.two_sided;
+  }
+  if (!emitters.empty())
+    scene.notes.push_back("Two-sided materials look the same from both sides in MGF, so both sides emit: " +
+                          emitters);
+  if (one_sided)
+    scene.notes.push_back("One-sided surfaces are invisible from the back in MGF; here their back absorbs.");
+  return scene;
+}
+
+}  // namespace reemit

@@ -1,0 +1,44 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenes/io/mgf_contexts.h"
+#include "scenes/io/polygon_loops.h"
+
+namespace reemit {
+
+/// Segments per full circle of cyl, cone and ring. It does not depend on their size, so that caps and shells
+/// that meet on a circle share their vertices and no light leaks between them. The polygon inside a circle
+/// has 0.16 % less circumference and 0.64 % less area.
+inline constexpr int kMgfOpenSegments = 32;
+
+/// How sph and torus, which are closed by themselves, are tessellated.
+struct MgfRoundness {
+  int segments = 32;  ///< Per full circle, divisible by 8.
+  bool keep_area =
+      false;  ///< Enlarge the shape a little so that its area, and with it a luminaire's power, is exact.
+};
+
+/// Luminaires: 32 segments, exact area. Others: as many as keep the faces within 1 mm of the shape, from 16
+/// to 32.
+MgfRoundness mgf_roundness(double radius_m, bool emits);
+
+// Each function returns the faces of one MGF entity, in the coordinates of its vertices, fronts as the
+// description of the entity says [MGF]. Curved shapes carry shading normals, caps and polygons only if their
+// vertices do. They throw InputError at `where` when the entity is illegal: wrong sign or zero of a radius,
+// coinciding ends, ...
+
+/// f and fh: the first loop is the outline, the rest are holes. Seams are turned into holes.
+std::vector<Polygon> mgf_face(const std::vector<std::vector<MgfVertex>>& loops, const std::string& where);
+std::vector<Polygon> mgf_prism(std::span<const MgfVertex> outline, double length, const std::string& where);
+std::vector<Polygon> mgf_sphere(const Vec3& centre, double radius, const MgfRoundness& roundness,
+                                const std::string& where);
+/// cyl and cone; negative radii face inwards.
+std::vector<Polygon> mgf_cone(const Vec3& a, double radius_a, const Vec3& b, double radius_b,
+                              const std::string& where);
+std::vector<Polygon> mgf_ring(const MgfVertex& centre, double inner, double outer, const std::string& where);
+std::vector<Polygon> mgf_torus(const MgfVertex& centre, double inner, double outer,
+                               const MgfRoundness& roundness, const std::string& where);
+
+}  // namespace reemit

@@ -1,0 +1,24 @@
+#pragma once
+#include <vector>
+
+#include "scenes/model/vec.h"
+
+namespace reemit {
+
+/// A polygon as formats write it: corners by coordinates.
+struct Polygon {
+  std::vector<Vec3> outer;               ///< Counter-clockwise seen from the front.
+  std::vector<Vec3> normals;             ///< One per outer corner, or none.
+  std::vector<std::vector<Vec3>> holes;  ///< Any winding.
+};
+
+/// Area times unit normal of a closed loop (Newell's sum): exact for planar loops, the mean for others.
+Vec3 loop_area(const std::vector<Vec3>& loop);
+
+/// Cuts an outline that visits a corner more than once into simple loops: a hole that is tied to its outline
+/// by a seam (an edge traversed both ways) becomes a proper hole, dangling edges and repeated corners vanish,
+/// islands joined by seams become polygons of their own. Corners are the same when their coordinates are.
+/// Empty if nothing with three different corners is left. An outline without repetition comes back as it is.
+std::vector<Polygon> split_at_seams(Polygon polygon);
+
+}  // namespace reemit

@@ -1,0 +1,33 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+
+#include "scenes/io/polygon_loops.h"
+#include "scenes/model/surface.h"
+
+namespace reemit {
+
+/// Collects polygons into one Surface; corners and normals with the same coordinates are stored once.
+class SurfaceBuilder {
+ public:
+  SurfaceBuilder(std::string name, std::string source, MaterialId material);
+
+  void add(const Polygon& polygon, std::uint32_t source_line);
+  const Surface& surface() const { return surface_; }
+  Surface take() { return std::move(surface_); }
+
+ private:
+  using Key = std::array<double, 3>;
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const;
+  };
+  using Index = std::unordered_map<Key, std::uint32_t, KeyHash>;
+  static std::uint32_t index_of(const Vec3& p, std::vector<Vec3>& points, Index& index);
+
+  Surface surface_;
+  Index positions_, normals_;
+};
+
+}  // namespace reemit

@@ -1,0 +1,81 @@
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/run_program.h"
+
+namespace reemit::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(Usage, HelpOfEveryCommandShowsExamples) {
+  for (const char* command : {"", "solve", "render", "export", "audit", "info"}) {
+    std::vector<std::string> arguments{"--help"};
+    if (*command != '\0') arguments.insert(arguments.begin(), command);
+    const ProgramRun run = run_reemit(arguments);
+    EXPECT_EQ(run.exit_code, 0) << command;
+    EXPECT_THAT(run.out, HasSubstr("Example")) << command;
+    EXPECT_THAT(run.err, IsEmpty()) << command;
+  }
+}
+
+TEST(Usage, VersionGoesToStandardOutput) {
+  const ProgramRun run = run_reemit({"--version"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.out.rfind("reemit ", 0), 0U) << run.out;
+}
+
+struct Misuse {
+  std::vector<std::string> arguments;
+  std::string message;  ///< Part of what it says.
+};
+
+TEST(Usage, MistakesEndWithCode2AndAHint) {
+  const std::vector<Misuse> misuses{
+      {{}, "subcommand is required"},
+      {{"sovle", "room.json"}, "did you mean 'solve'"},
+      {{"solve", "room.json", "-o", "x.h5", "--eror", "1%"}, "did you mean '--error'"},
+      {{"solve", "room.json"}, "--output is required"},
+      {{"solve", "-o", "x.h5"}, "room is required"},
+      {{"solve", "room.json", "-o", "x.h5", "--error", "5"}, "write 1% or 0.01"},
+      {{"solve", "room.json", "-o", "x.h5", "--time", "soon"}, "2min"},
+      {{"solve", "room.json", "-o", "x.h5", "--packets", "-5"}, "1e6"},
+      {{"solve", "room.json", "-o", "x.h5", "--seed", "-1"}, "--seed"},
+      {{"solve", "room.json", "-o", "x.h5", "--threads", "-1"}, "--threads"},
+      {{"solve", "room.json", "-o", "x.h5", "--method", "magic"}, "--method"},
+      {{"solve", "room.json", "-o", "x.h5", "--zone-area", "0"}, "number above 0"},
+      {{"solve", "room.json", "-o", "x.h5", "--zone-area", "1", "--zone-area", "2"}, "--zone-area"},
+      {{"render", "x.h5", "-o", "x.png", "--size", "640"}, "640x480"},
+      {{"render", "x.h5", "-o", "x.png", "--eye", "1,2"}, "X,Y,Z"},
+      {{"render", "x.h5", "-o", "x.png", "--eye", "1,2,3"}, "--look-at"},
+      {{"render", "x.h5", "-o", "x.png", "--spp", "4", "--error", "1%"}, "excludes"},
+      {{"render", "x.h5", "-o", "x.gif"}, ".gif"},
+      {{"export", "x.h5", "-o", "x.xyz"}, ".xyz"},
+      {{"audit"}, "solution is required"},
+      {{"info", "a", "b"}, "unknown argument 'b'"},
+  };
+  for (const Misuse& misuse : misuses) {
+    const ProgramRun run = run_reemit(misuse.arguments);
+    std::string line = "reemit";
+    for (const std::string& argument : misuse.arguments) line += ' ' + argument;
+    EXPECT_EQ(run.exit_code, 2) << line;
+    EXPECT_THAT(run.err, HasSubstr("reemit: error: ")) << line;
+    EXPECT_THAT(run.err, HasSubstr(misuse.message)) << line;
+    EXPECT_THAT(run.out, IsEmpty()) << line;
+  }
+}
+
+TEST(Usage, FullStandardOutputIsReported) {
+  RunOptions options;
+  options.stdout_path = "/dev/full";
+  const ProgramRun run = run_reemit({"--help"}, options);
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("cannot write"));
+}
+
+}  // namespace
+}  // namespace reemit::test

@@ -1,0 +1,99 @@
+#include "viewer_export/still/default_cameras.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/test_rooms.h"
+
+namespace reemit::test {
+namespace {
+
+std::array<MaterialId, 6> all(MaterialId material) {
+  return {material, material, material, material, material, material};
+}
+
+/// Nearest distance from the eye to a side of the box; negative outside.
+double depth_inside(const Vec3& eye, const Vec3& low, const Vec3& high) {
+  return std::min((eye - low).minCoeff(), (high - eye).minCoeff());
+}
+
+TEST(DefaultCameras, StandInsideAClosedRoomAndLookDifferentWays) {
+  RoomBuilder room;
+  const Vec3 low(-3, 0, 1);
+  const Vec3 high(2, 2.7, 9);
+  room.box(low, high, all(room.material("wall", 0.5)), 2);
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  ASSERT_GE(cameras.size(), 2U);
+  for (const Camera& camera : cameras) {
+    EXPECT_GT(depth_inside(camera.eye, low, high), 0.2) << camera.name;
+    EXPECT_NEAR(camera.eye.y(), 1.6, 1e-9) << "a standing person";
+    EXPECT_NEAR(camera.look_at.y(), camera.eye.y(), 1e-9) << "level";
+  }
+  const Vec3 first = (cameras[0].look_at - cameras[0].eye).normalized();
+  const Vec3 second = (cameras[1].look_at - cameras[1].eye).normalized();
+  EXPECT_LT(first.dot(second), 0.5);
+  EXPECT_GT(std::abs(first.z()), 0.7) << "the room is longest along z";
+}
+
+TEST(DefaultCameras, AreTheSameEveryTime) {
+  RoomBuilder room;
+  room.box(Vec3(0, 0, 0), Vec3(4, 3, 5), all(room.material("wall", 0.5)), 2);
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const std::vector<Camera> once = default_cameras(room.scene(), rays);
+  const std::vector<Camera> again = default_cameras(room.scene(), rays);
+  ASSERT_EQ(once.size(), again.size());
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    EXPECT_EQ(once[i].name, again[i].name);
+    EXPECT_EQ(once[i].eye, again[i].eye);
+    EXPECT_EQ(once[i].look_at, again[i].look_at);
+  }
+}
+
+TEST(DefaultCameras, StayOutOfFurniture) {
+  // A solid block fills the middle of the room: an eye inside it would see backs only.
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5);
+  room.box(Vec3(0, 0, 0), Vec3(6, 3, 6), all(wall), 2);
+  const Vec3 block_low(1.5, 0.001, 1.5);
+  const Vec3 block_high(4.5, 2.8, 4.5);
+  const auto p = [&](int x, int y, int z) {
+    return Vec3(x ? block_high.x() : block_low.x(), y ? block_high.y() : block_low.y(),
+                z ? block_high.z() : block_low.z());
+  };
+  room.quad(wall, {p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)}, 1);
+  room.quad(wall, {p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)}, 1);
+  room.quad(wall, {p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)}, 1);
+  room.quad(wall, {p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}, 1);
+  room.quad(wall, {p(0, 1, 0), p(0, 1, 1), p(1, 1, 1), p(1, 1, 0)}, 1);
+  room.quad(wall, {p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)}, 1);
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  for (const Camera& camera : default_cameras(room.scene(), rays)) {
+    EXPECT_LT(depth_inside(camera.eye, block_low, block_high), 0) << camera.name;
+    EXPECT_GT(depth_inside(camera.eye, Vec3(0, 0, 0), Vec3(6, 3, 6)), 0) << camera.name;
+  }
+}
+
+TEST(DefaultCameras, ShowALonePolygonFromItsFront) {
+  RoomBuilder room;
+  room.quad(room.material("wall", 0.5), {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 1);
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  ASSERT_EQ(cameras.size(), 1U);
+  EXPECT_GT(cameras[0].eye.z(), 0.5);
+  EXPECT_LT(cameras[0].look_at.z(), cameras[0].eye.z());
+}
+
+TEST(DefaultCameras, UpFollowsTheFormat) {
+  Scene scene;
+  scene.source = "room.MGF";
+  EXPECT_EQ(up_direction(scene), Vec3(0, 0, 1));
+  scene.source = "room.gltf";
+  EXPECT_EQ(up_direction(scene), Vec3(0, 1, 0));
+}
+
+}  // namespace
+}  // namespace reemit::test

@@ -1,0 +1,58 @@
+#include "viewer_export/cli/camera_choice.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scenes/model/error.h"
+#include "viewer_export/still/default_cameras.h"
+
+namespace reemit::cli {
+namespace {
+
+Camera camera_of_options(const CameraOptions& options, const Scene& scene) {
+  Camera camera;
+  camera.name = "view";
+  camera.eye = *options.eye;
+  camera.look_at = options.look_at.value();
+  camera.up = options.up.value_or(up_direction(scene));
+  const Vec3 forward = camera.look_at - camera.eye;
+  if (!options.up && forward.cross(camera.up).norm() < 1e-6 * forward.norm()) {
+    camera.up =
+        Vec3(camera.up.z(), camera.up.x(), camera.up.y());  // straight up or down: any level way will do
+  }
+  camera.vertical_fov_deg = options.fov_deg;
+  camera.width = 640;
+  camera.height = 480;
+  return camera;
+}
+
+}  // namespace
+
+std::vector<Camera> cameras_of(const Scene& scene, const RayScene& rays) {
+  return scene.cameras.empty() ? default_cameras(scene, rays) : scene.cameras;
+}
+
+std::vector<Camera> choose_cameras(const CameraOptions& options, const Scene& scene, const RayScene& rays,
+                                   bool several) {
+  if (options.eye) return {camera_of_options(options, scene)};
+  std::vector<Camera> cameras = cameras_of(scene, rays);
+  if (options.name.empty() && !several) return {cameras.front()};
+  if (options.name.empty() || options.name == "all") {
+    if (!several && cameras.size() > 1) {
+      throw InputError("-o", fmt::format("{} cameras do not fit into one file", cameras.size()),
+                       "give a folder, as in -o pictures/");
+    }
+    return cameras;
+  }
+  const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                  [&](const Camera& camera) { return camera.name == options.name; });
+  if (found != cameras.end()) return {*found};
+  std::vector<std::string> names;
+  for (const Camera& camera : cameras) names.push_back(camera.name);
+  throw InputError("--camera", fmt::format("the room has no camera '{}'", options.name),
+                   fmt::format("it has: {}; or use 'all', or --eye and --look-at", fmt::join(names, ", ")));
+}
+
+}  // namespace reemit::cli

@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "solver/solution/room_of_solution.h"
+#include "solver/solution/solution_file.h"
+#include "viewer_export/cli/camera_choice.h"
+#include "viewer_export/cli/command_options.h"
+#include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/messages.h"
+#include "viewer_export/cli/option_values.h"
+#include "viewer_export/cli/output_path.h"
+#include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/text_table.h"
+#include "viewer_export/still/image_file.h"
+#include "viewer_export/still/render_still.h"
+
+namespace reemit::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderOptions {
+  fs::path solution;
+  std::optional<fs::path> room;
+  fs::path output;
+  std::string format = ".exr";  ///< Of pictures in a folder: an extension with its dot.
+  CameraOptions camera;
+  PixelSize size;  ///< 0x0: as the camera says.
+  StillSettings still;
+  ToneMapSettings tone_map;
+  OutputStyle style;
+
+  bool into_folder() const { return !output.has_filename() || fs::is_directory(output); }
+};
+
+/// One picture to make.
+struct Job {
+  Camera camera;
+  fs::path file;
+};
+
+/// Camera names become file names: what a file system or a shell might trip over becomes an underscore.
+std::string file_stem(const std::string& camera_name, std::set<std::string>& taken) {
+  std::string stem = camera_name;
+  for (char& c : stem) {
+    const auto letter = static_cast<unsigned char>(c);
+    if (letter < 128 && std::isalnum(letter) == 0 && c != '-' && c != '_' && c != '.') c = '_';
+  }
+  if (stem.empty() || stem.front() == '.') stem.insert(0, "_");
+  std::string unique = stem;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = fmt::format("{}-{}", stem, i);
+  return unique;
+}
+
+std::vector<Job> plan(const RenderOptions& options, const std::vector<Camera>& cameras) {
+  std::vector<Job> jobs;
+  std::set<std::string> taken;
+  for (const Camera& camera : cameras) {
+    jobs.push_back({camera, options.into_folder()
+                                ? options.output / (file_stem(camera.name, taken) + options.format)
+                                : options.output});
+  }
+  return jobs;
+}
+
+/// Camera rays per pixel, the mean over the picture.
+double mean_samples(const StillImage& image) {
+  if (image.samples.empty()) return 0;
+  return std::accumulate(image.samples.begin(), image.samples.end(), 0.0) /
+         static_cast<double>(image.samples.size());
+}
+
+class Renderer {
+ public:
+  Renderer(const RenderOptions& options, const Scene& scene, const Solution& solution, const RayScene& rays)
+      : options_(options), scene_(scene), solution_(solution), rays_(rays) {}
+
+  void render(const Job& job) {
+    const auto start = std::chrono::steady_clock::now();
+    Progress progress("rendering " + job.camera.name,
+                      progress_style(options_.style.quiet, options_.style.verbose));
+    const auto on_progress = [&progress](const StillProgress& now) {
+      progress.update(now.fraction, fmt::format("error {}", percent_text(now.error)));
+    };
+    const StillImage image = render_still(scene_, solution_, rays_, job.camera, options_.still, on_progress,
+                                          interrupt_.requested());
+    progress.finish();
+    std::optional<WrittenImage> written;
+    write_output([&] { written = write_still_image(image, job.file, options_.tone_map); });
+    report(job, image, *written,
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+
+  bool interrupted() const { return interrupt_.requested(); }
+
+  /// Prints the one document of --json.
+  void finish() const {
+    if (options_.style.json) fmt::print("{}\n", nlohmann::ordered_json{{"pictures", pictures_}}.dump(2));
+  }
+
+ private:
+  void report(const Job& job, const StillImage& image, const WrittenImage& written, double seconds) {
+    const std::string integrator = to_string(options_.still.integrator);
+    if (options_.style.json) {
+      nlohmann::ordered_json picture{{"file", job.file.string()}, {"camera", job.camera.name},
+                                     {"width_px", image.width},   {"height_px", image.height},
+                                     {"integrator", integrator},  {"samples_per_pixel", mean_samples(image)},
+                                     {"error", image.info.error}, {"seconds", seconds}};
+      if (written.tone_mapped) picture["exposure_ev"] = written.tone_map.exposure_ev();
+      pictures_.push_back(std::move(picture));
+      return;
+    }
+    fmt::print(
+        "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel, error {}, {}{:.2f} s\n", job.file.string(),
+        job.camera.name, image.width, image.height, integrator, mean_samples(image),
+        percent_text(image.info.error),
+        written.tone_mapped ? fmt::format("exposure {:+.2f} EV, ", written.tone_map.exposure_ev()) : "",
+        seconds);
+  }
+
+  const RenderOptions& options_;
+  const Scene& scene_;
+  const Solution& solution_;
+  const RayScene& rays_;
+  InterruptGuard interrupt_;
+  nlohmann::ordered_json pictures_ = nlohmann::ordered_json::array();
+};
+
+ExitCode run_render(RenderOptions options) {
+  const bool into_folder = options.into_folder();
+  if (!into_folder) {
+    image_format_of(options.output);  // refuses an unknown one before the work
+    check_output_file(options.output, options.solution);
+  }
+  const Solution solution = load_solution(options.solution);
+  const Scene scene = read_room_of(solution, options.solution, options.room);
+  const RayScene rays(solution.mesh);
+  const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, scene, rays, into_folder));
+  if (into_folder) make_output_directory(options.output);
+  for (const Job& job : jobs) check_output_file(job.file, options.solution);
+
+  options.still.width = options.size.width;
+  options.still.height = options.size.height;
+  Renderer renderer(options, scene, solution, rays);
+  std::size_t done = 0;
+  while (done < jobs.size() && !renderer.interrupted()) renderer.render(jobs[done++]);
+  if (renderer.interrupted() && !options.style.quiet) {
+    print_note(fmt::format("interrupted; {} of {} pictures written, the last one as far as it got", done,
+                           jobs.size()));
+  }
+  renderer.finish();
+  return ExitCode::kDone;
+}
+
+/// The formats as {"exr", ".exr"}, and what they are for the help.
+std::map<std::string, std::string> format_names() {
+  std::map<std::string, std::string> names;
+  for (const ImageFormat& format : image_formats()) {
+    names.emplace(format.extension.substr(1), format.extension);
+  }
+  return names;
+}
+
+std::string format_help() {
+  std::string help = "Picture file, or a folder (ending in /) for one picture per camera. By extension:";
+  for (const ImageFormat& format : image_formats()) {
+    help += fmt::format("\n{}  {}", format.extension, format.description);
+  }
+  return help;
+}
+
+void add_view_options(CLI::App& render, RenderOptions& options) {
+  render.option_defaults()->group("View");
+  auto* camera =
+      render.add_option("--camera", options.camera.name,
+                        "Camera of the room by name, or 'all' (default: the first; all into a folder).\n"
+                        "A room without cameras has auto-1, auto-2, ... inside its free space");
+  camera->type_name("NAME|all");
+  auto* eye = add_parsed_option(render, "--eye", options.camera.eye, parse_point, "X,Y,Z",
+                                "A camera of its own: where it is [m]");
+  eye->excludes(camera);
+  auto* look_at = add_parsed_option(render, "--look-at", options.camera.look_at, parse_point, "X,Y,Z",
+                                    "What it looks at [m]");
+  look_at->needs(eye);
+  eye->needs(look_at);
+  add_parsed_option(render, "--up", options.camera.up, parse_point, "X,Y,Z",
+                    "Which way is up (default: 0,0,1 for MGF rooms, else 0,1,0)")
+      ->needs(eye);
+  render.add_option("--fov", options.camera.fov_deg, "Full vertical field of view [deg]")
+      ->check(CLI::Range(0.1, 179.0))
+      ->type_name("DEG")
+      ->capture_default_str()
+      ->needs(eye);
+  add_parsed_option(render, "--size", options.size, parse_size, "WxH",
+                    "Size of the picture [px] (default: as the camera says; 640x480 with --eye)");
+}
+
+void add_quality_options(CLI::App& render, RenderOptions& options) {
+  render.option_defaults()->group("Light");
+  render
+      .add_option("--integrator", options.still.integrator,
+                  "gather: direct light and final gather over the zones; path: path tracing, the\n"
+                  "unbiased reference; zones: the zone values as they are")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Integrator>{
+          {"gather", Integrator::kGather}, {"path", Integrator::kPath}, {"zones", Integrator::kZones}}))
+      ->type_name("NAME")
+      ->default_str("gather");
+  auto* error =
+      add_parsed_option(render, "--error", options.still.error_target, parse_share, "SHARE",
+                        "Refine until the relative error (rms over pixels, worst band) is below: 2%");
+  render.add_option("--spp", options.still.spp, "Camera rays per pixel, rounded up to whole passes")
+      ->check(CLI::Range(1, 1048576))
+      ->type_name("N")
+      ->capture_default_str()
+      ->excludes(error);
+  render.add_option("--seed", options.still.seed, "Seed; the same seed gives the same picture")
+      ->type_name("S")
+      ->capture_default_str();
+  render.add_option("--threads", options.still.threads, "Threads; 0 = all cores")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+
+  render.option_defaults()->group("Picture");
+  render.add_option("--filter", options.still.filter, "Pixel filter: box or tent")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, PixelFilter>{{"box", PixelFilter::kBox}, {"tent", PixelFilter::kTent}}))
+      ->type_name("NAME")
+      ->default_str("box");
+  add_parsed_option(render, "--exposure", options.tone_map.exposure_ev, parse_number, "EV",
+                    "Exposure of PNG in stops: radiance times 2^EV (default: from the picture)");
+  render.add_option("--format", options.format, "Format of pictures in a folder")
+      ->transform(CLI::CheckedTransformer(format_names()))
+      ->type_name("NAME")
+      ->default_str("exr");
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App& render = *program.add_subcommand("render", "Make stills of a solved room from any viewpoint");
+  render.footer(
+      "Examples:\n"
+      "  reemit render room.h5 --camera all --format png -o pictures/\n"
+      "  reemit render room.h5 --eye 1,1.6,4 --look-at 2,1.2,0 --size 1280x720 --error 1% -o view.exr\n"
+      "  reemit render room.h5 --integrator path --spp 1024 -o reference.exr");
+  render.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
+  render.add_option("-o,--output", options->output, format_help())->required()->type_name("FILE|DIR/");
+  render.add_option("--room", options->room, "Room file, if it is no longer where it was solved from")
+      ->type_name("ROOM");
+  add_view_options(render, *options);
+  add_quality_options(render, *options);
+  render.option_defaults()->group("Output");
+  add_json_option(render, options->style);
+  add_progress_options(render, options->style);
+  render.callback([options, &action] { action = [options] { return run_render(*options); }; });
+}
+
+}  // namespace reemit::cli
