@@ -42,8 +42,7 @@ class MeanTest {
   /// Could this test have noticed a relative bias of that size? True if the limit is below half of it, so
   /// that a biased program passes with odds below those of a right one failing.
   bool would_notice(double relative_bias, double truth) const {
-    return 2 * (kErrors * standard_error() + kRounding * std::fabs(truth)) <
-           relative_bias * std::fabs(truth);
+    return 2 * (kErrors * standard_error() + kRounding * std::fabs(truth)) < relative_bias * std::fabs(truth);
   }
 
  private:
@@ -52,16 +51,16 @@ class MeanTest {
   double squares_ = 0;
 };
 
-/// Do two independent estimates of the same quantity agree? 5 standard errors of the difference; odds as above
-/// with the smaller of the two counts.
+/// Do two independent estimates of the same quantity agree? 5 standard errors of the difference; odds as
+/// above with the smaller of the two counts.
 inline ::testing::AssertionResult agree(const MeanTest& a, const MeanTest& b) {
   const double error = std::hypot(a.standard_error(), b.standard_error());
   const double difference = std::fabs(a.mean() - b.mean());
   const double limit = MeanTest::kErrors * error + MeanTest::kRounding * std::fabs(a.mean());
   if (a.count() >= 32 && b.count() >= 32 && difference <= limit) return ::testing::AssertionSuccess();
-  return ::testing::AssertionFailure() << a.mean() << " +- " << a.standard_error() << " against " << b.mean()
-                                       << " +- " << b.standard_error() << ": off by " << difference
-                                       << ", limit " << limit;
+  return ::testing::AssertionFailure()
+         << a.mean() << " +- " << a.standard_error() << " against " << b.mean() << " +- "
+         << b.standard_error() << ": off by " << difference << ", limit " << limit;
 }
 
 }  // namespace reemit::test
