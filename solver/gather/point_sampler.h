@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <bit>
 #include <cstdint>
 
 #include "solver/sampling/counter_rng.h"
@@ -8,16 +7,16 @@
 
 namespace reemit {
 
-/// The uniform numbers of one pixel or vertex in one pass: randomised Sobol' points, scrambled afresh for
-/// every one of them and every pass, so that neighbours share no pattern and passes are independent. Place,
-/// luminaires and hemisphere have sequences of their own whose order is shuffled against each other within
-/// the pass.
+/// The uniform numbers of one replicate of one pixel or vertex: randomised Sobol' points, scrambled afresh
+/// for every one of them, so that neighbours share no pattern and replicates are independent. More samples of
+/// a replicate continue its sequences. Place, luminaires and hemisphere have sequences of their own whose
+/// order is shuffled against each other.
 class PointSampler {
  public:
-  /// `index`: of the pixel or vertex. `samples`: of the pass, a power of two.
-  PointSampler(std::uint64_t seed, RngPurpose purpose, std::uint64_t index, int pass, int samples)
-      : PointSampler(CounterRng(seed, purpose), index, static_cast<std::uint32_t>(pass),
-                     static_cast<std::uint32_t>(samples)) {}
+  /// `index`: of the pixel or vertex. `log2_samples`: samples 0 .. 2^log2_samples - 1 may be asked for
+  /// [0,32).
+  PointSampler(std::uint64_t seed, RngPurpose purpose, std::uint64_t index, int replicate, int log2_samples)
+      : PointSampler(CounterRng(seed, purpose), index, static_cast<std::uint32_t>(replicate), log2_samples) {}
 
   /// Where a sample lies: on the film, or around the vertex.
   std::array<float, 2> place(int sample) const {
@@ -36,21 +35,20 @@ class PointSampler {
   }
 
  private:
-  PointSampler(const CounterRng& rng, std::uint64_t index, std::uint32_t pass, std::uint32_t samples)
-      : PointSampler(rng.bits4(index, pass, 0), rng.bits4(index, pass, 1), samples) {}
-  PointSampler(const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b,
-               std::uint32_t samples)
+  PointSampler(const CounterRng& rng, std::uint64_t index, std::uint32_t replicate, int log2_samples)
+      : PointSampler(rng.bits4(index, replicate, 0), rng.bits4(index, replicate, 1), log2_samples) {}
+  PointSampler(const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b, int log2_samples)
       : place_(join(a[0], a[1])),
         light_(join(a[2], a[3])),
         hemisphere_(join(b[0], b[1])),
         light_shuffle_(b[2]),
         hemisphere_shuffle_(b[3]),
-        free_bits_(32 - std::countr_zero(samples)) {}
+        free_bits_(32 - log2_samples) {}
 
   static std::uint64_t join(std::uint32_t high, std::uint32_t low) {
     return (std::uint64_t{high} << 32) | low;
   }
-  /// Nested uniform shuffle of the samples of a pass [BUR20, sec. 4]: keeps every aligned block together.
+  /// Nested uniform shuffle of the samples [BUR20, sec. 4]: keeps every aligned block together.
   std::uint32_t position(int sample, std::uint32_t shuffle, int ray, int rays) const {
     std::uint32_t i = 0;
     if (free_bits_ < 32)

@@ -78,7 +78,8 @@ class VertexGatherer {
 
  private:
   void add_replicate(std::size_t v, int replicate, float* direct, float* indirect, GatherBatch& batch) const {
-    const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, replicate, points_);
+    const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, replicate,
+                               std::countr_zero(static_cast<unsigned>(points_)));
     const std::vector<float> light_weight(bands_, 1.0F / static_cast<float>(points_));
     const std::vector<float> ray_weight(bands_, 1.0F / static_cast<float>(points_ * gathers_));
     for (int i = 0; i < points_; ++i) {
