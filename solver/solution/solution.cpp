@@ -35,8 +35,6 @@ std::string to_string(StopReason reason) {
       return "largest number of batches reached";
     case StopReason::kInterrupted:
       return "interrupted";
-    case StopReason::kBatchLimit:
-      return "batch limit reached";
     case StopReason::kNoLuminaire:
       return "no luminaire in the room";
   }
