@@ -31,8 +31,6 @@ std::string to_string(StopReason reason) {
       return "time limit reached";
     case StopReason::kPacketCount:
       return "packet count reached";
-    case StopReason::kBatchLimit:
-      return "largest number of batches reached";
     case StopReason::kInterrupted:
       return "interrupted";
     case StopReason::kNoLuminaire:
