@@ -6,8 +6,8 @@
 
 namespace reemit {
 
-/// Reads glTF 2.0, text or binary. The scene has not been through finish_scene.
-/// Throws InputError with JSON pointer.
+/// Reads glTF 2.0, text or binary (docs/gltf_input.md). The scene has not been through finish_scene.
+/// Throws InputError that names the node, mesh and primitive, accessor or JSON pointer.
 Scene read_gltf_scene(const std::filesystem::path& file, const ReadOptions& options);
 
 }  // namespace reemit

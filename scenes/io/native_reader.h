@@ -6,8 +6,8 @@
 
 namespace reemit {
 
-/// Reads reemit's own room format. The scene has not been through finish_scene.
-/// Throws InputError with  JSON, in metres:JSON pointer.
+/// Reads a room in reemit's own JSON format (docs/room_format.md). The scene has not been through
+/// finish_scene. Throws InputError with file and JSON pointer.
 Scene read_native_scene(const std::filesystem::path& file, const ReadOptions& options);
 
 }  // namespace reemit

@@ -4,13 +4,13 @@
 #include <numbers>
 #include <vector>
 
+#include "solver/gather/point_sampler.h"
 #include "solver/reflect/lambert.h"
-#include "viewer_export/still/pixel_sampler.h"
 
 namespace reemit {
 
 struct TileRenderer::PixelSums {
-  PixelSampler sampler;
+  PointSampler sampler;
   std::uint64_t index;  // of the pixel in the picture
   int pass;
   float share;  // 1 / samples
@@ -45,7 +45,7 @@ void TileRenderer::render(const Tile& tile, int pass, int samples, Film& film) c
     for (int x = tile.x0; x < tile.x1; ++x, next += 3 * bands) {
       const auto index = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(film.image().width) +
                          static_cast<std::uint64_t>(x);
-      PixelSums sums{PixelSampler(settings_->seed, index, pass, samples),
+      PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, index, pass, samples),
                      index,
                      pass,
                      1.0F / static_cast<float>(samples),
@@ -55,7 +55,7 @@ void TileRenderer::render(const Tile& tile, int pass, int samples, Film& film) c
                      &weight,
                      {next, next + bands, next + 2 * bands, Vec3(0, 0, 0), 0, 0, samples}};
       for (int s = 0; s < samples; ++s) {
-        const std::array<float, 2> u = sums.sampler.film(s);
+        const std::array<float, 2> u = sums.sampler.place(s);
         add_sample(x + 0.5 + sample_filter(settings_->filter, u[0]),
                    y + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
       }

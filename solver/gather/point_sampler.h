@@ -8,37 +8,39 @@
 
 namespace reemit {
 
-/// The uniform numbers of one pixel in one pass: randomised Sobol' points, scrambled afresh for every pixel
-/// and pass, so that neighbours share no pattern and passes are independent. Film, luminaires and hemisphere
-/// have sequences of their own whose order is shuffled against each other within the pass.
-class PixelSampler {
+/// The uniform numbers of one pixel or vertex in one pass: randomised Sobol' points, scrambled afresh for
+/// every one of them and every pass, so that neighbours share no pattern and passes are independent. Place,
+/// luminaires and hemisphere have sequences of their own whose order is shuffled against each other within
+/// the pass.
+class PointSampler {
  public:
-  /// `samples`: camera rays of the pass, a power of two.
-  PixelSampler(std::uint64_t seed, std::uint64_t pixel, int pass, int samples)
-      : PixelSampler(CounterRng(seed, RngPurpose::kPixel), pixel, static_cast<std::uint32_t>(pass),
+  /// `index`: of the pixel or vertex. `samples`: of the pass, a power of two.
+  PointSampler(std::uint64_t seed, RngPurpose purpose, std::uint64_t index, int pass, int samples)
+      : PointSampler(CounterRng(seed, purpose), index, static_cast<std::uint32_t>(pass),
                      static_cast<std::uint32_t>(samples)) {}
 
-  std::array<float, 2> film(int sample) const {
+  /// Where a sample lies: on the film, or around the vertex.
+  std::array<float, 2> place(int sample) const {
     const auto i = static_cast<std::uint32_t>(sample);
-    return {film_.sample(i, 0), film_.sample(i, 1)};
+    return {place_.sample(i, 0), place_.sample(i, 1)};
   }
-  /// Shadow ray `ray` of `rays` of a camera ray.
+  /// Shadow ray `ray` of `rays` of a sample.
   std::array<float, 3> light(int sample, int ray, int rays) const {
     const std::uint32_t i = position(sample, light_shuffle_, ray, rays);
     return {light_.sample(i, 0), light_.sample(i, 1), light_.sample(i, 2)};
   }
-  /// Gather ray `ray` of `rays` of a camera ray.
+  /// Gather ray `ray` of `rays` of a sample.
   std::array<float, 2> hemisphere(int sample, int ray, int rays) const {
     const std::uint32_t i = position(sample, hemisphere_shuffle_, ray, rays);
     return {hemisphere_.sample(i, 0), hemisphere_.sample(i, 1)};
   }
 
  private:
-  PixelSampler(const CounterRng& rng, std::uint64_t pixel, std::uint32_t pass, std::uint32_t samples)
-      : PixelSampler(rng.bits4(pixel, pass, 0), rng.bits4(pixel, pass, 1), samples) {}
-  PixelSampler(const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b,
+  PointSampler(const CounterRng& rng, std::uint64_t index, std::uint32_t pass, std::uint32_t samples)
+      : PointSampler(rng.bits4(index, pass, 0), rng.bits4(index, pass, 1), samples) {}
+  PointSampler(const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b,
                std::uint32_t samples)
-      : film_(join(a[0], a[1])),
+      : place_(join(a[0], a[1])),
         light_(join(a[2], a[3])),
         hemisphere_(join(b[0], b[1])),
         light_shuffle_(b[2]),
@@ -56,7 +58,7 @@ class PixelSampler {
     return i * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(ray);
   }
 
-  SobolSequence film_, light_, hemisphere_;
+  SobolSequence place_, light_, hemisphere_;
   std::uint32_t light_shuffle_, hemisphere_shuffle_;
   int free_bits_;
 };

@@ -1,0 +1,23 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <tiny_gltf.h>
+
+namespace reemit {
+
+/// A parsed glTF file whose images are still encoded: tinygltf::Image::image holds the bytes of the image
+/// file, or nothing where they lie in a buffer view or could not be found.
+struct GltfModel {
+  tinygltf::Model model;
+  std::string file;                   ///< For messages.
+  std::vector<std::string> warnings;  ///< Of the parser.
+};
+
+/// Parses a .gltf or .glb file with its buffers. Throws InputError for a file that is cut off, chunks that do
+/// not fit, malformed JSON, missing buffers, another version than 2 and required extensions that are not
+/// supported.
+GltfModel load_gltf_model(const std::filesystem::path& file);
+
+}  // namespace reemit

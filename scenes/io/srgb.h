@@ -1,0 +1,11 @@
+#pragma once
+#include <cmath>
+
+namespace reemit {
+
+/// Linear light [0,1] of an sRGB component [0,1] (IEC 61966-2-1).
+inline double linear_from_srgb(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+}  // namespace reemit

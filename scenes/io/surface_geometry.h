@@ -1,0 +1,21 @@
+#pragma once
+#include <cstddef>
+
+#include "scenes/model/surface.h"
+
+namespace reemit {
+
+/// Largest number of faces that a room may have after arrays and instances are expanded.
+inline constexpr std::size_t kMostFaces = 10'000'000;
+
+/// Area of all faces [m2], holes taken off: half the length of the vector area, which for a polygon that is
+/// not planar is the area of its projection along its mean normal.
+double surface_area(const Surface& surface);
+
+/// Turns fronts into backs: loops are reversed and normals negated.
+void flip_surface(Surface& surface);
+
+/// Applies a transform; one that mirrors also turns the loops, so that fronts stay fronts.
+void transform_surface(const Eigen::Affine3d& transform, Surface& surface);
+
+}  // namespace reemit
