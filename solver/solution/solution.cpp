@@ -33,6 +33,8 @@ std::string to_string(StopReason reason) {
       return "packet count reached";
     case StopReason::kInterrupted:
       return "interrupted";
+    case StopReason::kBatchLimit:
+      return "batch limit reached";
     case StopReason::kNoLuminaire:
       return "no luminaire in the room";
   }
