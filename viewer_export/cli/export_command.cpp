@@ -1,6 +1,5 @@
 #include <chrono>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -91,34 +90,20 @@ void add_export_command(CLI::App& program, Action& action) {
       "  reemit export room.h5 -o quick.glb --values zones");
   command.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
   command.add_option("-o,--output", options->output, output_help())->required()->type_name("FILE");
-  command.add_option("--room", options->room, "Room file, if it is no longer where it was solved from")
-      ->type_name("ROOM");
+  add_room_option(command, options->room);
 
   command.option_defaults()->group("Values");
-  auto* values =
-      command.add_option("--values", options->vertex.average_zones,
-                         "gather: direct light and final gather at each vertex; zones: the mean of the\n"
-                         "zones around it, quick and as coarse as the zones");
-  values->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"gather", false}, {"zones", true}}))
-      ->type_name("NAME")
-      ->default_str("gather");
-  command.add_option("--samples", options->vertex.gather_rays, "Gather rays per vertex, rounded up")
-      ->check(CLI::Range(1, 1048576))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--light-samples", options->vertex.light_samples, "Shadow rays per vertex, rounded up")
-      ->check(CLI::Range(1, 65536))
-      ->type_name("N")
-      ->capture_default_str();
+  add_choice_option<bool>(command, "--values", options->vertex.average_zones,
+                          {{"gather", false}, {"zones", true}},
+                          "gather: direct light and final gather at each vertex; zones: the mean of the\n"
+                          "zones around it, quick and as coarse as the zones");
+  add_integer_option(command, "--samples", options->vertex.gather_rays, 1, 1048576,
+                     "Gather rays per vertex, rounded up");
+  add_integer_option(command, "--light-samples", options->vertex.light_samples, 1, 65536,
+                     "Shadow rays per vertex, rounded up");
   command.add_flag("--all-zones", options->vertex.all_zones,
                    "Keep the backs of surfaces that no light reached and that do not emit");
-  command.add_option("--seed", options->vertex.seed, "Seed; the same seed gives the same values")
-      ->type_name("S")
-      ->capture_default_str();
-  command.add_option("--threads", options->vertex.threads, "Threads; 0 = all cores")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
+  add_seed_and_threads(command, options->vertex.seed, options->vertex.threads);
   add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
                     "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
                     "(default: from the values)");
