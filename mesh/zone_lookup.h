@@ -28,22 +28,32 @@ struct Barycentric {
   double u, v;
 };
 
-/// Corners of zone `zone` of a base triangle, counter-clockwise as the triangle itself. Inverse of
-/// zone_in_triangle.
-inline std::array<Barycentric, 3> zone_corners(std::uint32_t divisions, std::uint32_t zone) {
+/// Place of a zone in the grid of its base triangle: cell (i,j) spans u n in [i,i+1], v n in [j,j+1].
+struct ZoneCell {
+  std::int64_t i, j;
+  bool upper;  ///< The half of the cell away from its corner (i,j).
+};
+
+/// Inverse of the numbering of zone_in_triangle.
+inline ZoneCell zone_cell(std::uint32_t divisions, std::uint32_t zone) {
   const auto n = static_cast<std::int64_t>(divisions);
   const auto z = static_cast<std::int64_t>(zone);
   auto i = static_cast<std::int64_t>(static_cast<double>(n) - std::sqrt(static_cast<double>(n * n - z)));
   while (2 * n * (i + 1) - (i + 1) * (i + 1) <= z) ++i;  // the square root may be off by one for large n
   while (2 * n * i - i * i > z) --i;
   const std::int64_t in_row = z - (2 * n * i - i * i);
-  const std::int64_t j = in_row / 2;
-  const double h = 1.0 / static_cast<double>(n);
+  return {i, in_row / 2, in_row % 2 != 0};
+}
+
+/// Corners of zone `zone` of a base triangle, counter-clockwise as the triangle itself.
+inline std::array<Barycentric, 3> zone_corners(std::uint32_t divisions, std::uint32_t zone) {
+  const auto [i, j, upper] = zone_cell(divisions, zone);
+  const double h = 1.0 / static_cast<double>(divisions);
   const auto at = [h](std::int64_t a, std::int64_t b) {
     return Barycentric{h * static_cast<double>(a), h * static_cast<double>(b)};
   };
-  if (in_row % 2 == 0) return {at(i, j), at(i + 1, j), at(i, j + 1)};
-  return {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+  if (upper) return {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+  return {at(i, j), at(i + 1, j), at(i, j + 1)};
 }
 
 }  // namespace reemit

@@ -1,6 +1,7 @@
 #include "solver/shoot/closed_room_check.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "scenes/model/error.h"
 #include "solver/shoot/flight.h"
@@ -29,12 +30,14 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
     const FlightNumbers numbers(SamplingKind::kSobol, seed, 0, 0);
     const CounterRng rng(seed, RngPurpose::kProbe);
     FlightCursor cursor(transport, flight, 0);
+    std::vector<std::int64_t> power(16 * transport.bands());
     for (std::uint32_t first = 0; first < flight.packets(); first += 16) {
       const int count = static_cast<int>(std::min<std::uint32_t>(16, flight.packets() - first));
       Ray16 rays;
       Hit16 hits;
-      std::uint32_t source[16];
-      cursor.start16(first, count, numbers, rays, source);
+      ZoneLanes lanes{};
+      alignas(64) float u[4][16] = {};
+      cursor.start16(first, count, numbers, rays, power.data());
       for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
         transport.rays().closest16(rays, count, hits);
         for (int lane = 0; lane < count; ++lane) {
@@ -42,9 +45,11 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
           const ZoneId zone =
               transport.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
           if (!zone.valid()) return;
-          const auto u = rng.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
-          TransportScene::start_ray(transport.zone_patch(zone), u[0], u[1], u[2], u[3], rays, lane);
+          const auto x = rng.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
+          for (std::size_t d = 0; d < 4; ++d) u[d][lane] = x[d];
+          transport.put_zone(zone, lanes, lane);
         }
+        start_rays(lanes, u, rays);
       }
     }
     throw InputError(scene.source,

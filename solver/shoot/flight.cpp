@@ -1,6 +1,7 @@
 #include "solver/shoot/flight.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace reemit {
@@ -9,10 +10,6 @@ namespace {
 std::uint64_t scramble_seed(std::uint64_t seed, std::uint32_t batch, std::uint32_t flight) {
   const auto bits = CounterRng(seed, RngPurpose::kScramble).bits4(0, batch, flight);
   return (std::uint64_t{bits[0]} << 32) | bits[1];
-}
-
-TransportScene::ZonePatch empty_patch() {
-  return {Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero(), Frame(Vec3f::UnitZ())};
 }
 
 }  // namespace
@@ -55,37 +52,49 @@ void FlightNumbers::get16(std::uint32_t first, float u[4][16]) const {
 FlightCursor::FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet)
     : transport_(transport),
       flight_(flight),
-      current_(static_cast<std::size_t>(
-                   std::upper_bound(flight.first_packet.begin(), flight.first_packet.end(), first_packet) -
-                   flight.first_packet.begin()) -
-               1),
-      patch_(empty_patch()) {
-  enter_source();
+      bands_(transport.bands()),
+      share_(transport.bands()),
+      remainder_(transport.bands()) {
+  const auto after = std::upper_bound(flight.first_packet.begin(), flight.first_packet.end(), first_packet);
+  enter_source(static_cast<std::size_t>(after - flight.first_packet.begin()) - 1);
 }
 
-void FlightCursor::enter_source() {
-  if (current_ < flight_.sources.size() && flight_.sources[current_].zone.valid())
-    patch_ = transport_.zone_patch(flight_.sources[current_].zone);
+void FlightCursor::enter_source(std::size_t source) {
+  current_ = source;
+  begin_ = flight_.first_packet[source];
+  end_ = flight_.first_packet[source + 1];
+  const std::int64_t packets = end_ - begin_;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    const std::int64_t quanta = flight_.quanta[source * bands_ + b];
+    share_[b] = packets == 1 ? quanta : quanta / packets;
+    remainder_[b] = quanta - share_[b] * packets;
+  }
 }
 
 void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
-                           std::uint32_t* source) {
-  float u[4][16];
+                           std::int64_t* quanta) {
+  alignas(64) float u[4][16];
   numbers.get16(first, u);
+  std::array<const PunctualLight*, 16> light{};
+  bool any_light = false;
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t packet = first + static_cast<std::uint32_t>(lane);
-    if (packet >= flight_.first_packet[current_ + 1]) {
-      while (packet >= flight_.first_packet[current_ + 1]) ++current_;
-      enter_source();
-    }
-    source[lane] = static_cast<std::uint32_t>(current_);
+    while (packet >= end_) enter_source(current_ + 1);
+    const std::int64_t k = packet - begin_;
+    for (std::size_t b = 0; b < bands_; ++b) *quanta++ = share_[b] + (k < remainder_[b] ? 1 : 0);
     const EmissionSource& s = flight_.sources[current_];
-    if (s.zone.valid())
-      TransportScene::start_ray(patch_, u[0][lane], u[1][lane], u[2][lane], u[3][lane], rays, lane);
-    else
-      start_light_ray(transport_.scene().lights[s.light], transport_.rays(), u[0][lane], u[1][lane],
-                      u[2][lane], u[3][lane], rays, lane);
+    if (s.zone.valid()) {
+      transport_.put_zone(s.zone, lanes_, lane);
+    } else {
+      light[static_cast<std::size_t>(lane)] = &transport_.scene().lights[s.light];
+      any_light = true;
+    }
   }
+  start_rays(lanes_, u, rays);
+  if (!any_light) return;
+  for (int lane = 0; lane < count; ++lane)
+    if (const PunctualLight* l = light[static_cast<std::size_t>(lane)])
+      start_light_ray(*l, transport_.rays(), u[0][lane], u[1][lane], u[2][lane], u[3][lane], rays, lane);
 }
 
 }  // namespace reemit

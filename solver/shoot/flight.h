@@ -29,12 +29,6 @@ struct Flight {
   }
 };
 
-/// Quanta of packet `k` of `n` that share `quanta`: equal to within one, and they add up exactly.
-inline std::int64_t packet_share(std::int64_t quanta, std::uint32_t k, std::uint32_t n) {
-  const std::int64_t each = quanta / n;
-  return each + (static_cast<std::int64_t>(k) < quanta - each * n ? 1 : 0);
-}
-
 /// The first flight of a batch: `packets` packets over the luminaires in proportion to power, at least one
 /// each. Sources keep exactly their own power; only how many packets carry it depends on `offset` in [0,1).
 Flight plan_emission_flight(const Emission& emission, std::size_t bands, std::uint32_t packets,
@@ -55,22 +49,29 @@ class FlightNumbers {
   std::uint32_t flight_;
 };
 
-/// Source of a packet and its rays: walks along a flight in packet order.
+/// Rays and power of packets: walks along a flight in packet order.
 class FlightCursor {
  public:
+  /// Starts at packet `first_packet`, which the flight has.
   FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet);
 
-  /// Starts packets first .. first+count-1 (first is a multiple of 16, count <= 16). source[lane] is the
-  /// index of each packet's source within the flight.
+  /// Starts packets first .. first+count-1 (first is a multiple of 16, count <= 16).
+  /// quanta[lane * bands + band] becomes the power of each.
   void start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
-               std::uint32_t* source);
+               std::int64_t* quanta);
 
  private:
-  void enter_source();
+  void enter_source(std::size_t source);
+
   const TransportScene& transport_;
   const Flight& flight_;
-  std::size_t current_;
-  TransportScene::ZonePatch patch_;
+  std::size_t bands_;
+  std::size_t current_ = 0;
+  std::uint32_t begin_ = 0;  // packets of the current source
+  std::uint32_t end_ = 0;
+  std::vector<std::int64_t> share_;      // of one packet of the current source, per band
+  std::vector<std::int64_t> remainder_;  // the first so many packets carry one quantum more
+  ZoneLanes lanes_{};
 };
 
 }  // namespace reemit

@@ -27,26 +27,23 @@ void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     LocalBooks local(books);
+    std::vector<std::int64_t> power(16 * bands);
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
       const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
       FlightCursor cursor(transport, flight, begin);
       Ray16 rays;
       Hit16 hits;
-      std::uint32_t source[16];
       for (std::uint32_t first = begin; first < end; first += 16) {
         const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-        cursor.start16(first, count, numbers, rays, source);
+        cursor.start16(first, count, numbers, rays, power.data());
         if (batch.ray_observer != nullptr) (*batch.ray_observer)(rays, count);
         transport.rays().closest16(rays, count, hits);
         for (int lane = 0; lane < count; ++lane) {
-          const std::uint32_t s = source[lane];
-          const std::uint32_t k = first + static_cast<std::uint32_t>(lane) - flight.first_packet[s];
-          const std::uint32_t n = flight.first_packet[s + 1] - flight.first_packet[s];
-          const std::int64_t* quanta = &flight.quanta[s * bands];
+          const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands];
           if (hits.triangle[lane] == RayScene::kMiss) {
             for (std::size_t b = 0; b < bands; ++b)
-              local.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, packet_share(quanta[b], k, n));
+              local.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
             continue;
           }
           const ZoneId zone =
@@ -58,7 +55,7 @@ void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
             account =
                 &books.absorbed_on_backs
                      [transport.mesh().triangle(TriangleId(hits.triangle[lane])).surface.index() * bands];
-          for (std::size_t b = 0; b < bands; ++b) book(account[b], packet_share(quanta[b], k, n));
+          for (std::size_t b = 0; b < bands; ++b) book(account[b], quanta[b]);
         }
       }
     }

@@ -5,6 +5,7 @@
 #include "mesh/zone_mesh.h"
 #include "scenes/model/scene.h"
 #include "solver/sampling/warp.h"
+#include "solver/shoot/ray_lanes.h"
 #include "solver/trace/ray_scene.h"
 
 namespace reemit {
@@ -26,17 +27,29 @@ class TransportScene {
   const double* reflectance(SurfaceId s) const { return &reflectance_[s.index() * bands_]; }
   double largest_reflectance(SurfaceId s) const { return largest_reflectance_[s.index()]; }
 
-  /// The part of a base triangle that one zone covers, ready to be sampled.
-  struct ZonePatch {
-    Vec3f corner, edge1, edge2;  ///< Normalised space; a point is corner + a edge1 + b edge2.
-    Vec3f towards_middle;        ///< Middle of the parent triangle.
-    Frame frame;                 ///< About the normal of the side the zone is on.
-  };
-  ZonePatch zone_patch(ZoneId z) const;
-
-  /// Starts lane `lane` of a ray block at a uniform point of a zone in a cosine-distributed direction.
-  static void start_ray(const ZonePatch& patch, float u0, float u1, float u2, float u3, Ray16& rays,
-                        int lane);
+  /// Puts the geometry of a zone into one lane.
+  void put_zone(ZoneId z, ZoneLanes& lanes, int lane) const {
+    const TriangleId t = mesh_->zone_triangle(z);
+    const TrianglePatch& p = patches_[t.index()];
+    std::size_t in_side = z.index() - p.first_zone;
+    const std::size_t per_side = std::size_t{p.divisions} * p.divisions;
+    const float side = in_side < per_side ? 1.0F : -1.0F;
+    if (in_side >= per_side) in_side -= per_side;
+    const ZoneCell cell = zone_cell(p.divisions, static_cast<std::uint32_t>(in_side));
+    // An upper zone is a lower one turned about the middle of their cell.
+    const float turn = cell.upper ? -1.0F : 1.0F;
+    const auto i = static_cast<float>(cell.i + (cell.upper ? 1 : 0));
+    const auto j = static_cast<float>(cell.j + (cell.upper ? 1 : 0));
+    for (int k = 0; k < 3; ++k) {
+      lanes.corner[k][lane] = p.corner[k] + i * p.edge1[k] + j * p.edge2[k];
+      lanes.edge1[k][lane] = turn * p.edge1[k];
+      lanes.edge2[k][lane] = turn * p.edge2[k];
+      lanes.middle[k][lane] = p.middle[k];
+      lanes.tangent[k][lane] = p.frame.tangent[k];
+      lanes.bitangent[k][lane] = p.frame.bitangent[k];
+      lanes.normal[k][lane] = side * p.frame.normal[k];
+    }
+  }
 
   /// Zone that a hit belongs to; not valid when it is the back of a one-sided face.
   ZoneId zone_of(std::uint32_t triangle, float u, float v, bool front) const {
@@ -46,10 +59,19 @@ class TransportScene {
   }
 
  private:
+  /// A base triangle with the edges of one of its zones (normalised space).
+  struct TrianglePatch {
+    Vec3f corner, edge1, edge2, middle;
+    Frame frame;  // about the front normal
+    std::uint32_t divisions;
+    std::size_t first_zone;
+  };
+
   const Scene* scene_;
   const ZoneMesh* mesh_;
   const RayScene* rays_;
   std::size_t bands_;
+  std::vector<TrianglePatch> patches_;
   std::vector<double> reflectance_;
   std::vector<double> largest_reflectance_;
 };

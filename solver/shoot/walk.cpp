@@ -47,22 +47,13 @@ class WalkTask {
     quanta_.clear();
     FlightCursor cursor(transport_, flight, begin);
     Ray16 rays;
-    std::uint32_t source[16];
-    std::vector<std::int64_t> share(16 * bands_);
+    std::vector<std::int64_t> power(16 * bands_);
     for (std::uint32_t first = begin; first < end; first += 16) {
       const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-      cursor.start16(first, count, numbers, rays, source);
-      for (int lane = 0; lane < count; ++lane) {
-        const std::uint32_t s = source[lane];
-        const std::uint32_t k = first + static_cast<std::uint32_t>(lane) - flight.first_packet[s];
-        const std::uint32_t n = flight.first_packet[s + 1] - flight.first_packet[s];
-        for (std::size_t b = 0; b < bands_; ++b)
-          share[static_cast<std::size_t>(lane) * bands_ + b] =
-              packet_share(flight.quanta[s * bands_ + b], k, n);
-      }
+      cursor.start16(first, count, numbers, rays, power.data());
       arrive(
           rays, count, books_.direct, [&](int lane) { return first + static_cast<std::uint32_t>(lane); },
-          [&](int lane) { return &share[static_cast<std::size_t>(lane) * bands_]; }, 0);
+          power.data(), 0);
     }
   }
 
@@ -76,28 +67,31 @@ class WalkTask {
     Ray16 rays;
     for (std::size_t first = 0; first < from_ids_.size(); first += 16) {
       const int count = static_cast<int>(std::min<std::size_t>(16, from_ids_.size() - first));
+      alignas(64) float u[4][16] = {};
       for (int lane = 0; lane < count; ++lane) {
         const std::size_t i = first + static_cast<std::size_t>(lane);
-        const auto u = rng_.uniform4(from_ids_[i], batch_, 2 * bounce);
-        TransportScene::start_ray(transport_.zone_patch(from_zones_[i]), u[0], u[1], u[2], u[3], rays, lane);
+        const auto x = rng_.uniform4(from_ids_[i], batch_, 2 * bounce);
+        for (std::size_t d = 0; d < 4; ++d) u[d][lane] = x[d];
+        transport_.put_zone(from_zones_[i], lanes_, lane);
       }
+      start_rays(lanes_, u, rays);
       arrive(
           rays, count, books_.indirect,
           [&](int lane) { return from_ids_[first + static_cast<std::size_t>(lane)]; },
-          [&](int lane) { return &from_quanta_[(first + static_cast<std::size_t>(lane)) * bands_]; }, bounce);
+          &from_quanta_[first * bands_], bounce);
     }
   }
 
   /// Traces a block, books where each packet comes to, and keeps those that survive.
-  template <class IdOf, class QuantaOf>
+  template <class IdOf>
   void arrive(const Ray16& rays, int count, std::vector<std::int64_t>& incident, const IdOf& id_of,
-              const QuantaOf& quanta_of, std::uint32_t bounce) {
+              const std::int64_t* power, std::uint32_t bounce) {
     Hit16 hits;
     if (observer_ != nullptr) (*observer_)(rays, count);
     transport_.rays().closest16(rays, count, hits);
     rays_ += static_cast<std::uint64_t>(count);
     for (int lane = 0; lane < count; ++lane) {
-      const std::int64_t* quanta = quanta_of(lane);
+      const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
       if (hits.triangle[lane] == RayScene::kMiss) {
         for (std::size_t b = 0; b < bands_; ++b)
           local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
@@ -148,6 +142,7 @@ class WalkTask {
   BatchBooks& books_;
   LocalBooks local_;
   std::vector<std::int64_t>& absorbed_;  // [surface * bands + band], of this thread
+  ZoneLanes lanes_{};
   std::uint64_t rays_ = 0;
   std::vector<ZoneId> zones_, from_zones_;          // where each packet is
   std::vector<std::uint32_t> ids_, from_ids_;       // its number: selects its random numbers

@@ -20,7 +20,8 @@ void save_solution(const Solution& solution, const std::filesystem::path& file);
 /// advice when the file is missing, no solution file, of another format version, truncated or damaged.
 Solution load_solution(const std::filesystem::path& file);
 
-/// True if the file is HDF5, so that only load_solution can make sense of it; false also when it cannot be read.
+/// True if the file is HDF5, so that only load_solution can make sense of it; false also when it cannot be
+/// read.
 bool is_solution_file(const std::filesystem::path& file);
 
 }  // namespace reemit

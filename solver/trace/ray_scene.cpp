@@ -17,13 +17,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Distance by which rays start off their surface, in normalised units: some 16 roundings of a coordinate
-/// near 1.
-constexpr float kLift = 1e-6F;
-/// Pull towards the middle of the triangle, as a multiple of kLift: keeps the lifted point inside rooms whose
-/// corners are as sharp as atan(1/4) = 14 degrees.
-constexpr float kInset = 4;
-
 void intersect1(RTCScene scene, RTCRayHit& ray) {
 #if RTC_VERSION_MAJOR >= 4
   rtcIntersect1(scene, &ray);
@@ -156,9 +149,7 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 Vec3f RayScene::lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle) {
   const Vec3f inward = middle - point;
-  const float distance = inward.norm();
-  const float inset = distance > 0 ? std::min(kInset * kLift / distance, 1.0F) : 0.0F;
-  return point + kLift * side_normal + inset * inward;
+  return point + kLift * side_normal + inset_share(inward.norm()) * inward;
 }
 
 Vec3f RayScene::ray_origin(TriangleId t, float u, float v, bool front) const {

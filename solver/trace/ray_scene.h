@@ -35,6 +35,14 @@ struct Hit16 {
 class RayScene {
  public:
   static constexpr std::uint32_t kMiss = 0xffffffff;
+  /// Distance by which rays start off their surface [normalised units]: some 16 roundings of a coordinate
+  /// near 1.
+  static constexpr float kLift = 1e-6F;
+  /// How far of the way to the middle of its triangle, `distance` away, a ray start is drawn: 4 kLift in all,
+  /// which keeps the lifted point inside rooms whose corners are as sharp as atan(1/4) = 14 degrees.
+  static float inset_share(float distance) {
+    return 4 * kLift / (distance > 4 * kLift ? distance : 4 * kLift);
+  }
 
   explicit RayScene(const ZoneMesh& mesh);
   ~RayScene();

@@ -1,0 +1,53 @@
+#include "solver/shoot/ray_lanes.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace reemit {
+
+// Compiled for several instruction sets and chosen when the program starts. Every operation is correctly
+// rounded and none is contracted, so all versions return the same bits.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+void start_rays(const ZoneLanes& zones, const float u[4][16], Ray16& rays) {
+  constexpr float kQuarter = std::numbers::pi_v<float> / 4;
+  for (int i = 0; i < 16; ++i) {
+    const float s = std::sqrt(u[0][i]);
+    const float a = s * (1 - u[1][i]);
+    const float b = s * u[1][i];
+    const float px = zones.corner[0][i] + a * zones.edge1[0][i] + b * zones.edge2[0][i];
+    const float py = zones.corner[1][i] + a * zones.edge1[1][i] + b * zones.edge2[1][i];
+    const float pz = zones.corner[2][i] + a * zones.edge1[2][i] + b * zones.edge2[2][i];
+
+    const float mx = zones.middle[0][i] - px;
+    const float my = zones.middle[1][i] - py;
+    const float mz = zones.middle[2][i] - pz;
+    const float distance = std::sqrt(mx * mx + my * my + mz * mz);
+    const float inset = RayScene::inset_share(distance);
+    rays.ox[i] = px + RayScene::kLift * zones.normal[0][i] + inset * mx;
+    rays.oy[i] = py + RayScene::kLift * zones.normal[1][i] + inset * my;
+    rays.oz[i] = pz + RayScene::kLift * zones.normal[2][i] + inset * mz;
+
+    // Concentric map [SC97]: the angle stays within a quarter of pi, where short polynomials give sine and
+    // cosine to the last bits of a float.
+    const float c = 2 * u[2][i] - 1;
+    const float d = 2 * u[3][i] - 1;
+    const bool wide = std::fabs(c) > std::fabs(d);
+    const float r = wide ? c : d;
+    const float q = wide ? d : c;
+    const float t = kQuarter * (q / (r == 0 ? 1.0F : r));
+    const float t2 = t * t;
+    const float sine = t * (1 + t2 * (-1.6666667e-1F + t2 * (8.3333310e-3F - t2 * 1.9840874e-4F)));
+    const float cosine = 1 + t2 * (-0.5F + t2 * (4.1666638e-2F + t2 * (-1.3888378e-3F + t2 * 2.4760495e-5F)));
+    const float x = r * (wide ? cosine : sine);
+    const float y = r * (wide ? sine : cosine);
+    const float up = 1 - x * x - y * y;
+    const float z = std::sqrt(up > 0 ? up : 0.0F);
+    rays.dx[i] = x * zones.tangent[0][i] + y * zones.bitangent[0][i] + z * zones.normal[0][i];
+    rays.dy[i] = x * zones.tangent[1][i] + y * zones.bitangent[1][i] + z * zones.normal[1][i];
+    rays.dz[i] = x * zones.tangent[2][i] + y * zones.bitangent[2][i] + z * zones.normal[2][i];
+  }
+}
+
+}  // namespace reemit

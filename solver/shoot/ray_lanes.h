@@ -1,0 +1,19 @@
+#pragma once
+#include "scenes/model/vec.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// Geometry of the zones that 16 packets leave from, component by component, so that all rays are made at
+/// once. A point of the zone is corner + a edge1 + b edge2 with a, b >= 0 and a + b <= 1.
+struct alignas(64) ZoneLanes {
+  float corner[3][16], edge1[3][16], edge2[3][16];
+  float middle[3][16];  ///< Of the parent triangle: rays are drawn towards it.
+  float tangent[3][16], bitangent[3][16], normal[3][16];
+};
+
+/// Makes 16 rays from uniform points of the zones (u[0], u[1]) in cosine-distributed directions (u[2], u[3]).
+/// Lane by lane the same as sample_triangle, RayScene::lifted and sample_cosine_hemisphere.
+void start_rays(const ZoneLanes& zones, const float u[4][16], Ray16& rays);
+
+}  // namespace reemit
