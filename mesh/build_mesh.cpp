@@ -139,6 +139,8 @@ MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
                                 .most_new_points = 1'000'000};
   GroupTriangles cut = triangulate_groups(scene, pieces, groups, cuts, tolerances, quality, vertices, report);
   conform_triangles(vertices, tolerances.weld, cut.triangles);
+  const double smallest_area = kSmallestArea * tolerances.diagonal * tolerances.diagonal;
+  std::erase_if(cut.triangles, [&](const RawTriangle& t) { return area_of(vertices, t) <= smallest_area; });
   book_areas(vertices, pieces, cut, report);
 
   BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);
