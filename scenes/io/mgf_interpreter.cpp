@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kDeepestInclude = 100;
 constexpr std::size_t kDeepestObject = 1000;
-constexpr std::uint64_t kMostEntities = 20'000'000;  // executed, arrays and includes unrolled
+constexpr std::uint64_t kMostEntities = 10'000'000;  // executed, arrays and includes unrolled
 constexpr std::uintmax_t kLargestMgf = std::uintmax_t{1} << 30;
 
 std::span<const std::string_view> words_from(const TextLine& line, std::size_t first) {

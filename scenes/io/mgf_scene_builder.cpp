@@ -71,15 +71,9 @@ MaterialId MgfSceneBuilder::material_id(const Target& target) {
 }
 
 void MgfSceneBuilder::finish(Scene& scene) {
-  std::map<std::string, int> uses;
-  for (const SurfaceBuilder& builder : surfaces_) ++uses[builder.surface().name];
-  for (SurfaceBuilder& builder : surfaces_) {
-    Surface surface = builder.take();
-    if (uses[surface.name] > 1 && surface.name != materials_[surface.material.index()].name)
-      surface.name += fmt::format(" ({})", materials_[surface.material.index()].name);
-    scene.surfaces.push_back(std::move(surface));
-  }
+  for (SurfaceBuilder& builder : surfaces_) scene.surfaces.push_back(builder.take());
   scene.materials = std::move(materials_);
+  tell_surfaces_apart(scene);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
 }
 

@@ -1,6 +1,7 @@
 #include "scenes/io/surface_builder.h"
 
 #include <bit>
+#include <map>
 #include <utility>
 
 namespace reemit {
@@ -39,6 +40,15 @@ std::size_t SurfaceBuilder::KeyHash::operator()(const Key& key) const {
     hash ^= hash >> 33;
   }
   return static_cast<std::size_t>(hash);
+}
+
+void tell_surfaces_apart(Scene& scene) {
+  std::map<std::string, int> uses;
+  for (const Surface& surface : scene.surfaces) ++uses[surface.name];
+  for (Surface& surface : scene.surfaces) {
+    const std::string& material = scene.material_of(surface).name;
+    if (uses[surface.name] > 1 && surface.name != material) surface.name += " (" + material + ")";
+  }
 }
 
 }  // namespace reemit

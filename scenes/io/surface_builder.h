@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "scenes/io/polygon_loops.h"
-#include "scenes/model/surface.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 
@@ -29,5 +29,8 @@ class SurfaceBuilder {
   Surface surface_;
   Index positions_, normals_;
 };
+
+/// Adds the material in parentheses to the names of surfaces that would otherwise be called the same.
+void tell_surfaces_apart(Scene& scene);
 
 }  // namespace reemit
