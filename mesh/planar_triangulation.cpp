@@ -1,7 +1,12 @@
+// Points lie on edges only up to rounding, and CGAL's refinement may find itself in a face where it should
+// not be. Its checks must then stop it in every build, not only in debug builds.
+#define CGAL_DEBUG
+
 #include "mesh/planar_triangulation.h"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -39,6 +44,11 @@ std::array<Vec2, 3> corners(const FaceHandle& f) {
 struct Shape {
   double squared_sine;    // of the smallest angle
   double squared_length;  // of the longest side
+  double area;
+
+  bool matters(const TriangleQuality& quality) const {
+    return squared_length > quality.free_length * quality.free_length && area > quality.free_area;
+  }
 };
 
 Shape shape_of(const FaceHandle& f) {
@@ -49,7 +59,12 @@ Shape shape_of(const FaceHandle& f) {
   std::array<double, 3> side2{ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()};
   std::sort(side2.begin(), side2.end());
   const double product = side2[1] * side2[2];  // the smallest angle lies between the two longer sides
-  return {product > 0 ? cross * cross / product : 0.0, side2[2]};
+  return {product > 0 ? cross * cross / product : 0.0, side2[2], 0.5 * std::abs(cross)};
+}
+
+double squared_sine_of(double degrees) {
+  const double s = std::sin(degrees * std::numbers::pi / 180);
+  return s * s;
 }
 
 // The criterion that CGAL's mesher asks: small angles count only in triangles that are not small themselves.
@@ -58,31 +73,31 @@ class AngleCriteria {
   using Face_handle = FaceHandle;
   using Quality = double;
 
-  AngleCriteria(double squared_sine, double free_length)
-      : squared_sine_(squared_sine), free_length2_(free_length * free_length) {}
+  explicit AngleCriteria(const TriangleQuality& quality) : is_bad_(quality) {}
 
   class Is_bad {
    public:
-    Is_bad(double squared_sine, double free_length2)
-        : squared_sine_(squared_sine), free_length2_(free_length2) {}
+    explicit Is_bad(const TriangleQuality& quality)
+        : quality_(quality), squared_sine_(squared_sine_of(quality.smallest_angle_deg)) {}
     CGAL::Mesh_2::Face_badness operator()(Quality q) const {
       return q < squared_sine_ ? CGAL::Mesh_2::BAD : CGAL::Mesh_2::NOT_BAD;
     }
     CGAL::Mesh_2::Face_badness operator()(const Face_handle& f, Quality& q) const {
       const Shape shape = shape_of(f);
-      q = shape.squared_length > free_length2_ ? shape.squared_sine : 1.0;
+      // A triangle as thin as rounding has no usable circumcentre; its neighbours are refined instead.
+      constexpr double kFlat = 1e-20;
+      q = shape.matters(quality_) && shape.squared_sine > kFlat ? shape.squared_sine : 1.0;
       return operator()(q);
     }
 
    private:
+    TriangleQuality quality_;
     double squared_sine_;
-    double free_length2_;
   };
-  Is_bad is_bad_object() const { return {squared_sine_, free_length2_}; }
+  Is_bad is_bad_object() const { return is_bad_; }
 
  private:
-  double squared_sine_;
-  double free_length2_;
+  Is_bad is_bad_;
 };
 
 // Connected parts of the triangulation between constrained edges.
@@ -129,31 +144,31 @@ Regions find_regions(const Cdt& cdt, Admit admit) {
   return regions;
 }
 
-double squared_sine_of(double degrees) {
-  const double s = std::sin(degrees * std::numbers::pi / 180);
-  return s * s;
-}
-
 // Meshes are worth refining only when a triangle is clearly worse than wanted: a 1:4 rectangle is left alone.
 constexpr double kTolerated = 0.7;
 
 bool wants_refinement(const Cdt& cdt, const TriangleQuality& quality) {
   if (quality.smallest_angle_deg <= 0 || quality.most_new_points == 0) return false;
   const double limit = squared_sine_of(kTolerated * quality.smallest_angle_deg);
-  const double free2 = quality.free_length * quality.free_length;
   for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f) {
     if (!f->is_in_domain()) continue;
     const Shape shape = shape_of(f);
-    if (shape.squared_length > free2 && shape.squared_sine < limit) return true;
+    if (shape.matters(quality) && shape.squared_sine < limit) return true;
   }
   return false;
+}
+
+// CGAL prints before it throws; we fall back instead, which is nothing to tell the user.
+void silence_cgal() {
+  static std::once_flag once;
+  std::call_once(
+      once, [] { CGAL::set_error_handler([](const char*, const char*, const char*, int, const char*) {}); });
 }
 
 // Returns false if the limit on new points was met.
 bool refine(Cdt& cdt, const TriangleQuality& quality) {
   using Mesher = CGAL::Delaunay_mesher_2<Cdt, AngleCriteria>;
-  const AngleCriteria criteria(squared_sine_of(quality.smallest_angle_deg), quality.free_length);
-  Mesher mesher(cdt, criteria);
+  Mesher mesher(cdt, AngleCriteria(quality));
   mesher.init(true);
   const std::size_t limit = cdt.number_of_vertices() + quality.most_new_points;
   // A step may refuse its point and mark another for later, so steps are bounded as well as points.
@@ -225,6 +240,7 @@ PlanarTriangulation triangulate_planar(const std::vector<Vec2>& points,
                                        const TriangleQuality& quality) {
   PlanarTriangulation out;
   out.points = points;
+  silence_cgal();
   Cdt cdt;
   insert_input(cdt, points, segments);
   if (cdt.dimension() < 2) return out;
@@ -242,8 +258,12 @@ PlanarTriangulation triangulate_planar(const std::vector<Vec2>& points,
     for (const FaceHandle& f : all.faces[r]) f->set_in_domain(is_inside);
   }
   if (wants_refinement(cdt, quality)) {
-    Cdt refined = cdt;
-    if (refine(refined, quality)) cdt.swap(refined);
+    try {
+      Cdt refined = cdt;
+      if (refine(refined, quality)) cdt.swap(refined);
+    } catch (const CGAL::Failure_exception&) {
+      // Thinner than rounding somewhere: the unrefined triangulation stays.
+    }
   }
   for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) {
     if (v->info().index != kNone) continue;

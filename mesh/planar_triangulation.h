@@ -11,7 +11,8 @@ namespace reemit {
 /// What triangles a planar region is cut into.
 struct TriangleQuality {
   double smallest_angle_deg = 20;   ///< Aimed at by adding points; 0 = none are added.
-  double free_length = 0;           ///< Triangles whose longest side is shorter may have any shape [m].
+  double free_length = 0;           ///< Triangles whose longest side is shorter may have any shape [m],
+  double free_area = 0;             ///< and so may triangles of less area [m2].
   std::size_t most_new_points = 0;  ///< If more would be needed, none are added.
 };
 

@@ -28,7 +28,8 @@ struct Samples {
     return value[i - 1] + t * (value[i] - value[i - 1]);
   }
 
-  /// Exact integral over [from, to]: trapezia between the samples and the ends that lie inside.
+  /// Exact integral over [from, to]: between two samples the function is linear, so its middle value is its
+  /// mean.
   double integral(double from, double to) const {
     std::vector<double> knots{from};
     for (const double knot : nm) {
@@ -37,9 +38,7 @@ struct Samples {
     knots.push_back(to);
     double sum = 0;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-      // The values just inside the interval: at() jumps to 0 at the ends of a spectrum that is not extended.
-      const double middle = 0.5 * (knots[i] + knots[i + 1]);
-      sum += at(middle) * (knots[i + 1] - knots[i]);
+      sum += at(0.5 * (knots[i] + knots[i + 1])) * (knots[i + 1] - knots[i]);
     }
     return sum;
   }

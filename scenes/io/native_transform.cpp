@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,15 +12,31 @@ namespace {
 
 constexpr int kMostPlacements = 100'000;
 
+/// Cosine and sine of an angle in degrees, exact for quarter turns: what is turned by them stays in its
+/// plane.
+std::pair<double, double> cosine_and_sine(double degrees) {
+  const double turn = std::remainder(degrees, 360.0);
+  if (turn == 0) return {1, 0};
+  if (turn == 90) return {0, 1};
+  if (turn == -90) return {0, -1};
+  if (std::abs(turn) == 180) return {-1, 0};
+  const double angle = turn * std::numbers::pi / 180;
+  return {std::cos(angle), std::sin(angle)};
+}
+
 Eigen::Affine3d read_rotation(const JsonCursor& at) {
   at.expect_object({"axis", "angle_deg", "about"});
-  const Vec3 axis = at.at("axis").vec3();
-  if (!(axis.norm() > 0)) at.at("axis").fail("the axis has no length", "Give a direction, as in [0, 1, 0].");
-  const double angle = at.at("angle_deg").number_in(-1e6, 1e6) * std::numbers::pi / 180;
+  const Vec3 given = at.at("axis").vec3();
+  if (!(given.norm() > 0)) at.at("axis").fail("the axis has no length", "Give a direction, as in [0, 1, 0].");
+  const Vec3 axis = given.normalized();
+  const auto [c, s] = cosine_and_sine(at.at("angle_deg").number_in(-1e6, 1e6));
+  Eigen::Matrix3d across;  // Cross product with the axis, for the formula of Rodrigues.
+  across << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  Eigen::Affine3d rotation = Eigen::Affine3d::Identity();
+  rotation.linear() = c * Eigen::Matrix3d::Identity() + s * across + (1 - c) * axis * axis.transpose();
   const auto about = at.find("about");
   const Vec3 centre = about ? about->vec3() : Vec3(0, 0, 0);
-  return Eigen::Translation3d(centre) * Eigen::AngleAxisd(angle, axis.normalized()) *
-         Eigen::Translation3d(-centre);
+  return Eigen::Translation3d(centre) * rotation * Eigen::Translation3d(-centre);
 }
 
 Eigen::Affine3d read_matrix(const JsonCursor& at) {
