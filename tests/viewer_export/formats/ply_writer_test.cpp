@@ -1,3 +1,5 @@
+// OpenMesh appends colours that it fills in later; GCC takes that for a mistake of ours.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <OpenMesh/Core/IO/MeshIO.hh>  // must come before the mesh type
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <gmock/gmock.h>
