@@ -108,6 +108,7 @@ TEST(PlyReader, EveryTruncationIsRefused) {
     for (std::size_t length = 1; length <= last; ++length) {
       const auto file = folder.write("cut.ply", whole.substr(0, length));
       EXPECT_THROW(read_ply_surface(file), InputError) << length;
+      std::filesystem::remove(file);
     }
   }
 }
