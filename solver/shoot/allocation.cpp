@@ -10,14 +10,26 @@
 namespace reemit {
 
 Allocation::Allocation(std::size_t zones, std::size_t bands)
-    : zones_(zones), bands_(bands), chunks_((zones + kChunkZones - 1) / kChunkZones) {}
+    : bands_(bands),
+      chunks_((zones + kChunkBlocks * SweepAccounts::kBlockZones - 1) /
+              (kChunkBlocks * SweepAccounts::kBlockZones)) {}
 
-std::int64_t Allocation::measure(const std::vector<std::int64_t>& unshot) {
+template <class Visit>
+void Allocation::for_live_blocks(std::size_t chunk, const SweepAccounts& accounts, const Visit& visit) {
+  const std::size_t end = std::min(accounts.block_count(), (chunk + 1) * kChunkBlocks);
+  for (std::size_t block = chunk * kChunkBlocks; block < end; ++block)
+    if (accounts.live[block] != 0) visit(block);
+}
+
+std::int64_t Allocation::measure(const SweepAccounts& accounts) {
   tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t c) {
-    const auto first = unshot.begin() + static_cast<std::ptrdiff_t>(c * kChunkZones * bands_);
-    const auto last =
-        unshot.begin() + static_cast<std::ptrdiff_t>(std::min(zones_, (c + 1) * kChunkZones) * bands_);
-    chunks_[c].power = std::accumulate(first, last, std::int64_t{0});
+    std::int64_t power = 0;
+    for_live_blocks(c, accounts, [&](std::size_t block) {
+      const std::int64_t* unshot = accounts.unshot.data();
+      power = std::accumulate(unshot + accounts.block_begin(block) * bands_,
+                              unshot + accounts.block_end(block) * bands_, power);
+    });
+    chunks_[c].power = power;
   });
   std::int64_t running = 0;
   for (Chunk& chunk : chunks_) {
@@ -27,19 +39,22 @@ std::int64_t Allocation::measure(const std::vector<std::int64_t>& unshot) {
   return running;
 }
 
-void Allocation::plan(std::vector<std::int64_t>& unshot, double quantum, double offset, Flight& flight,
+void Allocation::plan(SweepAccounts& accounts, double quantum, double offset, Flight& flight,
                       BatchBooks& books) {
   tbb::parallel_for(std::size_t{0}, chunks_.size(),
-                    [&](std::size_t c) { choose(chunks_[c], c * kChunkZones, unshot, quantum, offset); });
+                    [&](std::size_t c) { choose(c, accounts, quantum, offset); });
   flight.clear();
   for (const Chunk& chunk : chunks_)
     for (const Chosen& c : chunk.chosen) flight.add({ZoneId(c.zone), 0}, c.packets);
   flight.quanta.assign(flight.sources.size() * bands_, 0);
-  for (std::size_t b = 0; b < bands_; ++b) hand_over(unshot, b, flight, books);
+  std::vector<bool> exchanged(bands_);
+  for (std::size_t b = 0; b < bands_; ++b) exchanged[b] = hand_over(accounts.unshot, b, flight, books);
+  drop_passed_over(accounts, exchanged, books);
 }
 
-void Allocation::choose(Chunk& chunk, std::size_t first, const std::vector<std::int64_t>& unshot,
-                        double quantum, double offset) const {
+void Allocation::choose(std::size_t chunk_index, const SweepAccounts& accounts, double quantum,
+                        double offset) {
+  Chunk& chunk = chunks_[chunk_index];
   chunk.chosen.clear();
   chunk.small_total.assign(bands_, 0);
   chunk.small_wanted.assign(bands_, 0);
@@ -47,26 +62,28 @@ void Allocation::choose(Chunk& chunk, std::size_t first, const std::vector<std::
   // The running sum is an integer, so it is the same wherever a chunk begins.
   std::int64_t running = chunk.before;
   double before = std::floor(static_cast<double>(running) / quantum + offset);
-  for (std::size_t z = first; z < std::min(zones_, first + kChunkZones); ++z) {
-    const std::int64_t* own = &unshot[z * bands_];
-    const std::int64_t power = std::accumulate(own, own + bands_, std::int64_t{0});
-    if (power == 0) continue;
-    running += power;
-    const double upto = std::floor(static_cast<double>(running) / quantum + offset);
-    const auto packets = static_cast<std::uint32_t>(upto - before);
-    before = upto;
-    const bool small = static_cast<double>(power) < quantum || packets == 0;
-    const double growth = small ? quantum * packets / static_cast<double>(power) : 0.0;
-    if (small)
-      for (std::size_t b = 0; b < bands_; ++b) {
-        chunk.small_total[b] += own[b];
-        chunk.small_wanted[b] += static_cast<double>(own[b]) * growth;
-      }
-    if (packets > 0) chunk.chosen.push_back({static_cast<std::uint32_t>(z), packets, growth});
-  }
+  for_live_blocks(chunk_index, accounts, [&](std::size_t block) {
+    for (std::size_t z = accounts.block_begin(block); z < accounts.block_end(block); ++z) {
+      const std::int64_t* own = &accounts.unshot[z * bands_];
+      const std::int64_t power = std::accumulate(own, own + bands_, std::int64_t{0});
+      if (power == 0) continue;
+      running += power;
+      const double upto = std::floor(static_cast<double>(running) / quantum + offset);
+      const auto packets = static_cast<std::uint32_t>(upto - before);
+      before = upto;
+      const bool small = static_cast<double>(power) < quantum || packets == 0;
+      const double growth = small ? quantum * packets / static_cast<double>(power) : 0.0;
+      if (small)
+        for (std::size_t b = 0; b < bands_; ++b) {
+          chunk.small_total[b] += own[b];
+          chunk.small_wanted[b] += static_cast<double>(own[b]) * growth;
+        }
+      if (packets > 0) chunk.chosen.push_back({static_cast<std::uint32_t>(z), packets, growth});
+    }
+  });
 }
 
-void Allocation::hand_over(std::vector<std::int64_t>& unshot, std::size_t band, Flight& flight,
+bool Allocation::hand_over(std::vector<std::int64_t>& unshot, std::size_t band, Flight& flight,
                            BatchBooks& books) const {
   std::int64_t total = 0;
   double wanted = 0;
@@ -96,23 +113,32 @@ void Allocation::hand_over(std::vector<std::int64_t>& unshot, std::size_t band, 
       }
       own = 0;
     }
-  if (!exchange) return;
+  if (!exchange) return false;
   // The rounding of the running sum may leave a quantum or two.
   *last_taker += total - given;
   books.roulette_gain[band] += total - given;
-  drop_passed_over(unshot, band, books);
+  return true;
 }
 
-void Allocation::drop_passed_over(std::vector<std::int64_t>& unshot, std::size_t band,
+void Allocation::drop_passed_over(SweepAccounts& accounts, const std::vector<bool>& exchanged,
                                   BatchBooks& books) const {
   tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t c) {
-    if (chunks_[c].power == 0) return;
-    std::int64_t dropped = 0;
-    for (std::size_t z = c * kChunkZones; z < std::min(zones_, (c + 1) * kChunkZones); ++z) {
-      dropped += unshot[z * bands_ + band];
-      unshot[z * bands_ + band] = 0;
-    }
-    if (dropped != 0) book(books.roulette_loss[band], dropped);
+    std::vector<std::int64_t> dropped(bands_, 0);
+    for_live_blocks(c, accounts, [&](std::size_t block) {
+      bool live = false;
+      for (std::size_t z = accounts.block_begin(block); z < accounts.block_end(block); ++z)
+        for (std::size_t b = 0; b < bands_; ++b) {
+          std::int64_t& own = accounts.unshot[z * bands_ + b];
+          if (own == 0) continue;
+          live = live || !exchanged[b];
+          if (!exchanged[b]) continue;
+          dropped[b] += own;
+          own = 0;
+        }
+      if (!live) accounts.live[block] = 0;
+    });
+    for (std::size_t b = 0; b < bands_; ++b)
+      if (dropped[b] != 0) book(books.roulette_loss[b], dropped[b]);
   });
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "solver/shoot/flight.h"
+#include "solver/shoot/sweep_accounts.h"
 #include "solver/tally/batch_books.h"
 
 namespace reemit {
@@ -16,13 +17,11 @@ class Allocation {
  public:
   Allocation(std::size_t zones, std::size_t bands);
 
-  /// Sum of unshot[zone * bands + band], to be called before each plan().
-  std::int64_t measure(const std::vector<std::int64_t>& unshot);
+  /// Sum of the unshot power, to be called before each plan().
+  std::int64_t measure(const SweepAccounts& accounts);
 
-  /// Moves power from `unshot` into `flight`: about measure()/quantum packets, at the random `offset` in
-  /// [0,1).
-  void plan(std::vector<std::int64_t>& unshot, double quantum, double offset, Flight& flight,
-            BatchBooks& books);
+  /// Moves unshot power into `flight`: about measure()/quantum packets, at the random `offset` in [0,1).
+  void plan(SweepAccounts& accounts, double quantum, double offset, Flight& flight, BatchBooks& books);
 
  private:
   struct Chosen {
@@ -38,15 +37,15 @@ class Allocation {
     std::vector<std::int64_t> small_total;  // power of all small zones per band
     std::vector<double> small_wanted;       // power of the chosen small zones after growth, per band
   };
-  static constexpr std::size_t kChunkZones = 4096;
+  static constexpr std::size_t kChunkBlocks = 64;
 
-  void choose(Chunk& chunk, std::size_t first, const std::vector<std::int64_t>& unshot, double quantum,
-              double offset) const;
-  void hand_over(std::vector<std::int64_t>& unshot, std::size_t band, Flight& flight,
+  template <class Visit>
+  static void for_live_blocks(std::size_t chunk, const SweepAccounts& accounts, const Visit& visit);
+  void choose(std::size_t chunk, const SweepAccounts& accounts, double quantum, double offset);
+  bool hand_over(std::vector<std::int64_t>& unshot, std::size_t band, Flight& flight,
                  BatchBooks& books) const;
-  void drop_passed_over(std::vector<std::int64_t>& unshot, std::size_t band, BatchBooks& books) const;
+  void drop_passed_over(SweepAccounts& accounts, const std::vector<bool>& exchanged, BatchBooks& books) const;
 
-  std::size_t zones_;
   std::size_t bands_;
   std::vector<Chunk> chunks_;
 };

@@ -47,7 +47,7 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
           if (!zone.valid()) return;
           const auto x = rng.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
           for (std::size_t d = 0; d < 4; ++d) u[d][lane] = x[d];
-          transport.put_zone(zone, lanes, lane);
+          transport.put_zone(zone, lanes, lane, lane + 1);
         }
         start_rays(lanes, u, rays);
       }

@@ -77,18 +77,21 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
   numbers.get16(first, u);
   std::array<const PunctualLight*, 16> light{};
   bool any_light = false;
-  for (int lane = 0; lane < count; ++lane) {
+  for (int lane = 0; lane < count;) {
     const std::uint32_t packet = first + static_cast<std::uint32_t>(lane);
     while (packet >= end_) enter_source(current_ + 1);
-    const std::int64_t k = packet - begin_;
-    for (std::size_t b = 0; b < bands_; ++b) *quanta++ = share_[b] + (k < remainder_[b] ? 1 : 0);
+    const int until = static_cast<int>(std::min(end_ - first, static_cast<std::uint32_t>(count)));
     const EmissionSource& s = flight_.sources[current_];
     if (s.zone.valid()) {
-      transport_.put_zone(s.zone, lanes_, lane);
+      transport_.put_zone(s.zone, lanes_, lane, until);
     } else {
-      light[static_cast<std::size_t>(lane)] = &transport_.scene().lights[s.light];
+      std::fill(&light[static_cast<std::size_t>(lane)], light.data() + until,
+                &transport_.scene().lights[s.light]);
       any_light = true;
     }
+    std::int64_t k = packet - begin_;
+    for (; lane < until; ++lane, ++k)
+      for (std::size_t b = 0; b < bands_; ++b) *quanta++ = share_[b] + (k < remainder_[b] ? 1 : 0);
   }
   start_rays(lanes_, u, rays);
   if (!any_light) return;

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -27,8 +28,8 @@ class TransportScene {
   const double* reflectance(SurfaceId s) const { return &reflectance_[s.index() * bands_]; }
   double largest_reflectance(SurfaceId s) const { return largest_reflectance_[s.index()]; }
 
-  /// Puts the geometry of a zone into one lane.
-  void put_zone(ZoneId z, ZoneLanes& lanes, int lane) const {
+  /// Puts the geometry of a zone into lanes first .. last-1.
+  void put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {
     const TriangleId t = mesh_->zone_triangle(z);
     const TrianglePatch& p = patches_[t.index()];
     std::size_t in_side = z.index() - p.first_zone;
@@ -41,21 +42,23 @@ class TransportScene {
     const auto i = static_cast<float>(cell.i + (cell.upper ? 1 : 0));
     const auto j = static_cast<float>(cell.j + (cell.upper ? 1 : 0));
     for (int k = 0; k < 3; ++k) {
-      lanes.corner[k][lane] = p.corner[k] + i * p.edge1[k] + j * p.edge2[k];
-      lanes.edge1[k][lane] = turn * p.edge1[k];
-      lanes.edge2[k][lane] = turn * p.edge2[k];
-      lanes.middle[k][lane] = p.middle[k];
-      lanes.tangent[k][lane] = p.frame.tangent[k];
-      lanes.bitangent[k][lane] = p.frame.bitangent[k];
-      lanes.normal[k][lane] = side * p.frame.normal[k];
+      std::fill(lanes.corner[k] + first, lanes.corner[k] + last,
+                p.corner[k] + i * p.edge1[k] + j * p.edge2[k]);
+      std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, turn * p.edge1[k]);
+      std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, turn * p.edge2[k]);
+      std::fill(lanes.middle[k] + first, lanes.middle[k] + last, p.middle[k]);
+      std::fill(lanes.tangent[k] + first, lanes.tangent[k] + last, p.frame.tangent[k]);
+      std::fill(lanes.bitangent[k] + first, lanes.bitangent[k] + last, p.frame.bitangent[k]);
+      std::fill(lanes.normal[k] + first, lanes.normal[k] + last, side * p.frame.normal[k]);
     }
   }
 
   /// Zone that a hit belongs to; not valid when it is the back of a one-sided face.
   ZoneId zone_of(std::uint32_t triangle, float u, float v, bool front) const {
-    const TriangleId t(triangle);
-    if (!front && !mesh_->triangle(t).two_sided) return ZoneId();
-    return mesh_->zone_at(t, u, v, front);
+    const TrianglePatch& p = patches_[triangle];
+    if (!front && !p.two_sided) return ZoneId();
+    const std::size_t back = front ? 0 : std::size_t{p.divisions} * p.divisions;
+    return ZoneId(p.first_zone + back + zone_in_triangle(p.divisions, u, v));
   }
 
  private:
@@ -64,6 +67,7 @@ class TransportScene {
     Vec3f corner, edge1, edge2, middle;
     Frame frame;  // about the front normal
     std::uint32_t divisions;
+    bool two_sided;
     std::size_t first_zone;
   };
 

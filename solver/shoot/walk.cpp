@@ -89,7 +89,7 @@ class WalkTask {
         const std::size_t i = first + static_cast<std::size_t>(lane);
         for (std::size_t d = 0; d < 4; ++d) u[d][lane] = leaving_.numbers[d][i];
         id[lane] = leaving_.id[i];
-        transport_.put_zone(leaving_.zone[i], lanes_, lane);
+        transport_.put_zone(leaving_.zone[i], lanes_, lane, lane + 1);
       }
       start_rays(lanes_, u, rays_);
       arrive(count, id, &leaving_.quanta[first * bands_], books_.indirect, bounce);
