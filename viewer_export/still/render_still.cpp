@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -216,7 +217,8 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
   Film film(scene.bands, width, height,
             std::min<std::size_t>(Film::kReplicates, static_cast<std::size_t>(most)));
   Rendering rendering(renderer, settings, film, progress, interrupt);
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] { rendering.run(); });
   StillImage image = film.finish();
   image.info = describe_still(scene, solution, settings, rendering.error());

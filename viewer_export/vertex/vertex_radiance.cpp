@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -246,7 +247,8 @@ VertexData gather_vertices(const Scene& scene, const Solution& solution, const R
     const std::size_t chunks = (rings.size() + kChunk - 1) / kChunk;
     std::mutex progress_mutex;
     std::size_t done = 0;
-    tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+    const int cores = tbb::info::default_concurrency();
+    tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
     arena.execute([&] {
       tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
         if (interrupt) return;

@@ -22,9 +22,9 @@ struct VertexSettings {
   /// Independent estimates of each vertex; their spread is the standard error [2, 64].
   int replicates = 4;
   /// Reach of the sample points into the zones around a vertex, as a share of each zone (0, 1]. A vertex lies
-  /// on the edges of other faces, so light is gathered inside the zones beside it; 1/4 moves the mean place
-  /// by a twelfth of a zone at the rim of a surface and by nothing in its middle.
-  double reach = 0.25;
+  /// on the edges of other faces, so light is gathered inside the zones beside it. The mean place of the
+  /// samples is the vertex itself in the middle of a surface, and reach/3 of a zone inside at its rim.
+  double reach = 0.1;
   double close_hit = 1.0;  ///< GatherSettings::close_hit.
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = all cores. The values do not depend on it.
