@@ -56,8 +56,9 @@ void expect_valid(const std::filesystem::path& file) {
   const std::filesystem::path modules = REEMIT_NODE_MODULES;
   if (std::system("node --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "node is not installed";
   if (!std::filesystem::exists(modules / "gltf-validator"))
-    GTEST_SKIP() << "no gltf-validator in " << modules << ": run npm install --prefix "
-                 << modules.parent_path() << " " REEMIT_SOURCE_DIR "/tests/viewer_export/gltf";
+    GTEST_SKIP() << "no gltf-validator in " << modules
+                 << ": copy " REEMIT_SOURCE_DIR "/tests/viewer_export/gltf/package.json to "
+                 << modules.parent_path() << " and run npm install there";
   const std::string report = file.string() + ".report";
   const std::string command = "node '" REEMIT_SOURCE_DIR "/tests/viewer_export/gltf/validate_glb.mjs' '" +
                               modules.string() + "' '" + file.string() + "' > '" + report + "' 2>&1";

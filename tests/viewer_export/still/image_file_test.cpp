@@ -45,7 +45,7 @@ StillImage sample_image(const BandSet& bands, int width = 5, int height = 3) {
   fill(image.albedo, count, 1e-3F);
   fill(image.samples, 1, 1);
   fill(image.depth, 1, 0.5F);
-  image.depth[2] = std::numeric_limits<float>::infinity();
+  image.depth.back() = std::numeric_limits<float>::infinity();
   fill(image.normal, 3, 1e-3F);
   return image;
 }
