@@ -22,10 +22,14 @@
 namespace reemit {
 namespace {
 
+// Only triangles clearly worse than wanted are improved: a rectangle of 1:4 stays two triangles.
+constexpr double kToleratedAngle = 0.7;
 // Contacts that extend less than this part of a zone's edge are not worth a cut.
 constexpr double kSmallestContact = 0.25;
-// Triangles whose sides are below this many zone edges may have any shape.
-constexpr double kFreeLength = 2;
+// Triangles whose sides are below this many zone edges, or whose area is below this part of a zone, may have
+// any shape.
+constexpr double kFreeLength = 3;
+constexpr double kFreeArea = 0.5;
 
 double area_of(const VertexTable& vertices, const RawTriangle& t) {
   const Vec3& p0 = vertices[t.vertex[0]];
@@ -131,11 +135,14 @@ MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
   on_edges.insert(on_edges.end(), cuts.on_boundary.begin(), cuts.on_boundary.end());
   insert_vertices_on_edges(vertices, on_edges, tolerances.weld, pieces);
 
-  const TriangleQuality quality{.smallest_angle_deg = settings.smallest_angle_deg,
+  const TriangleQuality quality{.smallest_angle_deg = kToleratedAngle * settings.smallest_angle_deg,
                                 .free_length = kFreeLength * zone_edge,
+                                .free_area = kFreeArea * zone_area,
                                 .most_new_points = 1'000'000};
   GroupTriangles cut = triangulate_groups(scene, pieces, groups, cuts, tolerances, quality, vertices, report);
   conform_triangles(vertices, tolerances.weld, cut.triangles);
+  const double smallest_area = kSmallestArea * tolerances.diagonal * tolerances.diagonal;
+  std::erase_if(cut.triangles, [&](const RawTriangle& t) { return area_of(vertices, t) <= smallest_area; });
   book_areas(vertices, pieces, cut, report);
 
   BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);

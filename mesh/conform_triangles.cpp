@@ -53,7 +53,7 @@ void conform_triangles(const VertexTable& vertices, double weld, std::vector<Raw
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = std::minmax(t.vertex[k], t.vertex[(k + 1) % 3]);
       if (edge_index.try_emplace(edge_key(a, b), edges.size()).second) edges.push_back({a, b});
-      ends.push_back(a);
+      ends.push_back(t.vertex[k]);
     }
   }
   std::sort(ends.begin(), ends.end());

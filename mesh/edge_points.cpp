@@ -33,7 +33,9 @@ std::vector<std::vector<std::uint32_t>> vertices_on_edges(const VertexTable& ver
     const double length = along.norm();
     const double t = offset.dot(along) / (length * length);
     if (t * length <= weld || (1 - t) * length <= weld) return;
-    if ((offset - t * along).norm() > weld) return;
+    // Short edges would be bent visibly by the weld distance, and the area of their face changed.
+    constexpr double kMostBend = 1e-4;
+    if ((offset - t * along).norm() > std::min(weld, kMostBend * length)) return;
     found[e].emplace_back(t, v);
   });
   std::vector<std::vector<std::uint32_t>> out(edges.size());

@@ -19,7 +19,8 @@ struct VertexEdge {
   std::uint32_t to;
 };
 
-/// For each edge the candidate vertices that lie on it within `weld` metres and clear of its ends, in order
+/// For each edge the candidate vertices that lie on it within `weld` metres (less on short
+/// edges) and clear of its ends, in order
 /// from `from` to `to`.
 std::vector<std::vector<std::uint32_t>> vertices_on_edges(const VertexTable& vertices,
                                                           const std::vector<VertexEdge>& edges,

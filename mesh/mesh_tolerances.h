@@ -14,7 +14,7 @@ struct MeshTolerances {
   /// Of a room with the given bounding box.
   static MeshTolerances of(const Box& box) {
     const double d = box.size().norm();
-    return {.diagonal = d, .weld = 2.5e-7 * d, .contact = 5e-5 * d, .snap = 1e-5 * d};
+    return {.diagonal = d, .weld = 1e-7 * d, .contact = 5e-5 * d, .snap = 1e-5 * d};
   }
 };
 

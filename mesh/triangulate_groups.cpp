@@ -141,7 +141,6 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
       overlap[{winner[r], p}] += area;
     }
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    if (area <= kSmallestArea * tolerances_.diagonal * tolerances_.diagonal) continue;
     if (pieces_[winner[r]].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
     meshed_[winner[r]] += area;
     out_.push_back({t, winner[r]});

@@ -1,5 +1,6 @@
 #include "mesh/vertex_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace reemit {
@@ -12,7 +13,11 @@ std::size_t VertexTable::CellHash::operator()(const Cell& c) const {
 }
 
 VertexTable::Cell VertexTable::cell_of(const Vec3& p) const {
-  const auto index = [this](double x) { return static_cast<std::int64_t>(std::floor(x / cell_)); };
+  static constexpr double kFarthest =
+      4e18;  // rooms this far from 0 in terms of their size have lost all digits anyway
+  const auto index = [this](double x) {
+    return static_cast<std::int64_t>(std::floor(std::clamp(x / cell_, -kFarthest, kFarthest)));
+  };
   return {index(p.x()), index(p.y()), index(p.z())};
 }
 

@@ -20,12 +20,6 @@ namespace {
 constexpr std::uintmax_t kLargestObj = std::uintmax_t{2} << 30;
 constexpr std::size_t kMostWarnings = 20;
 
-std::string rest_of(const TextLine& line, std::size_t first) {
-  if (first >= line.words.size()) return "";
-  const std::string_view last = line.words.back();
-  return {line.words[first].data(), last.data() + last.size()};
-}
-
 // First pass: checks every line, follows names and materials, and leaves clean v, vn and f lines for
 // tinyobjloader.
 class ObjChecker {
@@ -187,20 +181,21 @@ void add_face(void* user, tinyobj::index_t* corners, int count) {
     if (corners[i].normal_index != 0)
       face.normals.push_back(absolute(corners[i].normal_index, geometry.normals.size(), loading, face));
   }
-  if (face.normals.size() != face.positions.size()) face.normals.clear();
 }
 
 // Positive indices may point forward, so their range is known at the end only.
-void check_ranges(const ObjGeometry& geometry, const std::string& file) {
+// Faces that have normals at some corners only become flat.
+void check_ranges(ObjGeometry& geometry, const std::string& file) {
   const auto check = [&](const std::vector<std::uint32_t>& indices, std::size_t count, const ObjFace& face) {
     for (const std::uint32_t index : indices)
       if (index >= count)
         throw InputError(at_line(file, face.line), fmt::format("index {} is out of range", index + 1),
                          fmt::format("The file has {}.", count));
   };
-  for (const ObjFace& face : geometry.faces) {
+  for (ObjFace& face : geometry.faces) {
     check(face.positions, geometry.positions.size(), face);
     check(face.normals, geometry.normals.size(), face);
+    if (face.normals.size() != face.positions.size()) face.normals.clear();
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -86,27 +87,7 @@ OutputFile::~OutputFile() {
   if (!committed_) unlink(partial_.c_str());
 }
 
-void OutputFile::fail(std::string_view what, std::error_code code) const {
-  raise(target_, what, code);
-}
-
-void OutputFile::write(const void* bytes, std::size_t size) {
-  buffer_.append(static_cast<const char*>(bytes), size);
-  if (buffer_.size() >= kBufferBytes) flush();
-}
-
-void OutputFile::flush() {
-  std::size_t done = 0;
-  while (done < buffer_.size()) {
-    const ssize_t written = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
-    if (written < 0 && errno != EINTR) raise(target_, "cannot write the file", last_error());
-    if (written > 0) done += static_cast<std::size_t>(written);
-  }
-  buffer_.clear();
-}
-
-void OutputFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
-  flush();
+void OutputFile::put(std::uint64_t offset, const void* bytes, std::size_t size) {
   std::size_t done = 0;
   while (done < size) {
     const ssize_t written = pwrite(descriptor_, static_cast<const char*>(bytes) + done, size - done,
@@ -114,6 +95,27 @@ void OutputFile::write_at(std::uint64_t offset, const void* bytes, std::size_t s
     if (written < 0 && errno != EINTR) raise(target_, "cannot write the file", last_error());
     if (written > 0) done += static_cast<std::size_t>(written);
   }
+}
+
+void OutputFile::flush() {
+  put(end_, buffer_.data(), buffer_.size());
+  end_ += buffer_.size();
+  buffer_.clear();
+}
+
+void OutputFile::write(const void* bytes, std::size_t size) {
+  if (buffer_.size() + size > kBufferBytes) flush();
+  if (size <= kBufferBytes) {
+    buffer_.append(static_cast<const char*>(bytes), size);
+    return;
+  }
+  put(end_, bytes, size);
+  end_ += size;
+}
+
+void OutputFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
+  flush();
+  put(offset, bytes, size);
 }
 
 void OutputFile::commit() {

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 namespace reemit {
 
@@ -21,10 +20,6 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// For libraries that open files by name: they must write into this existing file, and close it before
-  /// commit().
-  const std::filesystem::path& partial_path() const { return partial_; }
-
   /// Appends to the partial file (buffered). Throws ResourceError when the disk is full or fails.
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
@@ -36,16 +31,15 @@ class OutputFile {
   /// Makes the file appear under its name. Throws ResourceError; the previous file is then unchanged.
   void commit();
 
-  /// The error of a failed write in words, for libraries that report through error codes: names the target.
-  [[noreturn]] void fail(std::string_view what, std::error_code code) const;
-
  private:
+  void put(std::uint64_t offset, const void* bytes, std::size_t size);
   void flush();
 
   std::filesystem::path target_;    // as given, for messages
   std::filesystem::path resolved_;  // links followed
   std::filesystem::path partial_;
-  std::string buffer_;
+  std::string buffer_;     // appended, but not yet in the file
+  std::uint64_t end_ = 0;  // bytes appended that are in the file
   int descriptor_ = -1;
   bool committed_ = false;
 };

@@ -36,17 +36,21 @@ class CounterRng {
     std::uint32_t k0 = key0_;
     std::uint32_t k1 = key1_;
     for (int round = 0; round < 7; ++round) {
-      const std::uint64_t p0 = std::uint64_t{0xD2511F53U} * c0;
-      const std::uint64_t p1 = std::uint64_t{0xCD9E8D57U} * c2;
+      const std::uint64_t p0 = std::uint64_t{kMultiplier0} * c0;
+      const std::uint64_t p1 = std::uint64_t{kMultiplier1} * c2;
       c0 = static_cast<std::uint32_t>(p1 >> 32) ^ c1 ^ k0;
       c1 = static_cast<std::uint32_t>(p1);
       c2 = static_cast<std::uint32_t>(p0 >> 32) ^ c3 ^ k1;
       c3 = static_cast<std::uint32_t>(p0);
-      k0 += 0x9E3779B9U;
-      k1 += 0xBB67AE85U;
+      k0 += kWeyl0;
+      k1 += kWeyl1;
     }
     return {c0, c1, c2, c3};
   }
+
+  /// The same for 16 indices at once: out[k][i] = bits4(index[i], batch, step)[k].
+  void bits4x16(const std::uint32_t index[16], std::uint32_t batch, std::uint32_t step,
+                std::uint32_t out[4][16]) const;
 
   /// Four independent uniform numbers in [0,1).
   std::array<float, 4> uniform4(std::uint64_t index, std::uint32_t batch, std::uint32_t step) const {
@@ -58,6 +62,11 @@ class CounterRng {
   static float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24F; }
 
  private:
+  static constexpr std::uint32_t kMultiplier0 = 0xD2511F53U;
+  static constexpr std::uint32_t kMultiplier1 = 0xCD9E8D57U;
+  static constexpr std::uint32_t kWeyl0 = 0x9E3779B9U;
+  static constexpr std::uint32_t kWeyl1 = 0xBB67AE85U;
+
   std::uint32_t key0_;
   std::uint32_t key1_;
 };

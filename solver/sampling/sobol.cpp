@@ -75,6 +75,9 @@ SobolSequence::SobolSequence(std::uint64_t seed) : seeds_{} {
   }
 }
 
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
 void SobolSequence::sample16(std::uint32_t first_index, int dimension, float* out) const {
   const auto d = static_cast<std::size_t>(dimension);
   const std::uint32_t high = sobol_bits(first_index, dimension);

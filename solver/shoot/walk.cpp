@@ -1,5 +1,7 @@
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <numeric>
+#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -17,7 +19,29 @@ constexpr std::uint32_t kPacketsPerTask = 1024;
 /// power is unshot.
 constexpr std::uint32_t kMostBounces = 200'000;
 
-/// Packets under way, 16 rays at a time; those that end make room so that blocks stay full.
+/// Packets that wait to leave a zone, component by component.
+struct WaitingPackets {
+  std::vector<ZoneId> zone;
+  std::vector<std::uint32_t> id;              ///< Number within the flight: selects the random numbers.
+  std::vector<std::int64_t> quanta;           ///< [packet * bands + band]
+  std::array<std::vector<float>, 4> numbers;  ///< Uniform, for the point and direction it leaves with.
+
+  void clear() {
+    zone.clear();
+    id.clear();
+    quanta.clear();
+    for (auto& n : numbers) n.clear();
+  }
+};
+
+/// Uniform number in [0,1) from the low bytes of four random words, whose high 24 bits make four others.
+float low_bytes_to_unit(const std::uint32_t bits[4][16], std::size_t lane) {
+  std::uint32_t low = 0;
+  for (std::size_t k = 0; k < 4; ++k) low = (low << 8) | (bits[k][lane] & 0xffU);
+  return CounterRng::to_unit(low);
+}
+
+/// Follows packets, 16 rays at a time; those that end make room so that blocks stay full.
 class WalkTask {
  public:
   WalkTask(const BatchTask& task, BatchBooks& books, std::vector<std::int64_t>& absorbed)
@@ -32,106 +56,101 @@ class WalkTask {
 
   void run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
     start(flight, numbers, begin, end);
-    for (std::uint32_t bounce = 1; !ids_.empty(); ++bounce) {
+    for (std::uint32_t bounce = 1; !waiting_.id.empty(); ++bounce) {
       if (bounce == kMostBounces) return leave_unshot();
       trace_on(bounce);
     }
   }
 
-  std::uint64_t rays() const { return rays_; }
+  std::uint64_t rays() const { return ray_count_; }
 
  private:
   void start(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
-    zones_.clear();
-    ids_.clear();
-    quanta_.clear();
+    waiting_.clear();
     FlightCursor cursor(transport_, flight, begin);
-    Ray16 rays;
     std::vector<std::int64_t> power(16 * bands_);
+    std::uint32_t id[16] = {};
     for (std::uint32_t first = begin; first < end; first += 16) {
       const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-      cursor.start16(first, count, numbers, rays, power.data());
-      arrive(
-          rays, count, books_.direct, [&](int lane) { return first + static_cast<std::uint32_t>(lane); },
-          power.data(), 0);
+      cursor.start16(first, count, numbers, rays_, power.data());
+      std::iota(id, id + count, first);
+      arrive(count, id, power.data(), books_.direct, 0);
     }
   }
 
   void trace_on(std::uint32_t bounce) {
-    zones_.swap(from_zones_);
-    ids_.swap(from_ids_);
-    quanta_.swap(from_quanta_);
-    zones_.clear();
-    ids_.clear();
-    quanta_.clear();
-    Ray16 rays;
-    for (std::size_t first = 0; first < from_ids_.size(); first += 16) {
-      const int count = static_cast<int>(std::min<std::size_t>(16, from_ids_.size() - first));
-      alignas(64) float u[4][16] = {};
+    std::swap(waiting_, leaving_);
+    waiting_.clear();
+    alignas(64) float u[4][16] = {};
+    std::uint32_t id[16] = {};
+    for (std::size_t first = 0; first < leaving_.id.size(); first += 16) {
+      const int count = static_cast<int>(std::min<std::size_t>(16, leaving_.id.size() - first));
       for (int lane = 0; lane < count; ++lane) {
         const std::size_t i = first + static_cast<std::size_t>(lane);
-        const auto x = rng_.uniform4(from_ids_[i], batch_, 2 * bounce);
-        for (std::size_t d = 0; d < 4; ++d) u[d][lane] = x[d];
-        transport_.put_zone(from_zones_[i], lanes_, lane);
+        for (std::size_t d = 0; d < 4; ++d) u[d][lane] = leaving_.numbers[d][i];
+        id[lane] = leaving_.id[i];
+        transport_.put_zone(leaving_.zone[i], lanes_, lane);
       }
-      start_rays(lanes_, u, rays);
-      arrive(
-          rays, count, books_.indirect,
-          [&](int lane) { return from_ids_[first + static_cast<std::size_t>(lane)]; },
-          &from_quanta_[first * bands_], bounce);
+      start_rays(lanes_, u, rays_);
+      arrive(count, id, &leaving_.quanta[first * bands_], books_.indirect, bounce);
     }
   }
 
-  /// Traces a block, books where each packet comes to, and keeps those that survive.
-  template <class IdOf>
-  void arrive(const Ray16& rays, int count, std::vector<std::int64_t>& incident, const IdOf& id_of,
-              const std::int64_t* power, std::uint32_t bounce) {
-    Hit16 hits;
-    if (observer_ != nullptr) (*observer_)(rays, count);
-    transport_.rays().closest16(rays, count, hits);
-    rays_ += static_cast<std::uint64_t>(count);
+  /// Traces the rays of a block, books where each packet comes to, and keeps those that survive.
+  void arrive(int count, const std::uint32_t id[16], const std::int64_t* power,
+              std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+    if (observer_ != nullptr) (*observer_)(rays_, count);
+    transport_.rays().closest16(rays_, count, hits_);
+    ray_count_ += static_cast<std::uint64_t>(count);
+    ZoneId zone[16];
+    for (int lane = 0; lane < count; ++lane) {
+      if (hits_.triangle[lane] == RayScene::kMiss) continue;
+      zone[lane] = transport_.zone_of(hits_.triangle[lane], hits_.u[lane], hits_.v[lane], hits_.front[lane]);
+      // With many zones the books are larger than the caches.
+      if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * bands_], 1);
+    }
+    alignas(64) std::uint32_t bits[4][16];
+    rng_.bits4x16(id, batch_, bounce, bits);
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
-      if (hits.triangle[lane] == RayScene::kMiss) {
+      if (hits_.triangle[lane] == RayScene::kMiss) {
         for (std::size_t b = 0; b < bands_; ++b)
-          local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
+          local_.escape(rays_.dx[lane], rays_.dy[lane], rays_.dz[lane], b, quanta[b]);
         continue;
       }
-      const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits.triangle[lane])).surface;
-      const ZoneId zone =
-          transport_.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
-      if (!zone.valid()) {
+      const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits_.triangle[lane])).surface;
+      if (!zone[lane].valid()) {
         for (std::size_t b = 0; b < bands_; ++b)
           book(books_.absorbed_on_backs[surface.index() * bands_ + b], quanta[b]);
         continue;
       }
-      for (std::size_t b = 0; b < bands_; ++b) book(incident[zone.index() * bands_ + b], quanta[b]);
-      reflect(zone, surface, id_of(lane), quanta, bounce);
+      for (std::size_t b = 0; b < bands_; ++b) book(incident[zone[lane].index() * bands_ + b], quanta[b]);
+      reflect(zone[lane], surface, id[lane], quanta, bits, static_cast<std::size_t>(lane));
     }
   }
 
   void reflect(ZoneId zone, SurfaceId surface, std::uint32_t id, const std::int64_t* quanta,
-               std::uint32_t bounce) {
+               const std::uint32_t bits[4][16], std::size_t lane) {
     const double survival = transport_.largest_reflectance(surface);
     const double* rho = transport_.reflectance(surface);
-    const bool survives = CounterRng::to_unit(rng_.bits4(id, batch_, 2 * bounce + 1)[0]) < survival;
-    if (survives) {
-      zones_.push_back(zone);
-      ids_.push_back(id);
+    std::int64_t* absorbed = &absorbed_[surface.index() * bands_];
+    if (!(low_bytes_to_unit(bits, lane) < survival)) {
+      for (std::size_t b = 0; b < bands_; ++b) absorbed[b] += quanta[b];
+      return;
     }
+    waiting_.zone.push_back(zone);
+    waiting_.id.push_back(id);
+    for (std::size_t k = 0; k < 4; ++k) waiting_.numbers[k].push_back(CounterRng::to_unit(bits[k][lane]));
     for (std::size_t b = 0; b < bands_; ++b) {
-      std::int64_t kept = 0;
-      if (survives) {
-        kept = std::min<std::int64_t>(quanta[b],
-                                      std::llround(static_cast<double>(quanta[b]) * (rho[b] / survival)));
-        quanta_.push_back(kept);
-      }
-      absorbed_[surface.index() * bands_ + b] += quanta[b] - kept;
+      const std::int64_t kept = share_of(quanta[b], rho[b] / survival);
+      waiting_.quanta.push_back(kept);
+      absorbed[b] += quanta[b] - kept;
     }
   }
 
   void leave_unshot() {
-    for (std::size_t i = 0; i < quanta_.size(); ++i) book(books_.unshot[i % bands_], quanta_[i]);
+    for (std::size_t i = 0; i < waiting_.quanta.size(); ++i)
+      book(books_.unshot[i % bands_], waiting_.quanta[i]);
   }
 
   const TransportScene& transport_;
@@ -142,11 +161,12 @@ class WalkTask {
   BatchBooks& books_;
   LocalBooks local_;
   std::vector<std::int64_t>& absorbed_;  // [surface * bands + band], of this thread
+  std::uint64_t ray_count_ = 0;
   ZoneLanes lanes_{};
-  std::uint64_t rays_ = 0;
-  std::vector<ZoneId> zones_, from_zones_;          // where each packet is
-  std::vector<std::uint32_t> ids_, from_ids_;       // its number: selects its random numbers
-  std::vector<std::int64_t> quanta_, from_quanta_;  // its power per band
+  Ray16 rays_{};
+  Hit16 hits_{};
+  WaitingPackets waiting_;
+  WaitingPackets leaving_;
 };
 
 }  // namespace

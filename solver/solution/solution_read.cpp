@@ -4,6 +4,7 @@
 #include <span>
 
 #include "scenes/model/error.h"
+#include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/solution_file.h"
 #include "solver/solution/solution_layout.h"
@@ -295,6 +296,14 @@ Solution load_solution(const std::filesystem::path& file) {
     if (is_hdf5 == 0)
       throw InputError(name, "is not a solution file (no HDF5)",
                        "Give the file that `reemit solve -o` wrote.");
+    const Seal seal = check_seal(file);
+    if (seal == Seal::kMissing)
+      throw InputError(
+          name, "is an HDF5 file, but not a complete reemit solution",
+          "Give the file that `reemit solve -o` wrote. If it is that, it was cut off or changed since: "
+          "restore a copy or solve the room again.");
+    if (seal == Seal::kBroken)
+      throw InputError(name, "is damaged or was changed by another program: its checksum is wrong", damaged);
     const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot make file properties");
     check_hdf5(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), "cannot set file properties");
     const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose, "cannot open it");

@@ -1,11 +1,12 @@
-#include <cmath>
 #include <functional>
-#include <numbers>
+#include <new>
 #include <stdexcept>
 
 #include "scenes/io/output_file.h"
 #include "scenes/model/error.h"
+#include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
+#include "solver/solution/hdf5_memory_file.h"
 #include "solver/solution/solution_file.h"
 #include "solver/solution/solution_layout.h"
 
@@ -301,20 +302,17 @@ void save_solution(const Solution& solution, const std::filesystem::path& file) 
   const Hdf5Quiet quiet;
   OutputFile output(file);
   try {
-    // Object headers of this version carry checksums, so damage is found before it is believed.
-    const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot make file properties");
-    check_hdf5(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110),
-               "cannot set the file version");
-    check_hdf5(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), "cannot set file properties");
-    Hdf5Id id(H5Fcreate(output.partial_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose,
-              "cannot create the file");
-    write_all(Hdf5Group(Hdf5Id(H5Gopen2(id.get(), "/", H5P_DEFAULT), H5Gclose, "cannot open the root"), "/"),
-              solution);
-    check_hdf5(H5Fflush(id.get(), H5F_SCOPE_GLOBAL), "cannot flush the file");
-    id.close("cannot close the file");
+    Hdf5MemoryFile memory;
+    write_all(memory.root(), solution);
+    const std::string_view bytes = memory.close();
+    output.write(bytes);
+    output.write(seal_of(bytes));
   } catch (const Hdf5Error& error) {
     throw ResourceError(file.string(), error.what(),
-                        "The previous file, if any, is unchanged. Check the free space.");
+                        "The previous file, if any, is unchanged. Check the free memory.");
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(file.string(), "out of memory while saving",
+                        "The previous file, if any, is unchanged. Close other programs or use larger zones.");
   }
   output.commit();
 }

@@ -17,6 +17,11 @@ inline void book(std::int64_t& account, std::int64_t quanta) {
   std::atomic_ref<std::int64_t>(account).fetch_add(quanta, std::memory_order_relaxed);
 }
 
+/// `share` in [0,1] of `quanta` >= 0, rounded to the nearest.
+inline std::int64_t share_of(std::int64_t quanta, double share) {
+  return static_cast<std::int64_t>(static_cast<double>(quanta) * share + 0.5);
+}
+
 /// Where the power of one batch went, in quanta. Zone arrays are indexed zone * bands + band, surface arrays
 /// surface * bands + band, escaped by axis * bands + band (axes as in BandAudit::escaped).
 struct BatchBooks {

@@ -56,6 +56,25 @@ class RoomBuilder {
     return *this;
   }
 
+  /// A triangle as a surface of its own, corners counter-clockwise from the front.
+  RoomBuilder& triangle(MaterialId material, const std::array<Vec3, 3>& corners, std::uint32_t divisions) {
+    Surface s;
+    s.name = "triangle" + std::to_string(scene_.surfaces.size());
+    s.material = material;
+    s.positions.assign(corners.begin(), corners.end());
+    s.faces.push_back({{0, 1, 2}, {}, {}, 0});
+    scene_.surfaces.push_back(s);
+    const auto first = static_cast<std::uint32_t>(base_.vertices.size());
+    base_.vertices.insert(base_.vertices.end(), corners.begin(), corners.end());
+    BaseTriangle t;
+    t.vertex = {first, first + 1, first + 2};
+    t.surface = SurfaceId(scene_.surfaces.size() - 1);
+    t.divisions = divisions;
+    t.two_sided = scene_.materials[material.index()].two_sided;
+    base_.triangles.push_back(t);
+    return *this;
+  }
+
   /// Inside of an axis-parallel box; materials of x0, x1, y0, y1, z0, z1. An invalid id leaves that side
   /// open.
   RoomBuilder& box(const Vec3& low, const Vec3& high, const std::array<MaterialId, 6>& m,

@@ -1,10 +1,17 @@
 #pragma once
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+
+#include "viewer_export/cli/option_values.h"
 
 namespace reemit::cli {
 
@@ -37,6 +44,48 @@ CLI::Option* add_parsed_option(CLI::App& command, const std::string& names, Targ
     }
   };
   return command.add_option_function(names, read, help)->type_name(type);
+}
+
+/// Words of an option and what they stand for, in the order of the help; the first is the default.
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+/// An option that takes one of a few words. `target` is set to the first choice.
+template <class Value>
+CLI::Option* add_choice_option(CLI::App& command, const std::string& names, Value& target,
+                               const Choices<Value>& choices, const std::string& help) {
+  std::string words;
+  for (const auto& [word, value] : choices) words += (words.empty() ? "" : "|") + word;
+  const auto parse = [choices, words](const std::string& text) {
+    for (const auto& [word, value] : choices) {
+      if (word == text) return value;
+    }
+    throw std::invalid_argument("'" + text + "' is not one of " + words);
+  };
+  target = choices.front().second;
+  return add_parsed_option(command, names, target, parse, words, help)->default_str(choices.front().first);
+}
+
+/// An option that takes a whole number in [least, most]; its value on entry is the default.
+template <class Integer>
+CLI::Option* add_integer_option(CLI::App& command, const std::string& names, Integer& target, Integer least,
+                                Integer most, const std::string& help) {
+  const auto parse = [least, most](const std::string& text) {
+    return static_cast<Integer>(
+        parse_integer(text, static_cast<std::uint64_t>(least), static_cast<std::uint64_t>(most)));
+  };
+  return add_parsed_option(command, names, target, parse, "N", help)->default_str(std::to_string(target));
+}
+
+inline void add_seed_and_threads(CLI::App& command, std::uint64_t& seed, int& threads) {
+  add_integer_option(command, "--seed", seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max(),
+                     "Seed; the same seed gives the same bits on any number of threads");
+  add_integer_option(command, "--threads", threads, 0, 1024, "Threads; 0 = all cores");
+}
+
+inline void add_room_option(CLI::App& command, std::optional<std::filesystem::path>& room) {
+  command.add_option("--room", room, "Room file, if it is no longer where it was solved from")
+      ->type_name("ROOM");
 }
 
 }  // namespace reemit::cli

@@ -29,6 +29,15 @@ std::optional<double> finite_number(std::string_view text) {
   return value;
 }
 
+/// The whole text as decimal digits.
+std::optional<std::uint64_t> whole_number(std::string_view text) {
+  text = trimmed(text);
+  std::uint64_t value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 [[noreturn]] void refuse(const std::string& text, std::string_view expected) {
   throw std::invalid_argument(fmt::format("'{}' is not {}", text, expected));
 }
@@ -65,19 +74,22 @@ double parse_seconds(const std::string& text) {
 }
 
 std::uint64_t parse_count(const std::string& text) {
-  constexpr double kLargest = 1e18;
-  std::string_view digits = trimmed(text);
-  std::uint64_t whole = 0;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), whole);
-  if (problem == std::errc() && end == digits.data() + digits.size() && whole >= 1 &&
-      static_cast<double>(whole) <= kLargest) {
-    return whole;
-  }
-  const auto value = finite_number(digits);
-  if (value && *value >= 1 && *value <= kLargest && *value == std::floor(*value)) {
+  constexpr std::uint64_t kLargest = 1'000'000'000'000'000'000;
+  const auto whole = whole_number(text);
+  if (whole && *whole >= 1 && *whole <= kLargest) return *whole;
+  const auto value = finite_number(text);
+  if (!whole && value && *value >= 1 && *value <= 1e18 && *value == std::floor(*value)) {
     return static_cast<std::uint64_t>(*value);
   }
   refuse(text, "a whole number from 1 to 1e18; write 250000 or 1e6");
+}
+
+std::uint64_t parse_integer(const std::string& text, std::uint64_t least, std::uint64_t most) {
+  const auto whole = whole_number(text);
+  if (!whole || *whole < least || *whole > most) {
+    refuse(text, fmt::format("a whole number from {} to {}", least, most));
+  }
+  return *whole;
 }
 
 double parse_positive(const std::string& text) {
@@ -110,10 +122,8 @@ Vec3 parse_point(const std::string& text) {
 PixelSize parse_size(const std::string& text) {
   constexpr int kLargestSide = 16384;
   const auto side = [](std::string_view digits) {
-    int value = 0;
-    const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    const bool whole = problem == std::errc() && end == digits.data() + digits.size();
-    return whole && value >= 1 && value <= kLargestSide ? value : 0;
+    const auto value = digits.starts_with(' ') || digits.ends_with(' ') ? std::nullopt : whole_number(digits);
+    return value && *value <= kLargestSide ? static_cast<int>(*value) : 0;
   };
   const std::string_view all = trimmed(text);
   const auto cross = all.find('x');

@@ -15,6 +15,8 @@ double parse_share(const std::string& text);
 double parse_seconds(const std::string& text);
 /// Whole number in [1, 1e18]: "250000", "1e6" or "2.5e6".
 std::uint64_t parse_count(const std::string& text);
+/// Whole number in [least, most].
+std::uint64_t parse_integer(const std::string& text, std::uint64_t least, std::uint64_t most);
 /// Finite number > 0.
 double parse_positive(const std::string& text);
 /// Finite number.

@@ -2,7 +2,6 @@
 #include <cctype>
 #include <chrono>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -37,7 +36,7 @@ struct RenderOptions {
   fs::path solution;
   std::optional<fs::path> room;
   fs::path output;
-  std::string format = ".exr";  ///< Of pictures in a folder: an extension with its dot.
+  std::string format;  ///< Of pictures in a folder: an extension with its dot.
   CameraOptions camera;
   PixelSize size;  ///< 0x0: as the camera says.
   StillSettings still;
@@ -166,13 +165,13 @@ ExitCode run_render(RenderOptions options) {
   return ExitCode::kDone;
 }
 
-/// The formats as {"exr", ".exr"}, and what they are for the help.
-std::map<std::string, std::string> format_names() {
-  std::map<std::string, std::string> names;
+/// The formats by their names: {"exr", ".exr"}.
+Choices<std::string> format_choices() {
+  Choices<std::string> choices;
   for (const ImageFormat& format : image_formats()) {
-    names.emplace(format.extension.substr(1), format.extension);
+    choices.emplace_back(format.extension.substr(1), format.extension);
   }
-  return names;
+  return choices;
 }
 
 std::string format_help() {
@@ -211,42 +210,25 @@ void add_view_options(CLI::App& render, RenderOptions& options) {
 
 void add_quality_options(CLI::App& render, RenderOptions& options) {
   render.option_defaults()->group("Light");
-  render
-      .add_option("--integrator", options.still.integrator,
-                  "gather: direct light and final gather over the zones; path: path tracing, the\n"
-                  "unbiased reference; zones: the zone values as they are")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Integrator>{
-          {"gather", Integrator::kGather}, {"path", Integrator::kPath}, {"zones", Integrator::kZones}}))
-      ->type_name("NAME")
-      ->default_str("gather");
+  add_choice_option<Integrator>(
+      render, "--integrator", options.still.integrator,
+      {{"gather", Integrator::kGather}, {"path", Integrator::kPath}, {"zones", Integrator::kZones}},
+      "gather: direct light and final gather over the zones; path: path tracing, the\n"
+      "unbiased reference; zones: the zone values as they are");
   auto* error =
       add_parsed_option(render, "--error", options.still.error_target, parse_share, "SHARE",
                         "Refine until the relative error (rms over pixels, worst band) is below: 2%");
-  render.add_option("--spp", options.still.spp, "Camera rays per pixel, rounded up to whole passes")
-      ->check(CLI::Range(1, 1048576))
-      ->type_name("N")
-      ->capture_default_str()
+  add_integer_option(render, "--spp", options.still.spp, 1, 1048576,
+                     "Camera rays per pixel, rounded up to whole passes")
       ->excludes(error);
-  render.add_option("--seed", options.still.seed, "Seed; the same seed gives the same picture")
-      ->type_name("S")
-      ->capture_default_str();
-  render.add_option("--threads", options.still.threads, "Threads; 0 = all cores")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
+  add_seed_and_threads(render, options.still.seed, options.still.threads);
 
   render.option_defaults()->group("Picture");
-  render.add_option("--filter", options.still.filter, "Pixel filter: box or tent")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PixelFilter>{{"box", PixelFilter::kBox}, {"tent", PixelFilter::kTent}}))
-      ->type_name("NAME")
-      ->default_str("box");
+  add_choice_option<PixelFilter>(render, "--filter", options.still.filter,
+                                 {{"box", PixelFilter::kBox}, {"tent", PixelFilter::kTent}}, "Pixel filter");
   add_parsed_option(render, "--exposure", options.tone_map.exposure_ev, parse_number, "EV",
                     "Exposure of PNG in stops: radiance times 2^EV (default: from the picture)");
-  render.add_option("--format", options.format, "Format of pictures in a folder")
-      ->transform(CLI::CheckedTransformer(format_names()))
-      ->type_name("NAME")
-      ->default_str("exr");
+  add_choice_option(render, "--format", options.format, format_choices(), "Format of pictures in a folder");
 }
 
 }  // namespace
@@ -261,8 +243,7 @@ void add_render_command(CLI::App& program, Action& action) {
       "  reemit render room.h5 --integrator path --spp 1024 -o reference.exr");
   render.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
   render.add_option("-o,--output", options->output, format_help())->required()->type_name("FILE|DIR/");
-  render.add_option("--room", options->room, "Room file, if it is no longer where it was solved from")
-      ->type_name("ROOM");
+  add_room_option(render, options->room);
   add_view_options(render, *options);
   add_quality_options(render, *options);
   render.option_defaults()->group("Output");

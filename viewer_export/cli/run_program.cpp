@@ -1,14 +1,14 @@
-#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <new>
-#include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "scenes/io/json_cursor.h"
 #include "scenes/model/error.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/output_path.h"
@@ -31,36 +31,6 @@ constexpr const char* kFooter =
     "'reemit COMMAND --help' explains a command.\n"
     "Exit codes: 0 done, 1 a check failed, 2 bad usage, input or output, 3 out of memory.";
 
-/// Number of letters to change, add or drop to get from one word to the other (Levenshtein distance).
-std::size_t letters_apart(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-/// The known word nearest to a mistyped one; empty if none is near.
-std::string nearest(const std::string& word, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3);
-  for (const std::string& candidate : known) {
-    const std::size_t distance = letters_apart(word, candidate);
-    if (distance <= best_distance && (best.empty() || distance < best_distance)) {
-      best = candidate;
-      best_distance = distance;
-    }
-  }
-  return best;
-}
-
 std::vector<std::string> known_words(const CLI::App& command) {
   std::vector<std::string> words;
   for (const CLI::Option* option : command.get_options()) {
@@ -81,7 +51,7 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
   if (!unknown.empty()) {
     message = fmt::format("unknown argument '{}'", unknown.front());
     const std::string word = unknown.front().substr(0, unknown.front().find('='));
-    const std::string suggestion = nearest(word, known_words(command));
+    const std::string suggestion = nearest_name(word, known_words(command));
     if (!suggestion.empty()) message += fmt::format("; did you mean '{}'?", suggestion);
   }
   const std::string name = chosen.empty() ? "reemit" : "reemit " + command.get_name();

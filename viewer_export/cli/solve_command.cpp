@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -114,41 +113,23 @@ void add_solve_command(CLI::App& program, Action& action) {
                     "Stop after this many packets from luminaires: 250000 or 1e6");
 
   solve.option_defaults()->group("Method");
-  solve
-      .add_option("--method", options->solver.method,
-                  "Estimator: shooting (absorb and re-emit) or walk (Russian roulette)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SolveMethod>{
-          {"shooting", SolveMethod::kShooting}, {"walk", SolveMethod::kWalk}}))
-      ->type_name("NAME")
-      ->default_str("shooting");
-  solve
-      .add_option("--sampling", options->solver.sampling, "Points and directions of packets: sobol or random")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SamplingKind>{
-          {"random", SamplingKind::kRandom}, {"sobol", SamplingKind::kSobol}}))
-      ->type_name("NAME")
-      ->default_str("sobol");
-  solve
-      .add_option("--seed", options->solver.seed,
-                  "Seed; the same seed gives the same bits on any thread count")
-      ->type_name("S")
-      ->capture_default_str();
-  solve.add_option("--threads", options->solver.threads, "Threads; 0 = all cores")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
+  add_choice_option<SolveMethod>(solve, "--method", options->solver.method,
+                                 {{"shooting", SolveMethod::kShooting}, {"walk", SolveMethod::kWalk}},
+                                 "Estimator: shooting (absorb and re-emit) or walk (Russian roulette)");
+  add_choice_option<SamplingKind>(solve, "--sampling", options->solver.sampling,
+                                  {{"sobol", SamplingKind::kSobol}, {"random", SamplingKind::kRandom}},
+                                  "Points and directions of packets: low-discrepancy or random");
+  add_seed_and_threads(solve, options->solver.seed, options->solver.threads);
 
   solve.option_defaults()->group("Room");
   add_parsed_option(solve, "--zone-area", options->mesh.zone_area, parse_positive, "M2",
                     "Largest zone area [m2] (default: area of the room / 4000)");
   solve.add_flag("--two-sided", options->read.force_two_sided,
                  "Let every face reflect on both sides (rooms with mixed winding)");
-  solve
-      .add_option("--emissive-units", options->read.gltf_emissive_units,
-                  "Unit of emissive factors in glTF: cd/m2 (the specification) or W/sr/m2")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, EmissiveUnits>{
-          {"cd/m2", EmissiveUnits::kCandela}, {"W/sr/m2", EmissiveUnits::kWatt}}))
-      ->type_name("UNIT")
-      ->default_str("cd/m2");
+  add_choice_option<EmissiveUnits>(
+      solve, "--emissive-units", options->read.gltf_emissive_units,
+      {{"cd/m2", EmissiveUnits::kCandela}, {"W/sr/m2", EmissiveUnits::kWatt}},
+      "Unit of emissive factors in glTF; the specification says cd/m2, exporters disagree");
 
   solve.option_defaults()->group("Output");
   add_json_option(solve, options->style);

@@ -1,8 +1,10 @@
 #include "viewer_export/still/film.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
+#include <utility>
 
 #include "scenes/model/error.h"
 
@@ -17,65 +19,81 @@ double sample_filter(PixelFilter filter, double u) {
   return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u));
 }
 
-std::size_t Film::bytes_per_pixel(std::size_t bands) {
-  return (5 * bands + 7) * sizeof(float);
+std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates) {
+  // Finishing turns three of the replicates into layers.
+  return ((2 + std::max<std::size_t>(replicates, 3)) * bands + 6) * sizeof(float);
 }
 
-Film::Film(const BandSet& bands, int width, int height) : bands_(bands.count()) {
+Film::Film(const BandSet& bands, int width, int height, std::size_t replicates)
+    : bands_(bands.count()), replicates_(replicates) {
   image_.bands = bands;
   image_.width = width;
   image_.height = height;
   const std::size_t pixels = image_.pixel_count();
   try {
-    for (auto* layer : {&image_.radiance, &image_.direct, &image_.radiance_stderr, &image_.albedo})
-      layer->assign(pixels * bands_, 0.0F);
+    image_.direct.assign(pixels * bands_, 0.0F);
+    image_.albedo.assign(pixels * bands_, 0.0F);
+    for (std::size_t r = 0; r < replicates_; ++r) means_[r].assign(pixels * bands_, 0.0F);
     image_.samples.assign(pixels, 0.0F);
     image_.depth.assign(pixels, 0.0F);
     image_.normal.assign(3 * pixels, 0.0F);
     seen_.assign(pixels, 0.0F);
-    passes_.assign(pixels, 0.0F);
   } catch (const std::bad_alloc&) {
     throw ResourceError("still",
                         "out of memory for " + std::to_string(pixels) + " pixels of " +
-                            std::to_string(bytes_per_pixel(bands_)) + " bytes",
+                            std::to_string(bytes_per_pixel(bands_, replicates_)) + " bytes",
                         "Choose a smaller picture.");
   }
 }
 
-void Film::add(std::size_t pixel, const PixelPass& pass) {
-  const float n = ++passes_[pixel];
+void Film::add(std::size_t pixel, std::size_t replicate, const PixelBlock& block) {
+  const auto samples = static_cast<float>(block.samples);
+  const float share = samples / (static_cast<float>(block.earlier) + samples);
+  const float share_of_all = samples / (image_.samples[pixel] + samples);
   for (std::size_t b = 0; b < bands_; ++b) {
     const std::size_t k = pixel * bands_ + b;
-    // Running mean and sum of squared deviations [WEL62].
-    const float value = pass.direct[b] + pass.indirect[b];
-    const float deviation = value - image_.radiance[k];
-    image_.radiance[k] += deviation / n;
-    image_.radiance_stderr[k] += deviation * (value - image_.radiance[k]);
-    image_.direct[k] += (pass.direct[b] - image_.direct[k]) / n;
-    image_.albedo[k] += (pass.albedo[b] - image_.albedo[k]) / n;
+    float& mean = means_[replicate][k];
+    mean += share * (block.direct[b] + block.indirect[b] - mean);
+    image_.direct[k] += share_of_all * (block.direct[b] - image_.direct[k]);
+    image_.albedo[k] += share_of_all * (block.albedo[b] - image_.albedo[k]);
   }
-  image_.samples[pixel] += static_cast<float>(pass.samples);
-  image_.depth[pixel] += static_cast<float>(pass.depth);
+  image_.samples[pixel] += samples;
+  image_.depth[pixel] += static_cast<float>(block.depth);
   for (std::size_t k = 0; k < 3; ++k)
-    image_.normal[3 * pixel + k] += static_cast<float>(pass.normal[static_cast<Eigen::Index>(k)]);
-  seen_[pixel] += static_cast<float>(pass.seen);
+    image_.normal[3 * pixel + k] += static_cast<float>(block.normal[static_cast<Eigen::Index>(k)]);
+  seen_[pixel] += static_cast<float>(block.seen);
+}
+
+double Film::radiance(std::size_t pixel, std::size_t band) const {
+  double sum = 0;
+  for (std::size_t r = 0; r < replicates_; ++r) sum += static_cast<double>(means_[r][pixel * bands_ + band]);
+  return sum / static_cast<double>(replicates_);
 }
 
 double Film::squared_error(std::size_t pixel, std::size_t band) const {
-  const double n = passes_[pixel];
-  if (n < 2) return std::numeric_limits<double>::infinity();
-  return image_.radiance_stderr[pixel * bands_ + band] / (n * (n - 1));
+  if (replicates_ < 2) return std::numeric_limits<double>::infinity();
+  const double mean = radiance(pixel, band);
+  double sum = 0;
+  for (std::size_t r = 0; r < replicates_; ++r) {
+    const double deviation = static_cast<double>(means_[r][pixel * bands_ + band]) - mean;
+    sum += deviation * deviation;
+  }
+  const auto n = static_cast<double>(replicates_);
+  return sum / (n * (n - 1));
 }
 
 StillImage Film::finish() {
-  bool have_errors = true;
-  for (const float n : passes_) have_errors = have_errors && n >= 2;
-  image_.indirect.resize(image_.radiance.size());
+  const bool have_errors = replicates_ >= 2;
+  for (std::size_t r = replicates_; r < 3; ++r) means_[r].resize(image_.direct.size());
   for (std::size_t pixel = 0; pixel < image_.pixel_count(); ++pixel) {
     for (std::size_t b = 0; b < bands_; ++b) {
+      // In place: replicates 0, 1 and 2 become the layers radiance, indirect and standard error.
       const std::size_t k = pixel * bands_ + b;
-      image_.indirect[k] = std::max(0.0F, image_.radiance[k] - image_.direct[k]);
-      if (have_errors) image_.radiance_stderr[k] = static_cast<float>(std::sqrt(squared_error(pixel, b)));
+      const double mean = radiance(pixel, b);
+      const double error = have_errors ? std::sqrt(squared_error(pixel, b)) : 0.0;
+      means_[0][k] = static_cast<float>(mean);
+      means_[1][k] = std::max(0.0F, means_[0][k] - image_.direct[k]);
+      means_[2][k] = static_cast<float>(error);
     }
     const float seen = seen_[pixel];
     image_.depth[pixel] = seen > 0 ? image_.depth[pixel] / seen : std::numeric_limits<float>::infinity();
@@ -83,7 +101,9 @@ StillImage Film::finish() {
     const float length = normal.norm();
     if (length > 0) normal /= length;
   }
-  if (!have_errors) image_.radiance_stderr.clear();
+  image_.radiance = std::move(means_[0]);
+  image_.indirect = std::move(means_[1]);
+  if (have_errors) image_.radiance_stderr = std::move(means_[2]);
   return std::move(image_);
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -20,8 +21,8 @@ std::string to_string(PixelFilter filter);  ///< "box" or "tent".
 /// weights, and pixels share none.
 double sample_filter(PixelFilter filter, double u);
 
-/// What one pass found out about one pixel; means over the pass's samples.
-struct PixelPass {
+/// What one block of samples of one replicate found out about one pixel; means over its samples.
+struct PixelBlock {
   const float* direct;    ///< Emission and first reflection of luminaires [W/(m2 sr)], per band.
   const float* indirect;  ///< The rest [W/(m2 sr)], per band.
   const float* albedo;    ///< Reflectance [0,1], per band.
@@ -29,36 +30,41 @@ struct PixelPass {
   double depth = 0;       ///< Sum over samples that saw something [m].
   int seen = 0;           ///< Samples that saw something.
   int samples = 0;
+  int earlier = 0;  ///< Samples that this replicate of the pixel had before.
 };
 
-/// The growing picture. Passes of equal size are independent estimates of a pixel: their mean is the picture
-/// and their spread its standard error. Pixels may have had different numbers of passes. Different pixels may
-/// be written from different threads.
+/// The growing picture. A pixel is the mean of a few replicates, each an independent randomised quasi-Monte
+/// Carlo estimate that grows by blocks; their spread is the standard error. All replicates of a pixel have
+/// the same number of samples, pixels may differ. Different pixels may be written from different threads.
 class Film {
  public:
-  /// Throws ResourceError when the layers do not fit into memory.
-  Film(const BandSet& bands, int width, int height);
+  static constexpr std::size_t kReplicates = 4;
+
+  /// `replicates`: 1 to kReplicates; with one there are no errors. Throws ResourceError when the layers do
+  /// not fit into memory.
+  Film(const BandSet& bands, int width, int height, std::size_t replicates);
 
   /// Memory that a pixel takes while rendering [bytes].
-  static std::size_t bytes_per_pixel(std::size_t bands);
+  static std::size_t bytes_per_pixel(std::size_t bands, std::size_t replicates);
 
-  void add(std::size_t pixel, const PixelPass& pass);
+  void add(std::size_t pixel, std::size_t replicate, const PixelBlock& block);
 
-  std::size_t passes(std::size_t pixel) const { return static_cast<std::size_t>(passes_[pixel]); }
-  float radiance(std::size_t pixel, std::size_t band) const { return image_.radiance[pixel * bands_ + band]; }
-  /// Square of the standard error; infinite before two passes.
+  std::size_t replicates() const { return replicates_; }
+  double radiance(std::size_t pixel, std::size_t band) const;
+  /// Square of the standard error of radiance; infinite with one replicate.
   double squared_error(std::size_t pixel, std::size_t band) const;
+  /// Size, bands and the layers that hold means already: direct, albedo, samples.
   const StillImage& image() const { return image_; }
 
-  /// Turns sums into layers and hands the picture over. The film is empty afterwards.
+  /// Makes the layers and hands the picture over. The film is empty afterwards.
   StillImage finish();
 
  private:
   std::size_t bands_;
-  StillImage image_;  // radiance, direct, albedo: means so far; radiance_stderr: sum of squared deviations;
-                      // indirect: empty until finish; depth, normal: sums over samples that saw something
+  std::size_t replicates_;
+  StillImage image_;  // depth, normal: sums over samples that saw something
+  std::array<std::vector<float>, kReplicates> means_;
   std::vector<float> seen_;
-  std::vector<float> passes_;
 };
 
 }  // namespace reemit

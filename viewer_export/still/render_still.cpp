@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -16,16 +17,15 @@
 namespace reemit {
 namespace {
 
-/// Passes before an error is believed.
-constexpr int kFewestPasses = 4;
-/// Camera rays of a pass towards an error target: enough to be stratified, few enough to stop in time.
-constexpr int kAdaptiveSamples = 4;
-/// Larger passes would not lower the error of a fixed number of rays, but cost the standard error its basis.
-constexpr int kMostSamples = 64;
+/// Camera rays that a pixel's replicate gets in one block: few at first, so that an easy target is not
+/// overshot, then more, up to this many.
+constexpr int kSmallestBlock = 2;
+constexpr int kLargestBlock = 8;
+/// Camera rays per pixel before an error is believed.
+constexpr int kFewestToStop = 16;
 
 struct TileState {
   Tile tile;
-  int passes = 0;
   bool active = true;
 };
 
@@ -67,7 +67,7 @@ double tile_error(const Film& film, const Tile& tile, std::size_t band, double f
   return sum;
 }
 
-/// The passes of one picture: renders them, measures the error and decides which tiles go on.
+/// The blocks of one picture: renders them, measures the error and decides which tiles go on.
 class Rendering {
  public:
   Rendering(const TileRenderer& renderer, const StillSettings& settings, Film& film,
@@ -79,18 +79,22 @@ class Rendering {
         interrupt_(interrupt),
         tiles_(make_tiles(film.image().width, film.image().height)),
         to_target_(settings.error_target > 0) {
-    const auto quarter = static_cast<unsigned>(std::max(1, settings.spp / kFewestPasses));
-    samples_ = to_target_ ? std::min(kAdaptiveSamples, settings.most_spp)
-                          : std::min(static_cast<int>(std::bit_floor(quarter)), kMostSamples);
-    if (to_target_) samples_ = static_cast<int>(std::bit_floor(static_cast<unsigned>(samples_)));
-    most_passes_ = ((to_target_ ? settings.most_spp : settings.spp) + samples_ - 1) / samples_;
+    const int replicates = static_cast<int>(film.replicates());
+    const int most = to_target_ ? settings.most_spp : settings.spp;
+    most_samples_ = (most + replicates - 1) / replicates;
+    log2_samples_ = std::bit_width(static_cast<unsigned>(most_samples_ - 1));
   }
 
   void run() {
-    for (int pass = 0; pass < most_passes_ && !interrupt_; ++pass) {
-      render_pass(pass);
+    int samples = 0;
+    while (samples < most_samples_ && !interrupt_) {
+      const int wished = std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(samples) / 2)),
+                                    kSmallestBlock, kLargestBlock);
+      const int block = std::min(wished, most_samples_ - samples);
+      render_block({samples, block, log2_samples_});
       if (interrupt_) break;
-      progress_now_.passes = pass + 1;
+      samples += block;
+      progress_now_.samples = samples * static_cast<int>(film_.replicates());
       measure();
       if (std::none_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.active; })) break;
     }
@@ -99,27 +103,27 @@ class Rendering {
   double error() const { return progress_now_.error; }
 
  private:
-  void render_pass(int pass) {
+  void render_block(const SampleBlock& block) {
     std::vector<TileState*> active;
     for (TileState& t : tiles_)
       if (t.active) active.push_back(&t);
     std::size_t done = 0;
     tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t i) {
       if (interrupt_) return;
-      renderer_.render(active[i]->tile, pass, samples_, film_);
-      active[i]->passes = pass + 1;
+      renderer_.render(active[i]->tile, block, film_);
       const std::lock_guard lock(progress_mutex_);
       ++done;
-      report((pass + static_cast<double>(done) / static_cast<double>(active.size())) / most_passes_);
+      const double share = static_cast<double>(done) / static_cast<double>(active.size());
+      report((block.first + block.samples * share) / most_samples_);
     });
   }
 
   /// Pre: the mutex is held, or no tile is being rendered.
-  void report(double of_passes) {
+  void report(double of_samples) {
     if (!progress_) return;
     const double by_error =
         to_target_ ? std::min(1.0, std::pow(settings_.error_target / progress_now_.error, 2)) : 0.0;
-    progress_now_.fraction = std::max({progress_now_.fraction, of_passes, by_error});
+    progress_now_.fraction = std::max({progress_now_.fraction, of_samples, by_error});
     progress_now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     progress_(progress_now_);
   }
@@ -127,11 +131,11 @@ class Rendering {
   /// Error of the picture; tiles below the target are done. A tile decides by all its pixels together, which
   /// keeps the choice from favouring pixels that happen to look quiet.
   void measure() {
-    if (progress_now_.passes < 2) return;
+    if (film_.replicates() < 2) return;
     const std::size_t pixels = film_.image().pixel_count();
     const std::size_t bands = film_.image().bands.count();
     const double target2 = settings_.error_target * settings_.error_target;
-    const bool may_stop = to_target_ && progress_now_.passes >= std::min(kFewestPasses, most_passes_);
+    const bool may_stop = to_target_ && progress_now_.samples >= kFewestToStop;
     std::vector<double> worst(tiles_.size(), 0.0);
     double error2 = 0;
     for (std::size_t b = 0; b < bands; ++b) {
@@ -151,7 +155,7 @@ class Rendering {
     progress_now_.error = std::sqrt(error2);
     if (may_stop)
       for (std::size_t i = 0; i < tiles_.size(); ++i)
-        tiles_[i].active = error2 > target2 && worst[i] > target2;
+        tiles_[i].active = tiles_[i].active && error2 > target2 && worst[i] > target2;
     report(0);
   }
 
@@ -162,8 +166,8 @@ class Rendering {
   const std::atomic<bool>& interrupt_;
   std::vector<TileState> tiles_;
   bool to_target_;
-  int samples_ = 1;
-  int most_passes_ = 1;
+  int most_samples_ = 1;  // per replicate
+  int log2_samples_ = 0;
   std::mutex progress_mutex_;
   StillProgress progress_now_{.error = std::numeric_limits<double>::infinity()};
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -209,9 +213,12 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
   const int height = settings.height != 0 ? settings.height : camera.height;
   const PinholeCamera pinhole(camera, width, height, rays);
   const TileRenderer renderer(scene, solution, rays, pinhole, settings);
-  Film film(scene.bands, width, height);
+  const int most = settings.error_target > 0 ? settings.most_spp : settings.spp;
+  Film film(scene.bands, width, height,
+            std::min<std::size_t>(Film::kReplicates, static_cast<std::size_t>(most)));
   Rendering rendering(renderer, settings, film, progress, interrupt);
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] { rendering.run(); });
   StillImage image = film.finish();
   image.info = describe_still(scene, solution, settings, rendering.error());

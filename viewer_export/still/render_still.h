@@ -25,8 +25,8 @@ struct StillSettings {
   int height = 0;  ///< [px] 0 = as the camera says, [1, 65536].
   Integrator integrator = Integrator::kGather;
   PixelFilter filter = PixelFilter::kBox;
-  int spp = 16;     ///< Camera rays per pixel, rounded up to whole passes [1, 1048576]; see error_target.
-  int gathers = 4;  ///< Gather rays per camera ray [1, 1024]; kPath always follows one.
+  int spp = 16;           ///< Camera rays per pixel, rounded up to a multiple of 4 beyond 4 [1, 1048576].
+  int gathers = 4;        ///< Gather rays per camera ray [1, 1024]; kPath always follows one.
   int light_samples = 1;  ///< Shadow rays per camera ray [1, 1024].
   /// Relative error to reach as a fraction [0, 1): rms over pixels of s/(L + floor), worst band, with s the
   /// standard error of radiance L. 0 = stop by spp; else spp is ignored.
@@ -34,7 +34,7 @@ struct StillSettings {
   /// `floor` above as a share of the picture's mean radiance [0, 1]: keeps black pixels from asking for more
   /// than anyone can see.
   double error_floor = 0.01;
-  int most_spp = 65536;    ///< Camera rays per pixel at which an error target is given up.
+  int most_spp = 16384;    ///< Camera rays per pixel at which an error target is given up.
   double close_hit = 1.0;  ///< GatherSettings::close_hit.
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = all cores. The picture does not depend on it.
@@ -42,16 +42,17 @@ struct StillSettings {
 
 struct StillProgress {
   double fraction = 0;  ///< Of the work, an estimate [0,1].
-  double error = 0;     ///< As error_target; infinite before two passes.
-  int passes = 0;       ///< Finished over the whole picture.
+  double error = 0;     ///< As error_target; infinite before it is known.
+  int samples = 0;      ///< Camera rays per pixel finished where the picture still improves.
   double seconds = 0;
 };
 using StillProgressCallback = std::function<void(const StillProgress&)>;
 
-/// Renders a picture in passes over tiles. A pass is an independent randomised quasi-Monte Carlo estimate of
-/// each pixel, so the standard error follows from the passes; with an error target, tiles that have reached
-/// it get no more passes. Bit for bit the same for any number of threads. `progress` (may be empty) is called
-/// from one thread at a time. When `interrupt` becomes true, returns what stands.
+/// Renders a picture from four replicates of each pixel (fewer if spp is smaller). A replicate is an
+/// independent randomised quasi-Monte Carlo estimate that is refined block by block, so the spread of the
+/// replicates is the standard error. With an error target, 16 x 16 pixel tiles that have reached it get no
+/// more samples. Bit for bit the same for any number of threads. `progress` (may be empty) is called from one
+/// thread at a time. When `interrupt` becomes true, returns what stands.
 /// Throws InputError for settings or a camera out of range and a room that is not the one solved,
 /// ResourceError when the picture does not fit into memory.
 StillImage render_still(const Scene& scene, const Solution& solution, const RayScene& rays,

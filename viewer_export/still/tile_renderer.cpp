@@ -4,21 +4,22 @@
 #include <numbers>
 #include <vector>
 
+#include "solver/gather/point_sampler.h"
 #include "solver/reflect/lambert.h"
-#include "viewer_export/still/pixel_sampler.h"
 
 namespace reemit {
 
+/// One replicate of one pixel while a block is rendered.
 struct TileRenderer::PixelSums {
-  PixelSampler sampler;
+  PointSampler sampler;
   std::uint64_t index;  // of the pixel in the picture
-  int pass;
-  float share;  // 1 / samples
+  std::uint32_t batch;  // of the random numbers
+  float share;          // 1 / samples
   float* direct;
   float* indirect;
   float* albedo;
   std::vector<float>* weight;  // scratch, one per band
-  PixelPass seen;
+  PixelBlock found;
 };
 
 TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
@@ -31,43 +32,48 @@ TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const R
       gather_(rays, field_, direct_, GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
       path_(rays, field_, direct_, settings.seed) {}
 
-void TileRenderer::render(const Tile& tile, int pass, int samples, Film& film) const {
+void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
   const std::size_t bands = field_.band_count();
-  const auto width = static_cast<std::size_t>(tile.x1 - tile.x0);
-  const auto height = static_cast<std::size_t>(tile.y1 - tile.y0);
-  std::vector<float> values(3 * bands * width * height, 0.0F);
+  const auto picture_width = static_cast<std::size_t>(film.image().width);
+  const std::size_t pixels =
+      static_cast<std::size_t>(tile.x1 - tile.x0) * static_cast<std::size_t>(tile.y1 - tile.y0);
+  std::vector<float> values(3 * bands * pixels * film.replicates(), 0.0F);
   std::vector<float> weight(bands);
-  std::vector<PixelPass> passes;
-  passes.reserve(width * height);
+  std::vector<PixelBlock> found;
+  found.reserve(pixels * film.replicates());
   GatherBatch batch(gather_);
   float* next = values.data();
   for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x, next += 3 * bands) {
-      const auto index = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(film.image().width) +
-                         static_cast<std::uint64_t>(x);
-      PixelSums sums{PixelSampler(settings_->seed, index, pass, samples),
-                     index,
-                     pass,
-                     1.0F / static_cast<float>(samples),
-                     next,
-                     next + bands,
-                     next + 2 * bands,
-                     &weight,
-                     {next, next + bands, next + 2 * bands, Vec3(0, 0, 0), 0, 0, samples}};
-      for (int s = 0; s < samples; ++s) {
-        const std::array<float, 2> u = sums.sampler.film(s);
-        add_sample(x + 0.5 + sample_filter(settings_->filter, u[0]),
-                   y + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x);
+      for (int r = 0; r < static_cast<int>(film.replicates()); ++r, next += 3 * bands) {
+        PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
+                       pixel,
+                       static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
+                       1.0F / static_cast<float>(block.samples),
+                       next,
+                       next + bands,
+                       next + 2 * bands,
+                       &weight,
+                       {.direct = next,
+                        .indirect = next + bands,
+                        .albedo = next + 2 * bands,
+                        .samples = block.samples,
+                        .earlier = block.first}};
+        for (int s = block.first; s < block.first + block.samples; ++s) {
+          const std::array<float, 2> u = sums.sampler.place(s);
+          add_sample(x + 0.5 + sample_filter(settings_->filter, u[0]),
+                     y + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
+        }
+        found.push_back(sums.found);
       }
-      passes.push_back(sums.seen);
     }
   batch.flush();
-  auto pixel_pass = passes.begin();
+  auto next_found = found.begin();
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1; ++x)
-      film.add(static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
-                   static_cast<std::size_t>(x),
-               *pixel_pass++);
+      for (std::size_t r = 0; r < film.replicates(); ++r)
+        film.add(static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x), r, *next_found++);
 }
 
 void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const {
@@ -77,9 +83,9 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
   const std::size_t bands = field_.band_count();
   const std::size_t t = hit.triangle.index();
   const SurfacePoint point = seen_point(hit);
-  sums.seen.normal += point.normal.cast<double>();
-  sums.seen.depth += (ray.skipped + static_cast<double>(hit.distance)) * rays_->metres_per_unit();
-  ++sums.seen.seen;
+  sums.found.normal += point.normal.cast<double>();
+  sums.found.depth += (ray.skipped + static_cast<double>(hit.distance)) * rays_->metres_per_unit();
+  ++sums.found.seen;
 
   const float* emitted = field_.emitted(t, hit.front);
   const float* reflectance = field_.reflectance(t, hit.front);
@@ -116,8 +122,8 @@ void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums,
   const int gathers = path ? 1 : settings_->gathers;
   for (int i = 0; i < gathers; ++i) {
     const std::array<float, 2> u = sums.sampler.hemisphere(sample, i, gathers);
-    const PathKey key{sums.index, static_cast<std::uint32_t>(sums.pass),
-                      static_cast<std::uint32_t>(sample * gathers + i)};
+    const auto ray = static_cast<std::uint32_t>((sample - sums.found.earlier) * gathers + i);
+    const PathKey key{sums.index, sums.batch, ray};
     for (std::size_t b = 0; b < bands; ++b)
       weight[b] = reflectance[b] * sums.share / static_cast<float>(gathers);
     if (path)

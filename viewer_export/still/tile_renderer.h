@@ -15,7 +15,14 @@ struct Tile {
   int x0, y0, x1, y1;
 };
 
-/// Renders one pass over one tile. Const members may be called from any thread for different tiles.
+/// Samples of every replicate of a pixel that are taken in one go.
+struct SampleBlock {
+  int first = 0;
+  int samples = 1;
+  int log2_samples = 0;  ///< No sample number of this picture reaches 2^log2_samples.
+};
+
+/// Renders tiles. Const members may be called from any thread for different tiles.
 class TileRenderer {
  public:
   TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
@@ -24,8 +31,8 @@ class TileRenderer {
   TileRenderer(const TileRenderer&) = delete;
   TileRenderer& operator=(const TileRenderer&) = delete;
 
-  /// Adds an independent estimate made of `samples` (a power of two) camera rays to each pixel of the tile.
-  void render(const Tile& tile, int pass, int samples, Film& film) const;
+  /// Adds samples first .. first+samples-1 of every replicate to each pixel of the tile.
+  void render(const Tile& tile, const SampleBlock& block, Film& film) const;
 
  private:
   struct PixelSums;

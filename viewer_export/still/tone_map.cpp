@@ -96,6 +96,7 @@ ToneMap make_tone_map(std::span<const float> rgb, const ToneMapSettings& setting
 
 double srgb_encoded(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);
+  if (x == 1) return 1;  // which the formula misses by rounding
   return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 

@@ -1,246 +1,231 @@
-// Damaged rooms: whatever the bytes are, a reader returns a Scene or throws an InputError, soon and with
-// little memory.
+// Damaged rooms: whatever comes in, a reader gives a room or throws InputError, in bounded time.
 #include <functional>
 #include <random>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include "scenes/io/ply_reader.h"
-#include "tests/scenes/io/gltf_building.h"
-#include "tests/scenes/io/native_reading.h"
+#include "scenes/io/mgf_reader.h"
+#include "scenes/io/obj_reader.h"
+#include "scenes/io/text_parse.h"
+#include "scenes/model/error.h"
+#include "tests/support/temp_folder.h"
 
 namespace reemit {
 namespace {
 
-using test::GltfBuilder;
-using test::TempFolder;
-using Read = std::function<Scene(const std::filesystem::path&)>;
+using Read = std::function<Scene(const std::filesystem::path&, const ReadOptions&)>;
 
-Scene read_native(const std::filesystem::path& file) {
-  Scene scene = read_native_scene(file, {});
-  finish_scene(scene);
-  return scene;
-}
+constexpr int kRounds = 400;
+constexpr std::size_t kCut = 3;  // bytes between two truncated lengths
 
-Scene read_gltf_file(const std::filesystem::path& file) {
-  Scene scene = read_gltf_scene(file, {});
-  finish_scene(scene);
-  return scene;
-}
+const std::string kMgf = R"(# every entity once
+c red =
+	cxy 0.6 0.35
+c warm =
+	cct 2900
+c leaf =
+	cspec 400 700 0.1 0.6 0.1
+c mix =
+	cmix 1 red 2 leaf
+m paint =
+	c mix
+	rd 0.4
+	c
+	rs 0.05 0.1
+	sides 1
+m lamp = paint
+	td 0.1
+	ts 0.1 0
+	ir 1.5 0
+	c warm
+	ed 5000
+v a =
+	p 0 0 0
+v b =
+	p 4 0 0
+v c =
+	p 4 3 0
+v d =
+	p 0 3 0
+v t =
+	p 1 1 2
+	n 0 0 1
+v u = t
+	p 1 2 2
+o room
+m paint
+f a b c d
+fh a b c d - a b t
+xf -t 0 0 1 -a 3 -t 0 0 0.5 -a 2 -rz 45 -i 1 -mx
+sph t 0.2
+cyl t 0.1 u
+xf
+m lamp
+cone t 0.1 u 0.2
+ring t 0.1 0.3
+torus t 0.1 0.3
+prism a b c d -0.5
+i part.inc -t 0 0 1
+ies lamp.ies -m 2 -t 1 1 1
+o
+)";
 
-Scene read_ply(const std::filesystem::path& file) {
-  Scene scene;
-  scene.surfaces.push_back(read_ply_surface(file));
-  return scene;
-}
+const std::string kObj = R"(mtllib room.mtl
+o room
+v 0 0 0
+v 4 0 0
+v 4 3 0
+v 0 3 0
+v 0 0 2.5
+v 4 0 2.5
+vn 0 0 1
+vt 0 0
+g floor
+usemtl wall
+s off
+f 1//1 2//1 3//1 4//1
+g wall
+f 1/1/1 5/1/1 6/1/1 2/1/1
+usemtl lamp
+f -3 -2 -1
+f 5 6 1
+)";
 
-/// One of every feature, small.
-const std::string kRoom = R"({
-  "format": "reemit-room", "version": 1, "name": "r", "unit": "cm", "bands": "rgb",
-  "materials": {"a": {"reflectance": [0.1, 0.2, 0.3], "sides": "front"}, "b": {"reflectance": {"srgb": "#804020"}, "total_flux_lm": 900},
-                "c": {"luminance_cd_m2": 30, "emission_color": [1, 0.9, 0.8]}},
-  "groups": {"g": [{"name": "x", "box": {"min": [0, 0, 0], "max": [1, 1, 1], "open": ["y-"]}, "materials": {"y+": "c"}}]},
-  "objects": [
-    {"material": "a", "polygon": {"vertices": [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]], "holes": [[[1, 1, 0], [2, 1, 0], [2, 2, 0]]]}},
-    {"group": "g", "material": "a", "array": [{"count": 3, "step": [2, 0, 0]}, {"count": 2, "rotate": {"axis": [0, 1, 0], "angle_deg": 40}}]},
-    {"material": "b", "sphere": {"center": [5, 5, 5], "radius": 2, "segments": 8, "rings": 4}, "transform": [{"scale": [1, 2, 3]}, {"translate": [0, 1, 0]}]},
-    {"material": "b", "cylinder": {"base": [0, 0, 0], "top": [0, 4, 0], "radius": 1, "top_radius": 0, "segments": 6}},
-    {"material": "a", "disk": {"center": [0, 8, 0], "normal": [0, 1, 0], "radius": 2, "inner_radius": 1, "segments": 8}, "flip": true},
-    {"material": "a", "mesh": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]]}}],
-  "lights": [{"type": "spot", "position": [0, 9, 0], "direction": [0, -1, 0], "outer_angle_deg": 30, "intensity_cd": 50},
-             {"type": "point", "position": [0, 9, 0], "power": [1, 2, 3]}],
-  "cameras": [{"name": "v", "eye": [0, 5, 20], "look_at": [0, 5, 0], "vertical_fov_deg": 50, "size": [64, 48]}]
-})";
+const std::string kMtl =
+    "newmtl wall\nKd 0.5 0.5 0.4\nKs 0.1 0.1 0.1\nNs 20\nillum 2\nmap_Kd t.ppm\n"
+    "newmtl lamp\nKd 0 0 0\nKe 5 5 4\nd 0.9\nNi 1.5\n";
 
-GltfBuilder small_gltf() {
-  GltfBuilder gltf;
-  gltf.square();
-  gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
-      gltf.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
-  const int indices = gltf.view(std::vector<std::uint8_t>{2});
-  const int values = gltf.view(std::vector<float>{3, 3, 0});
-  gltf.json["accessors"][0]["sparse"] = {{"count", 1},
-                                         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
-                                         {"values", {{"bufferView", values}}}};
-  gltf.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
-  gltf.json["materials"][0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 5;
-  gltf.json["cameras"] = {
-      {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"aspectRatio", 1.5}, {"znear", 0.1}}}}};
-  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-      {{"type", "spot"}, {"intensity", 179}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.5}}}}};
-  gltf.node(
-      {{"camera", 0}, {"translation", {0, 1, 4}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-  gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
-      gltf.floats({0, 0, 0, 0, 0, 1});
-  gltf.node({{"children", {0, 1}}, {"scale", {1, -1, 1}}});
-  gltf.json["scenes"] = {{{"nodes", {2}}}};
-  gltf.json["scene"] = 0;
-  return gltf;
-}
-
-const std::string kPly =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty "
-    "float nx\n"
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 "
-    "2\n";
-
-/// Counts how often the reader accepted or refused; anything but a Scene or an InputError fails the test.
-class Outcome {
- public:
-  Outcome(Read read, std::string name) : read_(std::move(read)), name_(std::move(name)) {}
-
-  void feed(const std::string& bytes, std::size_t number) {
-    const auto file = folder_.write(name_, bytes);
-    try {
-      read_(file);
-      ++accepted;
-    } catch (const InputError& error) {
-      ++refused;
-      EXPECT_GT(std::string(error.what()).size(), 20u);
-    } catch (const std::exception& error) {
-      ADD_FAILURE() << "case " << number << ": " << error.what();
-    }
-    // A new file each time: some file systems wait for the disk when a file is written over.
-    std::filesystem::remove(file);
+class ReaderFuzz : public ::testing::Test {
+ protected:
+  ReaderFuzz() {
+    folder_.write("part.inc", "m paint\nf a c d\n");
+    folder_.write("lamp.ies", "IESNA91\n");
+    folder_.write("room.mtl", kMtl);
+    folder_.write("t.ppm", std::string("P6\n1 1\n255\nabc"));
   }
 
-  std::size_t accepted = 0;
-  std::size_t refused = 0;
+  // Counts what came of it, so that a test can tell that both outcomes happen.
+  void expect_room_or_refusal(const Read& read, const std::filesystem::path& file, const std::string& what) {
+    try {
+      Scene scene = read(file, {});
+      finish_scene(scene);
+      ++rooms_;
+    } catch (const InputError& error) {
+      EXPECT_FALSE(std::string(error.what()).empty());
+      ++refusals_;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << what << ": " << error.what();
+    }
+  }
 
- private:
-  TempFolder folder_;
-  Read read_;
-  std::string name_;
+  // `damaged` takes the place of the text of file `name`; the room itself is `room`.
+  void truncate(const Read& read, const std::string& name, const std::string& room, const std::string& text) {
+    for (std::size_t length = 1; length <= text.size(); length += kCut) {
+      folder_.write(name, text.substr(0, length));
+      expect_room_or_refusal(read, folder_ / room, name + " cut at " + std::to_string(length));
+    }
+  }
+
+  void flip_bytes(const Read& read, const std::string& name, const std::string& room,
+                  const std::string& text) {
+    std::mt19937 random(12345);
+    for (int round = 0; round < kRounds; ++round) {
+      std::string damaged = text;
+      for (std::size_t flips = 1 + random() % 6; flips > 0; --flips)
+        damaged[random() % damaged.size()] =
+            static_cast<char>(random() % 4 == 0 ? random() % 256 : 32 + random() % 95);
+      folder_.write(name, damaged);
+      expect_room_or_refusal(read, folder_ / room, name + ", round " + std::to_string(round));
+    }
+  }
+
+  // Swaps, drops, doubles and replaces words; lines keep their ends.
+  void shuffle_words(const Read& read, const std::string& name, const std::string& room,
+                     const std::string& text) {
+    static const std::vector<std::string> kSpice = {
+        "nan", "-1", "0", "1e308", "-1e308", "1e-308", "99999999999", "/",   "-a",  "2000", "xf",
+        "o",   "f",  "=", "-",     "\\",     "usemtl", "v",           "1//", "inf", "i"};
+    std::mt19937 random(54321);
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<std::vector<std::string>> lines;
+      for (const TextLine& line : split_lines(text)) lines.emplace_back(line.words.begin(), line.words.end());
+      const auto pick = [&]() -> std::string& {
+        auto& line = lines[random() % lines.size()];
+        return line[random() % line.size()];
+      };
+      for (std::size_t changes = 1 + random() % 4; changes > 0; --changes) {
+        switch (random() % 4) {
+          case 0:
+            std::swap(pick(), pick());
+            break;
+          case 1:
+            pick() = kSpice[random() % kSpice.size()];
+            break;
+          case 2:
+            std::swap(lines[random() % lines.size()], lines[random() % lines.size()]);
+            break;
+          default:
+            pick() += " " + kSpice[random() % kSpice.size()];
+        }
+      }
+      std::string damaged;
+      for (const auto& line : lines) {
+        for (const std::string& word : line) damaged += word + " ";
+        damaged += "\n";
+      }
+      folder_.write(name, damaged);
+      expect_room_or_refusal(read, folder_ / room, name + ", round " + std::to_string(round));
+    }
+  }
+
+  test::TempFolder folder_;
+  int rooms_ = 0, refusals_ = 0;
 };
 
-/// The largest resident size so far [MiB].
-long peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss / 1024;
+TEST_F(ReaderFuzz, TheRoomsThemselvesAreSound) {
+  folder_.write("room.mgf", kMgf);
+  folder_.write("room.obj", kObj);
+  expect_room_or_refusal(read_mgf_scene, folder_ / "room.mgf", "mgf");
+  expect_room_or_refusal(read_obj_scene, folder_ / "room.obj", "obj");
+  EXPECT_EQ(rooms_, 2);
 }
 
-/// Changes a few bytes, or swaps, repeats or replaces a short piece: what editors, disks and networks do.
-std::string mutated(std::string bytes, std::mt19937& random) {
-  static const std::vector<std::string> kTokens{
-      "-1",   "0",  "1e308", "-1e308", "4294967295", "99999999999999999999", "null",  "true",
-      "\"\"", "[]", "{}",    "1e-320", "[[[[",       "2147483648",           "\"a\"", ","};
-  const auto below = [&](std::size_t n) {
-    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
-  };
-  const std::size_t changes = 1 + below(3);
-  for (std::size_t i = 0; i < changes && bytes.size() > 8; ++i) {
-    const std::size_t at = below(bytes.size());
-    switch (below(5)) {
-      case 0:
-        bytes[at] = static_cast<char>(below(256));
-        break;
-      case 1:
-        bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-        break;
-      case 2:
-        bytes.erase(at, 1 + below(6));
-        break;
-      case 3:
-        bytes.insert(at, bytes.substr(below(bytes.size()), 1 + below(12)));
-        break;
-      default: {
-        // Replaces the next number, word or bracket by another token.
-        const std::size_t start = bytes.find_first_of("0123456789\"[{tfn", at);
-        if (start == std::string::npos) break;
-        const std::size_t end = std::min(bytes.find_first_of(",]} \n:", start), bytes.size());
-        bytes.replace(start, end - start, kTokens[below(kTokens.size())]);
-      }
-    }
+TEST_F(ReaderFuzz, Mgf) {
+  truncate(read_mgf_scene, "room.mgf", "room.mgf", kMgf);
+  flip_bytes(read_mgf_scene, "room.mgf", "room.mgf", kMgf);
+  shuffle_words(read_mgf_scene, "room.mgf", "room.mgf", kMgf);
+  EXPECT_GT(rooms_, 50);
+  EXPECT_GT(refusals_, 50);
+}
+
+TEST_F(ReaderFuzz, Obj) {
+  truncate(read_obj_scene, "room.obj", "room.obj", kObj);
+  flip_bytes(read_obj_scene, "room.obj", "room.obj", kObj);
+  shuffle_words(read_obj_scene, "room.obj", "room.obj", kObj);
+  EXPECT_GT(rooms_, 50);
+  EXPECT_GT(refusals_, 50);
+}
+
+TEST_F(ReaderFuzz, Mtl) {
+  folder_.write("room.obj", kObj);
+  truncate(read_obj_scene, "room.mtl", "room.obj", kMtl);
+  flip_bytes(read_obj_scene, "room.mtl", "room.obj", kMtl);
+  shuffle_words(read_obj_scene, "room.mtl", "room.obj", kMtl);
+  EXPECT_GT(rooms_, 50);
+  EXPECT_GT(refusals_, 50);
+}
+
+TEST_F(ReaderFuzz, BinaryRubbish) {
+  std::mt19937 random(99);
+  for (int round = 0; round < 100; ++round) {
+    std::string bytes(1 + random() % 3000, '\0');
+    for (char& byte : bytes) byte = static_cast<char>(random());
+    folder_.write("room.mgf", bytes);
+    folder_.write("room.obj", bytes);
+    expect_room_or_refusal(read_mgf_scene, folder_ / "room.mgf", "mgf");
+    expect_room_or_refusal(read_obj_scene, folder_ / "room.obj", "obj");
   }
-  return bytes;
-}
-
-void feed_truncations(Outcome& outcome, const std::string& whole, std::size_t step) {
-  for (std::size_t length = 1; length < whole.size(); length += step)
-    outcome.feed(whole.substr(0, length), length);
-}
-
-void feed_mutations(Outcome& outcome, const std::string& whole, std::size_t count) {
-  std::mt19937 random(20240607);
-  for (std::size_t i = 0; i < count; ++i) outcome.feed(mutated(whole, random), i);
-}
-
-/// A reader that accepts everything, or refuses everything, would make the test worthless.
-void expect_both(const Outcome& outcome) {
-  EXPECT_GT(outcome.accepted, 0u);
-  EXPECT_GT(outcome.refused, 0u);
-  constexpr long kMostMemory = 3000;  // [MiB]; with room for the sanitizers.
-  EXPECT_LT(peak_memory(), kMostMemory);
-}
-
-TEST(ReaderFuzz, WholeRoomsAreAccepted) {
-  const TempFolder folder;
-  EXPECT_NO_THROW(read_native(folder.write("room.json", kRoom)));
-  EXPECT_NO_THROW(read_gltf_file(folder.write("room.gltf", small_gltf().text())));
-  EXPECT_NO_THROW(read_gltf_file(folder.write("room.glb", small_gltf().glb())));
-  EXPECT_NO_THROW(read_ply(folder.write("mesh.ply", kPly)));
-}
-
-TEST(ReaderFuzz, NativeTruncated) {
-  Outcome outcome(read_native, "room.json");
-  feed_truncations(outcome, kRoom, 7);
-  EXPECT_EQ(outcome.accepted, 0u);
-}
-
-TEST(ReaderFuzz, NativeMutated) {
-  Outcome outcome(read_native, "room.json");
-  feed_mutations(outcome, kRoom, 4000);
-  expect_both(outcome);
-}
-
-TEST(ReaderFuzz, GltfTruncated) {
-  Outcome outcome(read_gltf_file, "room.gltf");
-  feed_truncations(outcome, small_gltf().text(), 13);
-  EXPECT_EQ(outcome.accepted, 0u);
-}
-
-TEST(ReaderFuzz, GltfMutated) {
-  Outcome outcome(read_gltf_file, "room.gltf");
-  feed_mutations(outcome, small_gltf().text(), 4000);
-  expect_both(outcome);
-}
-
-TEST(ReaderFuzz, GlbTruncated) {
-  Outcome outcome(read_gltf_file, "room.glb");
-  feed_truncations(outcome, small_gltf().glb(), 11);
-  EXPECT_EQ(outcome.accepted, 0u);
-}
-
-TEST(ReaderFuzz, GlbMutated) {
-  Outcome outcome(read_gltf_file, "room.glb");
-  feed_mutations(outcome, small_gltf().glb(), 4000);
-  expect_both(outcome);
-}
-
-TEST(ReaderFuzz, PlyMutated) {
-  Outcome outcome(read_ply, "mesh.ply");
-  feed_mutations(outcome, kPly, 4000);
-  expect_both(outcome);
-}
-
-TEST(ReaderFuzz, NoiseIsRefused) {
-  std::mt19937 random(7);
-  for (const auto& [name, read] : std::vector<std::pair<std::string, Read>>{{"room.json", read_native},
-                                                                            {"room.gltf", read_gltf_file},
-                                                                            {"room.glb", read_gltf_file},
-                                                                            {"m.ply", read_ply}}) {
-    Outcome outcome(read, name);
-    for (std::size_t i = 0; i < 100; ++i) {
-      std::string noise(1 + random() % 400, '\0');
-      for (char& c : noise) c = static_cast<char>(random());
-      if (name == "room.glb") noise.replace(0, 4, "glTF");
-      if (name == "m.ply") noise.insert(0, "ply\n");
-      outcome.feed(noise, i);
-    }
-    EXPECT_EQ(outcome.accepted, 0u) << name;
-  }
+  EXPECT_EQ(rooms_, 0);
 }
 
 }  // namespace

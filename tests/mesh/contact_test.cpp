@@ -1,0 +1,285 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mesh/build_mesh.h"
+#include "tests/mesh/test_room.h"
+
+namespace reemit {
+namespace {
+
+using test::floor_rectangle;
+using test::meshed_area;
+using test::open_edges;
+using test::reversed;
+using test::TestRoom;
+using test::worst_book_gap;
+using testing::HasSubstr;
+
+constexpr double kExact = 1e-9;
+
+// Number of base triangles of a surface that reach to both sides of a line part: `height` is the signed
+// distance from the line, `beside` tells whether a point of the line belongs to the part.
+std::size_t straddling(const ZoneMesh& mesh, SurfaceId s, const std::function<double(const Vec3&)>& height,
+                       const std::function<bool(const Vec3&)>& beside) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    if (mesh.triangle(t).surface != s) continue;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& a = mesh.corner(t, k);
+      const Vec3& b = mesh.corner(t, (k + 1) % 3);
+      const double ha = height(a);
+      const double hb = height(b);
+      if (ha * hb >= 0 || std::min(std::abs(ha), std::abs(hb)) < 1e-6) continue;
+      if (beside(a + ha / (ha - hb) * (b - a))) {
+        ++count;
+        break;
+      }
+    }
+  }
+  return count;
+}
+
+TEST(Contact, FloorIsCutUnderAWallThatStandsOnIt) {
+  TestRoom room;
+  const SurfaceId floor = room.polygon("floor", room.material(), floor_rectangle(0, 0, 6, 4));
+  room.polygon("wall", room.material(), {{2.3, 0, 0}, {2.3, 4, 0}, {2.3, 4, 3}, {2.3, 0, 3}});
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_EQ(straddling(
+                r.mesh, floor, [](const Vec3& p) { return p.x() - 2.3; }, [](const Vec3&) { return true; }),
+            0U);
+  double left = 0;
+  for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i)
+    if (r.mesh.triangle(TriangleId(i)).surface == floor && r.mesh.point(TriangleId(i), 0.3, 0.3).x() < 2.3)
+      left += r.mesh.triangle_area(TriangleId(i));
+  EXPECT_NEAR(left, 2.3 * 4, 24 * kExact);
+  EXPECT_EQ(r.report.cut_faces, 1U);
+  EXPECT_LT(worst_book_gap(r), kExact);
+}
+
+TEST(Contact, FloorThatRunsUnderAPartitionWithADoor) {
+  // The wall has a door from y = 1 to 2: its outline dips to the floor on both sides of it.
+  TestRoom room;
+  const SurfaceId floor = room.polygon("floor", room.material(), floor_rectangle(0, 0, 6, 4));
+  room.polygon("wall", room.material(),
+               {{3, 0, 0}, {3, 1, 0}, {3, 1, 2}, {3, 2, 2}, {3, 2, 0}, {3, 4, 0}, {3, 4, 3}, {3, 0, 3}});
+  MeshSettings coarse;
+  coarse.zone_area = 1;
+  const MeshResult r = build_mesh(room.scene(), coarse);
+  const auto side = [](const Vec3& p) { return p.x() - 3; };
+  EXPECT_EQ(straddling(r.mesh, floor, side, [](const Vec3& p) { return p.y() < 0.999 || p.y() > 2.001; }),
+            0U);
+  EXPECT_LT(worst_book_gap(r), kExact);
+}
+
+TEST(Contact, PiercingPanelsAreCutAlongTheirSection) {
+  TestRoom room;
+  const SurfaceId a = room.polygon("a", room.material(), floor_rectangle(0, 0, 4, 4, 1));
+  const SurfaceId b = room.polygon("b", room.material(), {{1, 2, 0}, {3, 2.5, 0}, {3, 2.5, 2}, {1, 2, 2}});
+  const MeshResult r = build_mesh(room.scene());
+  const Vec3 n = Vec3(-0.5, 2, 0).normalized();
+  EXPECT_EQ(straddling(
+                r.mesh, a, [&](const Vec3& p) { return n.dot(p - Vec3(1, 2, 1)); },
+                [](const Vec3& p) { return p.x() > 1.001 && p.x() < 2.999; }),
+            0U);
+  EXPECT_EQ(straddling(
+                r.mesh, b, [](const Vec3& p) { return p.z() - 1; }, [](const Vec3&) { return true; }),
+            0U);
+  EXPECT_NEAR(meshed_area(r.mesh, a), 16, 16 * kExact);
+  EXPECT_LT(worst_book_gap(r), kExact);
+  EXPECT_EQ(r.report.cut_faces, 2U);
+}
+
+TEST(Contact, PiercedSmoothTriangleKeepsItsShadingNormals) {
+  TestRoom room;
+  const SurfaceId s = room.surface("curved", room.material());
+  Face& f = room.add(s, {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}});
+  room.scene().surfaces[s.index()].normals = {Vec3(-0.1, 0, 1).normalized(), Vec3(0.2, 0, 1).normalized(),
+                                              Vec3(0, 0.2, 1).normalized()};
+  f.normals = {0, 1, 2};
+  room.polygon("blade", room.material(), {{0.5, -1, -1}, {0.5, 3, -1}, {0.5, 3, 1}, {0.5, -1, 1}});
+  const MeshResult r = build_mesh(room.scene());
+  std::size_t pieces = 0;
+  for (const BaseTriangle& t : r.mesh.base().triangles) {
+    if (t.surface != s) continue;
+    ++pieces;
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_NE(t.normal[k], BaseTriangle::kFlat);
+      const Vec3& p = r.mesh.base().vertices[t.vertex[k]];
+      const auto& n = room.scene().surfaces[s.index()].normals;
+      const Vec3 wanted =
+          ((1 - p.x() / 2 - p.y() / 2) * n[0] + p.x() / 2 * n[1] + p.y() / 2 * n[2]).normalized();
+      EXPECT_LT((r.mesh.base().normals[t.normal[k]] - wanted).norm(), 1e-9);
+    }
+  }
+  EXPECT_GT(pieces, 2U);
+  EXPECT_NEAR(meshed_area(r.mesh, s), 2, 2 * kExact);
+}
+
+TEST(Contact, InterpenetratingBoxes) {
+  TestRoom room;
+  room.box("hull", room.material(false), {0, 0, 0}, {4, 4, 4}, true);
+  const SurfaceId a = room.box("a", room.material(), {1, 1, 1}, {2, 2, 2});
+  const SurfaceId b = room.box("b", room.material(), {1.5, 1.5, 1.5}, {3, 3, 3});
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_LT(worst_book_gap(r), kExact);
+  EXPECT_EQ(r.report.cut_faces, 6U);
+  EXPECT_NEAR(meshed_area(r.mesh, a), 6, 6 * kExact);
+  EXPECT_NEAR(meshed_area(r.mesh, b), 13.5, 13.5 * kExact);
+  // Buried and free parts are apart: every triangle of b is inside or outside of a as a whole.
+  double buried = 0;
+  for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    if (r.mesh.triangle(t).surface != b) continue;
+    const Vec3 c = r.mesh.point(t, 1.0 / 3, 1.0 / 3);
+    if (c.maxCoeff() < 2) buried += r.mesh.triangle_area(t);
+  }
+  EXPECT_NEAR(buried, 3 * 0.25, 1e-6);
+}
+
+TEST(Contact, SmallContactsAreNotWorthACut) {
+  TestRoom room;
+  const SurfaceId floor = room.polygon("floor", room.material(), floor_rectangle(0, 0, 6, 4));
+  room.box("leg", room.material(), {3, 2, 0}, {3.01, 2.01, 1});
+  MeshSettings settings;
+  settings.zone_area = 0.04;
+  const MeshResult r = build_mesh(room.scene(), settings);
+  EXPECT_LT(worst_book_gap(r), kExact);
+  EXPECT_NEAR(meshed_area(r.mesh, floor), 24, 24 * kExact);
+  EXPECT_EQ(r.report.cut_faces, 0U);
+}
+
+TEST(Coplanar, BoxOnTheFloor) {
+  TestRoom room;
+  const SurfaceId hull = room.box("hull", room.material(false), {0, 0, 0}, {4, 4, 4}, true);
+  const SurfaceId box = room.box("box", room.material(false), {1, 1, 0}, {2, 2.5, 1});
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_EQ(r.report.overlapping_faces, 1U);
+  EXPECT_NEAR(meshed_area(r.mesh, hull), 96, 96 * kExact);
+  EXPECT_NEAR(meshed_area(r.mesh, box), 8 - 1.5, 8 * kExact);
+  EXPECT_NEAR(r.report.surfaces[box.index()].removed, 1.5, kExact);
+  EXPECT_LT(worst_book_gap(r), kExact);
+  ASSERT_EQ(r.report.warnings.size(), 1U);
+  EXPECT_THAT(r.report.warnings[0], HasSubstr("'hull' covers 1.5 m2 of 'box'"));
+  // The floor is cut along the box, so no zone lies half under it.
+  const auto under = [](const Vec3& p) { return p.x() > 1 && p.x() < 2 && p.y() > 1 && p.y() < 2.5; };
+  double covered = 0;
+  for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    if (r.mesh.triangle_normal(t).z() > 0.9 && under(r.mesh.point(t, 1.0 / 3, 1.0 / 3)) &&
+        r.mesh.corner(t, 0).z() == 0)
+      covered += r.mesh.triangle_area(t);
+  }
+  EXPECT_NEAR(covered, 1.5, kExact);
+}
+
+TEST(Coplanar, LampInTheCeilingPlaneWins) {
+  for (const bool lamp_first : {false, true}) {
+    for (const double offset : {0.0, 1e-7}) {
+      TestRoom room;
+      const MaterialId white = room.material(false);
+      const MaterialId glow = room.material(false, 100);
+      const auto panel = reversed(floor_rectangle(1, 1, 2, 1.5, 3 - offset));
+      SurfaceId lamp;
+      if (lamp_first) lamp = room.polygon("lamp", glow, panel);
+      const SurfaceId hull = room.box("hull", white, {0, 0, 0}, {4, 4, 3}, true);
+      if (!lamp_first) lamp = room.polygon("lamp", glow, panel);
+      const MeshResult r = build_mesh(room.scene());
+      EXPECT_NEAR(meshed_area(r.mesh, lamp), 0.5, 0.5 * kExact);
+      EXPECT_NEAR(meshed_area(r.mesh, hull), 80 - 0.5, 80 * kExact);
+      EXPECT_NEAR(r.report.surfaces[hull.index()].removed, 0.5, 1e-9);
+      EXPECT_LT(worst_book_gap(r), kExact);
+      EXPECT_EQ(open_edges(r.mesh), 0U) << "the lamp must close the hole it leaves bit by bit";
+    }
+  }
+}
+
+TEST(Coplanar, OverlapOfTwoPanelsGoesToTheFirst) {
+  TestRoom room;
+  const MaterialId m = room.material();
+  const SurfaceId a = room.polygon("a", m, floor_rectangle(0, 0, 2, 2));
+  const SurfaceId b = room.polygon("b", m, floor_rectangle(1, 1, 3, 3));
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_NEAR(meshed_area(r.mesh, a), 4, 4 * kExact);
+  EXPECT_NEAR(meshed_area(r.mesh, b), 3, 3 * kExact);
+  EXPECT_EQ(r.report.overlapping_faces, 1U);
+  EXPECT_LT(worst_book_gap(r), kExact);
+}
+
+TEST(Coplanar, ClosedLampOnTheFloorDoesNotShineOutOfTheRoom) {
+  for (const bool two_sided_floor : {false, true}) {
+    TestRoom room;
+    const SurfaceId hull = room.box("hull", room.material(two_sided_floor), {0, 0, 0}, {4, 4, 3}, true);
+    const SurfaceId lamp = room.box("lamp", room.material(false, 5), {1, 1, 0}, {2, 2, 1});
+    const MeshResult r = build_mesh(room.scene());
+    EXPECT_NEAR(meshed_area(r.mesh, hull), 80, 80 * kExact);
+    EXPECT_NEAR(meshed_area(r.mesh, lamp), 5, 5 * kExact);
+  }
+}
+
+TEST(Coplanar, PanelLampShinesHoweverTheCeilingIsWound) {
+  TestRoom room;
+  room.polygon("ceiling", room.material(true), floor_rectangle(0, 0, 4, 4, 3));  // front up
+  const SurfaceId lamp =
+      room.polygon("lamp", room.material(false, 9), reversed(floor_rectangle(1, 1, 2, 2, 3)));
+  room.polygon("floor", room.material(), floor_rectangle(0, 0, 4, 4));
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_NEAR(meshed_area(r.mesh, lamp), 1, kExact);
+  EXPECT_NEAR(meshed_area(r.mesh, SurfaceId(0)), 15, 15 * kExact);
+}
+
+TEST(Coplanar, TouchingPanelsDoNotOverlap) {
+  TestRoom room;
+  const MaterialId m = room.material();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      room.polygon("tile" + std::to_string(3 * i + j), m,
+                   floor_rectangle(i * 0.1, j * 0.3, (i + 1) * 0.1, (j + 1) * 0.3));
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_EQ(r.report.overlapping_faces, 0U);
+  EXPECT_EQ(r.report.cut_faces, 0U);
+  EXPECT_EQ(r.mesh.triangle_count(), 18U);
+  EXPECT_EQ(r.mesh.base().vertices.size(), 16U);
+}
+
+TEST(Orientation, OddFacesOfAShellFollowTheMajority) {
+  TestRoom room;
+  const SurfaceId s = room.surface("crate", room.material(false));
+  auto faces = TestRoom::box_faces({1, 1, 1}, {2, 2, 2});
+  std::reverse(faces[3].begin(), faces[3].end());
+  for (const auto& f : faces) room.add(s, f);
+  room.box("hull", room.material(false), {0, 0, 0}, {4, 4, 4}, true);
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_EQ(r.report.flipped_faces, 1U);
+  for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    if (r.mesh.triangle(t).surface != s) continue;
+    EXPECT_GT(r.mesh.triangle_normal(t).dot(r.mesh.corner(t, 0) - Vec3(1.5, 1.5, 1.5)), 0);
+  }
+  ASSERT_EQ(r.report.warnings.size(), 1U);
+  EXPECT_THAT(r.report.warnings[0], HasSubstr("'crate'"));
+}
+
+TEST(Orientation, ClosedLampIsTurnedOutwardsButAGlowingRoomIsNot) {
+  TestRoom room;
+  room.box("hull", room.material(false), {0, 0, 0}, {4, 4, 4}, true);
+  const SurfaceId lamp = room.box("lamp", room.material(false, 3), {1, 1, 1}, {2, 2, 2}, true);
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_EQ(r.report.flipped_faces, 6U);
+  for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    if (r.mesh.triangle(t).surface != lamp) continue;
+    EXPECT_GT(r.mesh.triangle_normal(t).dot(r.mesh.corner(t, 0) - Vec3(1.5, 1.5, 1.5)), 0);
+  }
+  TestRoom furnace;
+  furnace.box("walls", furnace.material(false, 1), {0, 0, 0}, {4, 4, 4}, true);
+  furnace.box("block", furnace.material(), {1, 1, 1}, {2, 2, 2});
+  EXPECT_EQ(build_mesh(furnace.scene()).report.flipped_faces, 0U);
+}
+
+}  // namespace
+}  // namespace reemit

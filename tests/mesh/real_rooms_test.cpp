@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "mesh/build_mesh.h"
+#include "mesh/zone_topology.h"
+#include "scenes/io/scene_reader.h"
+#include "tests/mesh/test_room.h"
+
+namespace reemit {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = REEMIT_SOURCE_DIR;
+
+std::vector<fs::path> rooms_below(const fs::path& folder) {
+  std::vector<fs::path> out;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    const bool part_of_a_room =  // included by others
+        entry.path().filename() == "vent.mgf" || entry.path().filename() == "chair.mgf" ||
+        entry.path().filename() == "table.mgf" || entry.path().parent_path().filename() == "data";
+    if (!part_of_a_room &&
+        (extension == ".mgf" || extension == ".obj" || extension == ".gltf" || extension == ".json"))
+      out.push_back(entry.path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+void check_room(const fs::path& file) {
+  SCOPED_TRACE(file.string());
+  const Scene scene = read_scene(file);
+  const MeshResult r = build_mesh(scene);
+  EXPECT_LT(test::worst_book_gap(r), 1e-9);
+  std::size_t faces = 0;
+  double input = 0;
+  double removed = 0;
+  for (const Surface& s : scene.surfaces) faces += s.faces.size();
+  for (const SurfaceAreas& a : r.report.surfaces) {
+    input += a.input;
+    removed += a.removed;
+    EXPECT_GE(a.removed, -1e-6 * a.input);
+  }
+  EXPECT_LT(removed, 0.1 * input);
+  EXPECT_LT(r.mesh.triangle_count(), 300 + 12 * faces) << "the traced mesh must stay coarse";
+  EXPECT_LT(r.report.warnings.size(), 8U);
+  for (const std::string& w : r.report.warnings) EXPECT_LT(w.size(), 1000U);
+  for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    ASSERT_TRUE(std::isfinite(r.mesh.triangle_area(t)));
+    ASSERT_GT(r.mesh.triangle_area(t), 0);
+  }
+  const ZoneTopology topology = make_zone_topology(r.mesh, 30);
+  EXPECT_EQ(topology.n_faces(), r.mesh.zone_count());
+}
+
+TEST(RealRooms, SharedRoomsAreMeshed) {
+  const fs::path folder = kSource.parent_path() / "shared" / "scenes";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no rooms at " << folder;
+  for (const fs::path& file : rooms_below(folder)) check_room(file);
+}
+
+TEST(RealRooms, LibraryRoomsAreMeshed) {
+  const fs::path folder = kSource / "scenes" / "library";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no rooms at " << folder;
+  for (const fs::path& file : rooms_below(folder)) check_room(file);
+}
+
+}  // namespace
+}  // namespace reemit

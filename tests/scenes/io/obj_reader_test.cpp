@@ -1,0 +1,230 @@
+#include "scenes/io/obj_reader.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenes/model/error.h"
+#include "tests/scenes/io/face_area.h"
+#include "tests/support/temp_folder.h"
+
+namespace reemit {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string kSquare =
+    "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl wall\n";  // lines 1 to 6
+
+class ObjReader : public ::testing::Test {
+ protected:
+  ObjReader() { folder_.write("room.mtl", "newmtl wall\nKd 0.5 0.4 0.3\nnewmtl lamp\nKd 0 0 0\nKe 3 2 1\n"); }
+
+  Scene read(const std::string& text) const { return read_obj_scene(folder_.write("room.obj", text), {}); }
+  Scene read_with(const std::string& mtl) const {
+    folder_.write("room.mtl", mtl);
+    return read(kSquare + "f 1 2 3 4\n");
+  }
+  std::string refusal(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  std::string mtl_refusal(const std::string& mtl) const {
+    folder_.write("room.mtl", mtl);
+    return refusal(kSquare + "f 1 2 3 4\n");
+  }
+  // A binary portable pixmap with the given 8-bit colours in one row.
+  void write_texture(const std::string& name, const std::vector<std::array<int, 3>>& pixels) const {
+    std::string bytes = "P6\n" + std::to_string(pixels.size()) + " 1\n255\n";
+    for (const auto& pixel : pixels)
+      for (const int channel : pixel) bytes += static_cast<char>(channel);
+    folder_.write(name, bytes);
+  }
+  test::TempFolder folder_;
+};
+
+TEST_F(ObjReader, ReadsMaterialsAndPolygons) {
+  const Scene scene = read(kSquare + "o shell\ng back\nf 1 2 3 4\nusemtl lamp\nf 1 2 3\ng\nf 1/1 3/2 4/3\n");
+  std::vector<std::string> names;
+  for (const Surface& s : scene.surfaces) names.push_back(s.name);
+  EXPECT_THAT(names, ElementsAre("shell/back (wall)", "shell/back (lamp)", "shell"));
+  const Face& quad = scene.surfaces[0].faces[0];
+  EXPECT_EQ(quad.outer.size(), 4U) << "polygons stay polygons";
+  EXPECT_EQ(quad.source_line, 9U);
+  EXPECT_TRUE(test::area_vector(scene.surfaces[0], quad).isApprox(Vec3(0, 0, 1)));
+  const Material& lamp = scene.material_of(scene.surfaces[1]);
+  EXPECT_TRUE((lamp.emitted_radiance == Eigen::Array3d(3, 2, 1)).all());
+  EXPECT_TRUE(lamp.two_sided);
+  EXPECT_FALSE(lamp.emits_both_sides);
+  EXPECT_TRUE(
+      scene.material_of(scene.surfaces[0]).reflectance.isApprox(Eigen::Array3d(0.5, 0.4, 0.3), 1e-15));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.cameras, IsEmpty());
+}
+
+TEST_F(ObjReader, NegativeIndicesCountFromTheLastVertex) {
+  const Scene scene = read(kSquare + "f -4 -3 -2\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\nf -7 -6 -4\n");
+  EXPECT_NEAR(test::total_area(scene), 1.5, 1e-15);
+  EXPECT_EQ(bounds(scene).max.x(), 6);
+}
+
+TEST_F(ObjReader, KeepsShadingNormalsWhereEveryCornerHasOne) {
+  const Scene scene =
+      read(kSquare + "vn 0 0 1\nvn 0 0.6 0.8\nf 1//1 2//2 3//2\nf 1//1 3 4//1\nf 1/9/-2 2/9/-1 3/9/-1\n");
+  const Surface& s = scene.surfaces.at(0);
+  ASSERT_EQ(s.faces[0].normals.size(), 3U);
+  EXPECT_TRUE(s.normals[s.faces[0].normals[1]].isApprox(Vec3(0, 0.6, 0.8), 1e-15));
+  EXPECT_THAT(s.faces[1].normals, IsEmpty());
+  EXPECT_EQ(s.faces[2].normals, s.faces[0].normals);
+}
+
+TEST_F(ObjReader, KeepsPolygonsOfManyCorners) {
+  std::string text = "mtllib room.mtl\nusemtl wall\n", face = "f";
+  constexpr int kCorners = 700;
+  for (int k = 0; k < kCorners; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kCorners;
+    text += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+    face += " " + std::to_string(k + 1);
+  }
+  const Scene scene = read(text + face + "\n");
+  ASSERT_EQ(test::face_count(scene), 1U);
+  EXPECT_EQ(scene.surfaces[0].faces[0].outer.size(), static_cast<std::size_t>(kCorners));
+  EXPECT_NEAR(test::total_area(scene), std::numbers::pi, 1e-3);
+}
+
+TEST_F(ObjReader, CutsSeamsAndReportsDegenerateFaces) {
+  const Scene scene = read(
+      "mtllib room.mtl\nusemtl wall\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\n"
+      "v 3 1 0\nf 1 2 3 4 5 6 7 8 5 4\nf 1 2 2\nf 1 1 1\n");
+  EXPECT_NEAR(test::total_area(scene), 12, 1e-12);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("2 face(s)")));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("line 12")));
+}
+
+TEST_F(ObjReader, NamesMayHaveBlanksAndLinesMayEndOddly) {
+  folder_.write("my room.mtl", "newmtl Material #1  \r\n\tKd 0.5 0.5 0.5 # grey\r\n");
+  const Scene scene = read(
+      "mtllib my room.mtl\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv 0 1 0 # corner\r\n"
+      "usemtl Material #1 \r\nf 1 2 \\\r\n3\r\n");
+  EXPECT_EQ(scene.materials.at(0).name, "Material #1");
+  EXPECT_EQ(test::face_count(scene), 1U);
+}
+
+TEST_F(ObjReader, NamesFileAndLineOfEveryMistake) {
+  for (const char* bad : {"f 1 2",
+                          "f",
+                          "f 1 2 9",
+                          "f 1 2 0",
+                          "f 1 2 -5",
+                          "f 1 2 x",
+                          "f 1 2 3/",
+                          "f 1 2 3//",
+                          "f 1 2 3/1/1/1",
+                          "f 1 2 3//9",
+                          "f 1 2 1.5",
+                          "f 1 2 99999999999",
+                          "v 1 2",
+                          "v 1 2 nan",
+                          "v 1 2 1e999",
+                          "v 1 2 3 4 5 6 7 8",
+                          "v",
+                          "vn 0 0",
+                          "vn 0 0 1 1",
+                          "usemtl",
+                          "usemtl nobody",
+                          "mtllib",
+                          "mtllib nothing.mtl"})
+    EXPECT_THAT(refusal(kSquare + bad + "\n"), HasSubstr("room.obj:7: ")) << bad;
+  EXPECT_THAT(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"),
+              HasSubstr("room.obj:4: the face has no material"));
+}
+
+TEST_F(ObjReader, IgnoredStatementsAreNamedOnce) {
+  const Scene scene = read(kSquare + "s 1\nvt 0 0\nl 1 2\nl 2 3\ncurv 0 1 1 2\nf 1 2 3\n");
+  EXPECT_EQ(scene.warnings.size(), 2U);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("'l'"));
+}
+
+TEST_F(ObjReader, MtlMistakesAreNamedWithTheirLine) {
+  for (const char* bad :
+       {"Kd 0.5 0.5", "Kd", "Kd 1.5 0 0", "Kd -0.1 0 0", "Kd x 0 0", "Ks 2 0 0", "Ke -1 0 0", "Ke nan 0 0",
+        "Ns", "Ns -2", "Ni inf", "d 1.5", "Kd spectral file.rfl", "Kd 0 0 0 0", "newmtl"})
+    EXPECT_THAT(mtl_refusal(std::string("newmtl wall\n") + bad + "\n"), HasSubstr("room.mtl:2: ")) << bad;
+  EXPECT_THAT(mtl_refusal("Kd 0 0 0\nnewmtl wall\n"), HasSubstr("room.mtl:1: "));
+  EXPECT_THAT(mtl_refusal(""), HasSubstr("empty"));
+  folder_.write("room.mtl", "newmtl wall\nKd 0.5 0.5 0.5\nnewmtl wall\nKd 1 1 1\n");
+  EXPECT_THAT(read(kSquare + "f 1 2 3\n").warnings, Contains(HasSubstr("defined again")));
+}
+
+TEST_F(ObjReader, NonDiffusePartsAreKept) {
+  const Material glass =
+      read_with("newmtl wall\nKd 0.1\nKs 0.2 0.2 0.2\nNs 98\nNi 1.5\nd 0.25\nTf 1 0.5 1\nillum 7\n")
+          .materials.at(0);
+  EXPECT_TRUE(glass.reflectance.isApproxToConstant(0.1, 1e-15)) << "one number stands for three";
+  EXPECT_TRUE(glass.non_diffuse.specular_reflectance.isApproxToConstant(0.2, 1e-15));
+  EXPECT_TRUE(glass.non_diffuse.specular_transmittance.isApprox(Eigen::Array3d(0.75, 0.375, 0.75)));
+  EXPECT_NEAR(glass.non_diffuse.roughness, std::sqrt(0.02), 1e-15);
+  EXPECT_EQ(glass.non_diffuse.index_of_refraction, 1.5);
+  const Material opaque =
+      read_with("newmtl wall\nKd 0.1 0.1 0.1\nd 1\nTf 1 1 1\nillum 2\nKs 0 0 0\n").materials.at(0);
+  EXPECT_EQ(opaque.non_diffuse.specular_transmittance.size(), 0);
+  EXPECT_EQ(opaque.non_diffuse.specular_reflectance.size(), 0);
+  const Material refracting = read_with("newmtl wall\nKd 0 0 0\nTf 0.3 0.3 0.3\nillum 6\n").materials.at(0);
+  EXPECT_TRUE(refracting.non_diffuse.specular_transmittance.isApproxToConstant(0.3, 1e-15));
+}
+
+TEST_F(ObjReader, TexturesAreAveragedInLinearLight) {
+  write_texture("t.ppm", {{255, 0, 188}, {0, 0, 188}});
+  const Scene scene = read_with("newmtl wall\nKd 0.1 0.2 0.3\nmap_Kd t.ppm\n");
+  const Spectrum& rho = scene.materials.at(0).reflectance;
+  EXPECT_NEAR(rho[0], 0.5, 1e-6) << "half of the pixels are 1, whatever their coding";
+  EXPECT_EQ(rho[1], 0);
+  EXPECT_NEAR(rho[2], 0.5029, 1e-4) << "sRGB 188";
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("t.ppm"));
+}
+
+TEST_F(ObjReader, MissingOrBrokenTexturesLeaveKd) {
+  folder_.write("broken.png", "this is no image");
+  for (const char* name : {"nothing.png", "broken.png", "sub\\nothing.png"}) {
+    const Scene scene =
+        read_with(std::string("newmtl wall\nKd 0.1 0.2 0.3\nmap_Kd ") + name + "\nmap_bump b.png\n");
+    EXPECT_TRUE(scene.materials.at(0).reflectance.isApprox(Eigen::Array3d(0.1, 0.2, 0.3), 1e-15)) << name;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("in place of the texture"))) << name;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("bump b.png"))) << name;
+  }
+}
+
+TEST_F(ObjReader, TakesTheCameraBesideIt) {
+  folder_.write(
+      "camera.txt",
+      "# view\neye 1 2 3\ndirection 0 0 -2\nup 0 1 0\nhorizontal fov 90 degrees\nimage 200 x 100\n");
+  const Scene scene = read(kSquare + "f 1 2 3\n");
+  ASSERT_EQ(scene.cameras.size(), 1U);
+  const Camera& camera = scene.cameras[0];
+  EXPECT_EQ(camera.eye, Vec3(1, 2, 3));
+  EXPECT_EQ(camera.look_at, Vec3(1, 2, 1));
+  EXPECT_NEAR(camera.vertical_fov_deg, 2 * std::atan(0.5) * 180 / std::numbers::pi, 1e-12);
+  EXPECT_EQ(camera.width, 200);
+  EXPECT_EQ(camera.height, 100);
+  for (const char* bad : {"eye 1 2\n", "eye 1 2 3\n", "eye 1 2 3\ndirection 0 0 1\nhorizontal fov 200\n",
+                          "shopping list\n", "eye 1 2 3\ndirection 0 0 1\nimage 0 x 5\n"}) {
+    folder_.write("camera.txt", bad);
+    const Scene without = read(kSquare + "f 1 2 3\n");
+    EXPECT_THAT(without.cameras, IsEmpty()) << bad;
+    EXPECT_THAT(without.warnings, Contains(HasSubstr("camera"))) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,101 @@
+#include "solver/solution/solution.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/solver/solution/sample_solution.h"
+
+namespace reemit {
+namespace {
+
+// A solution whose zone 0 saw the given irradiances, one pair (direct, indirect) per batch.
+Solution with_batches(const std::vector<std::pair<double, double>>& batches) {
+  Solution s = test::sample_solution(BandSet::grey());
+  s.sums.batches = static_cast<std::int64_t>(batches.size());
+  ZoneSums& sums = s.sums;
+  for (auto* v :
+       {&sums.direct, &sums.direct_squared, &sums.indirect, &sums.indirect_squared, &sums.total_squared})
+    std::fill(v->begin(), v->end(), 0.0);
+  for (const auto& [direct, indirect] : batches) {
+    sums.direct[0] += direct;
+    sums.direct_squared[0] += direct * direct;
+    sums.indirect[0] += indirect;
+    sums.indirect_squared[0] += indirect * indirect;
+    sums.total_squared[0] += (direct + indirect) * (direct + indirect);
+  }
+  return s;
+}
+
+TEST(SolutionEstimates, AreBatchMeans) {
+  const Solution s = with_batches({{1, 2}, {3, 6}, {5, 1}});
+  const ZoneId z(0);
+  EXPECT_DOUBLE_EQ(s.direct_irradiance(z, 0).mean, 3);
+  EXPECT_DOUBLE_EQ(s.indirect_irradiance(z, 0).mean, 3);
+  EXPECT_DOUBLE_EQ(s.irradiance(z, 0).mean, 6);
+  // Deviations -2 0 2; -1 3 -2; -3 3 0: sums of squares 8, 14, 18; n(n-1) = 6.
+  EXPECT_DOUBLE_EQ(s.direct_irradiance(z, 0).stderr_of_mean, std::sqrt(8.0 / 6));
+  EXPECT_DOUBLE_EQ(s.indirect_irradiance(z, 0).stderr_of_mean, std::sqrt(14.0 / 6));
+  EXPECT_DOUBLE_EQ(s.irradiance(z, 0).stderr_of_mean, std::sqrt(18.0 / 6));
+}
+
+TEST(SolutionEstimates, EqualBatchesHaveNoErrorInsteadOfNaN) {
+  const Solution s = with_batches({{0.1, 0.7}, {0.1, 0.7}, {0.1, 0.7}});
+  EXPECT_NEAR(s.irradiance(ZoneId(0), 0).stderr_of_mean, 0, 1e-7);  // sqrt of rounding
+  EXPECT_EQ(s.irradiance(ZoneId(1), 0).mean, 0);
+  EXPECT_EQ(s.irradiance(ZoneId(1), 0).stderr_of_mean, 0);
+}
+
+TEST(SolutionEstimates, OneBatchSaysNothingAboutItsError) {
+  const Solution s = with_batches({{1, 2}});
+  EXPECT_EQ(s.irradiance(ZoneId(0), 0).mean, 3);
+  EXPECT_EQ(s.irradiance(ZoneId(0), 0).stderr_of_mean, std::numeric_limits<double>::infinity());
+}
+
+TEST(SolutionEstimates, NoBatchIsExactlyDark) {
+  const Solution s = with_batches({});
+  EXPECT_EQ(s.irradiance(ZoneId(0), 0).mean, 0);
+  EXPECT_EQ(s.irradiance(ZoneId(0), 0).stderr_of_mean, 0);
+}
+
+TEST(SolutionEstimates, RadiosityIsEmissionPlusReflection) {
+  const Solution s = with_batches({{1, 2}, {3, 6}});
+  const Estimate b = s.radiosity(ZoneId(0), 0);
+  const double reflectance = s.materials[0].reflectance[0];
+  EXPECT_DOUBLE_EQ(b.mean, reflectance * 6);
+  EXPECT_DOUBLE_EQ(b.stderr_of_mean, reflectance * s.irradiance(ZoneId(0), 0).stderr_of_mean);
+  const ZoneId lamp(s.mesh.zone_count() - 1);
+  EXPECT_DOUBLE_EQ(s.radiosity(lamp, 0).mean, std::numbers::pi * s.materials[1].emitted_radiance[0]);
+}
+
+TEST(SolutionEstimates, OnlyMarkedMaterialsEmitFromTheBack) {
+  Solution s = test::sample_solution(BandSet::grey());
+  s.materials[0].emitted_radiance[0] = 2;
+  const ZoneId front = s.mesh.first_zone(TriangleId(0), true);
+  const ZoneId back = s.mesh.first_zone(TriangleId(0), false);
+  EXPECT_DOUBLE_EQ(s.emitted_radiosity(front, 0), 2 * std::numbers::pi);
+  EXPECT_EQ(s.emitted_radiosity(back, 0), 0);
+  s.materials[0].emits_both_sides = true;
+  EXPECT_DOUBLE_EQ(s.emitted_radiosity(back, 0), 2 * std::numbers::pi);
+}
+
+TEST(SolutionEstimates, BlackZonesAreExact) {
+  Solution s = with_batches({{1, 2}});
+  s.materials[0].reflectance[0] = 0;
+  EXPECT_EQ(s.radiosity(ZoneId(0), 0).stderr_of_mean, 0);
+}
+
+TEST(StopReasons, HaveDifferentWords) {
+  std::set<std::string> words;
+  for (const StopReason reason :
+       {StopReason::kErrorTarget, StopReason::kTimeLimit, StopReason::kPacketCount, StopReason::kInterrupted,
+        StopReason::kNoLuminaire, StopReason::kBatchLimit})
+    words.insert(to_string(reason));
+  EXPECT_EQ(words.size(), 6U);
+  EXPECT_FALSE(words.contains("unknown"));
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,31 @@
+#pragma once
+#include "solver/solution/solution.h"
+#include "tests/support/test_rooms.h"
+
+namespace reemit::test {
+
+/// A solution in which every zone, front and back, has the given irradiances [W/m2] in all bands, as if one
+/// batch had found them.
+inline Solution uniform_solution(const RoomBuilder& room, double direct, double indirect) {
+  Solution solution;
+  solution.bands = room.scene().bands;
+  for (const Surface& s : room.scene().surfaces) solution.surface_names.push_back(s.name);
+  solution.mesh = room.mesh().mesh;
+  const std::size_t values = solution.mesh.zone_count() * solution.bands.count();
+  ZoneSums& sums = solution.sums;
+  sums.batches = 1;
+  sums.direct.assign(values, direct);
+  sums.direct_squared.assign(values, direct * direct);
+  sums.indirect.assign(values, indirect);
+  sums.indirect_squared.assign(values, indirect * indirect);
+  const double total = direct + indirect;
+  sums.total_squared.assign(values, total * total);
+  return solution;
+}
+
+/// A solution in which nothing has arrived anywhere.
+inline Solution dark_solution(const RoomBuilder& room) {
+  return uniform_solution(room, 0, 0);
+}
+
+}  // namespace reemit::test

@@ -1,0 +1,200 @@
+// The whole way of the data through the built program: solve, render, export, audit, info.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/csv_file.h"
+#include "tests/support/run_program.h"
+#include "tests/support/small_rooms.h"
+#include "tests/support/solved_room.h"
+#include "tests/support/temp_folder.h"
+
+namespace reemit::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class Pipeline : public ::testing::Test {
+ protected:
+  Pipeline() { folder_.write("room.json", small_json_room()); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Runs and expects success; returns standard output.
+  static std::string output_of(const std::vector<std::string>& arguments) {
+    const ProgramRun run = run_reemit(arguments);
+    EXPECT_EQ(run.exit_code, 0) << arguments.front() << ": " << run.err;
+    return run.out;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Pipeline, SolveEndsWithOneLine) {
+  const std::string out = output_of(
+      {"solve", path("room.json"), "-o", path("room.h5"), "--zone-area", "0.05", "--packets", "20000"});
+  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 1) << out;
+  for (const char* word : {"stopped", "packets", "rays", " s, ", "error"}) EXPECT_THAT(out, HasSubstr(word));
+}
+
+TEST_F(Pipeline, SolveAsJsonIsOneDocument) {
+  const json report = json::parse(output_of({"solve", path("room.json"), "-o", path("room.h5"), "--zone-area",
+                                             "0.05", "--packets", "20000", "--seed", "5", "--json"}));
+  EXPECT_GE(report["packets"].get<std::uint64_t>(), 20000U);
+  EXPECT_GT(report["rays"].get<std::uint64_t>(), 20000U);
+  EXPECT_GT(report["seconds"].get<double>(), 0);
+  EXPECT_GT(report["error"].get<double>(), 0);
+  EXPECT_GT(report["zones"].get<int>(), 100);
+  EXPECT_EQ(report["seed"], 5);
+  EXPECT_TRUE(report["balanced"].get<bool>());
+  EXPECT_THAT(report["stopped"].get<std::string>(), HasSubstr("packet"));
+}
+
+TEST_F(Pipeline, ErrorTargetIsReachedAndStated) {
+  const json report = json::parse(output_of(
+      {"solve", path("room.json"), "-o", path("room.h5"), "--zone-area", "0.1", "--error", "5%", "--json"}));
+  EXPECT_LE(report["error"].get<double>(), 0.05);
+  EXPECT_THAT(report["stopped"].get<std::string>(), HasSubstr("error"));
+}
+
+TEST_F(Pipeline, WithoutAStoppingRuleItSaysWhichOneItTakes) {
+  const ProgramRun run =
+      run_reemit({"solve", path("room.json"), "-o", path("room.h5"), "--zone-area", "0.2"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("--error 2%"));
+}
+
+TEST_F(Pipeline, RendersWithAllIntegrators) {
+  solve_small_room(folder_, "room.h5");
+  for (const char* integrator : {"gather", "path", "zones"}) {
+    for (const char* extension : {".exr", ".hdr", ".png"}) {
+      const std::string file = path(std::string(integrator) + extension);
+      output_of({"render", path("room.h5"), "--camera", "front", "--integrator", integrator, "--spp", "2",
+                 "--size", "10x8", "-o", file});
+      EXPECT_GT(std::filesystem::file_size(file), 100U) << file;
+    }
+  }
+}
+
+TEST_F(Pipeline, RendersAllCamerasIntoAFolder) {
+  solve_small_room(folder_, "room.h5");
+  const json report = json::parse(output_of({"render", path("room.h5"), "--camera", "all", "--spp", "1",
+                                             "--format", "png", "-o", path("pictures/"), "--json"}));
+  ASSERT_EQ(report["pictures"].size(), 2U);
+  EXPECT_EQ(report["pictures"][0]["camera"], "front");
+  EXPECT_EQ(report["pictures"][0]["width_px"], 12);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures/front.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures/side.png"));
+}
+
+TEST_F(Pipeline, AllCamerasDoNotFitIntoOneFile) {
+  solve_small_room(folder_, "room.h5");
+  const ProgramRun run = run_reemit({"render", path("room.h5"), "--camera", "all", "-o", path("all.png")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("folder"));
+}
+
+TEST_F(Pipeline, UnknownCameraListsTheKnownOnes) {
+  solve_small_room(folder_, "room.h5");
+  const ProgramRun run = run_reemit({"render", path("room.h5"), "--camera", "back", "-o", path("back.png")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("front, side"));
+}
+
+TEST_F(Pipeline, RendersFromAFreeEyeAndWithoutCameras) {
+  solve_small_room(folder_, "room.h5");
+  output_of({"render", path("room.h5"), "--eye", "0.9,0.5,0.9", "--look-at", "0,0.2,0", "--fov", "60",
+             "--size", "9x7", "--spp", "1", "-o", path("eye.png")});
+  folder_.write("room.mgf", small_mgf_room());
+  output_of({"solve", path("room.mgf"), "-o", path("mgf.h5"), "--zone-area", "0.05", "--packets", "5000"});
+  const json report = json::parse(output_of({"render", path("mgf.h5"), "--size", "8x6", "--spp", "1",
+                                             "--format", "exr", "-o", path("auto/"), "--json"}));
+  ASSERT_GE(report["pictures"].size(), 2U);
+  EXPECT_EQ(report["pictures"][0]["camera"], "auto-1");
+}
+
+TEST_F(Pipeline, ExportsAllFormats) {
+  solve_small_room(folder_, "room.h5");
+  for (const char* extension : {".ply", ".glb", ".csv"}) {
+    output_of({"export", path("room.h5"), "-o", path(std::string("room") + extension), "--samples", "8"});
+    EXPECT_GT(std::filesystem::file_size(path(std::string("room") + extension)), 1000U) << extension;
+  }
+}
+
+TEST_F(Pipeline, ExportedIrradianceIsPhysical) {
+  // No more light can arrive anywhere than the lamp's radiance all around: E <= pi L_e / (1 - rho), and the
+  // walls see some of it.
+  solve_small_room(folder_, "room.h5");
+  output_of({"export", path("room.h5"), "-o", path("room.csv"), "--values", "zones"});
+  double brightest = 0;
+  for (const CsvRow& row : csv_rows(folder_ / "room.csv")) {
+    const double irradiance = std::stod(row.at("irradiance_g"));
+    ASSERT_TRUE(std::isfinite(irradiance));
+    ASSERT_GE(irradiance, 0);
+    EXPECT_LT(irradiance, 25 / (1 - 0.5));
+    brightest = std::max(brightest, irradiance);
+  }
+  EXPECT_GT(brightest, 0.1);
+}
+
+TEST_F(Pipeline, AuditBalancesForBothMethods) {
+  for (const char* method : {"shooting", "walk"}) {
+    solve_small_room(folder_, "room.h5", {"--method", method});
+    const json audit = json::parse(output_of({"audit", path("room.h5"), "--json"}));
+    EXPECT_TRUE(audit["balanced"].get<bool>()) << method;
+    ASSERT_EQ(audit["bands"].size(), 3U);
+    const double emitted[] = {1.2, 1.0, 0.8};  // exitance 30, 25, 20 W/m2 over 0.04 m2
+    for (std::size_t b = 0; b < 3; ++b) {
+      const json& band = audit["bands"][b];
+      EXPECT_EQ(band["balance_quanta"].get<std::int64_t>(), 0) << method;
+      EXPECT_NEAR(band["emitted_W"].get<double>(), emitted[b], 1e-6) << method;
+      EXPECT_EQ(band["escaped_W"].get<double>(), 0) << method << ": the room is closed";
+    }
+    EXPECT_THAT(output_of({"audit", path("room.h5")}), HasSubstr("balance exactly"));
+  }
+}
+
+TEST_F(Pipeline, InfoOfARoom) {
+  const json info = json::parse(output_of({"info", path("room.json"), "--json"}));
+  EXPECT_EQ(info["kind"], "room");
+  EXPECT_THAT(info["bands"], ElementsAre("r", "g", "b"));
+  EXPECT_THAT(info["size_m"], ElementsAre(1, 1, 1));
+  EXPECT_NEAR(info["area_m2"].get<double>(), 6.04, 1e-9);
+  ASSERT_EQ(info["luminaires"].size(), 1U);
+  EXPECT_NEAR(info["total_power_W"][0].get<double>(), 1.2, 1e-9);
+  // 179 lm/W with the Rec.709 weights of luminance.
+  EXPECT_NEAR(info["total_flux_lm"].get<double>(), 179 * (0.2126 * 1.2 + 0.7152 * 1.0 + 0.0722 * 0.8), 1e-6);
+  EXPECT_EQ(info["cameras"].size(), 2U);
+  EXPECT_THAT(output_of({"info", path("room.json")}), HasSubstr("1 x 1 x 1 m"));
+}
+
+TEST_F(Pipeline, InfoOfASolution) {
+  solve_small_room(folder_, "room.h5", {"--seed", "77"});
+  const json info = json::parse(output_of({"info", path("room.h5"), "--json"}));
+  EXPECT_EQ(info["kind"], "solution");
+  EXPECT_EQ(info["seed"], 77);
+  EXPECT_EQ(info["room_status"], "unchanged");
+  EXPECT_EQ(info["method"], "shooting");
+  EXPECT_THAT(output_of({"info", path("room.h5")}), HasSubstr("seed 77"));
+}
+
+TEST_F(Pipeline, WarningsGoToStandardErrorAndQuietSilencesThem) {
+  folder_.write("dark.json", replaced(small_json_room(), "[30, 25, 20]", "[0, 0, 0]"));
+  const std::vector<std::string> solve{"solve",         path("dark.json"), "-o",
+                                       path("dark.h5"), "--packets",       "1000"};
+  EXPECT_THAT(run_reemit(solve).err, HasSubstr("reemit: warning: "));
+  std::vector<std::string> quiet = solve;
+  quiet.emplace_back("--quiet");
+  EXPECT_THAT(run_reemit(quiet).err, IsEmpty());
+}
+
+}  // namespace
+}  // namespace reemit::test

@@ -1,0 +1,169 @@
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tiny_gltf.h>
+
+#include "scenes/model/error.h"
+#include "tests/support/temp_folder.h"
+#include "tests/viewer_export/formats/sample_vertices.h"
+#include "viewer_export/formats/export_table.h"
+#include "viewer_export/formats/vertex_export.h"
+
+namespace reemit {
+namespace {
+
+using test::sample_vertices;
+using test::TempFolder;
+
+tinygltf::Model read_glb(const std::filesystem::path& file) {
+  tinygltf::Model model;
+  tinygltf::TinyGLTF loader;
+  std::string error;
+  std::string warning;
+  EXPECT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, file.string())) << error;
+  EXPECT_EQ(warning, "");
+  return model;
+}
+
+// Numbers of a float attribute of the only primitive of a mesh.
+std::vector<float> attribute(const tinygltf::Model& model, std::size_t mesh, const std::string& name) {
+  const auto& attributes = model.meshes.at(mesh).primitives.at(0).attributes;
+  if (!attributes.contains(name)) {
+    ADD_FAILURE() << "no attribute " << name;
+    return {};
+  }
+  const auto& accessor = model.accessors.at(static_cast<std::size_t>(attributes.at(name)));
+  const auto& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
+  const std::size_t components = accessor.type == TINYGLTF_TYPE_VEC3 ? 3 : 1;
+  EXPECT_EQ(view.byteStride, 4 * components);
+  std::vector<float> values(accessor.count * components);
+  std::memcpy(values.data(), model.buffers.at(0).data.data() + view.byteOffset + accessor.byteOffset,
+              values.size() * sizeof(float));
+  return values;
+}
+
+std::string first_line_of_issues(const std::string& report) {
+  const auto json = nlohmann::json::parse(report, nullptr, false);
+  return json.is_discarded() ? report : json["issues"].dump();
+}
+
+// Runs the Khronos validator; skips the test when it is not installed.
+void expect_valid(const std::filesystem::path& file) {
+  const std::filesystem::path modules = REEMIT_NODE_MODULES;
+  if (std::system("node --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "node is not installed";
+  if (!std::filesystem::exists(modules / "gltf-validator"))
+    GTEST_SKIP() << "no gltf-validator in " << modules << ": run npm install --prefix "
+                 << modules.parent_path() << " " REEMIT_SOURCE_DIR "/tests/viewer_export/gltf";
+  const std::string report = file.string() + ".report";
+  const std::string command = "node '" REEMIT_SOURCE_DIR "/tests/viewer_export/gltf/validate_glb.mjs' '" +
+                              modules.string() + "' '" + file.string() + "' > '" + report + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << first_line_of_issues(test::read_bytes(report));
+}
+
+TEST(GlbWriter, IsReadBackByTinyGltf) {
+  const TempFolder folder;
+  const VertexData data = sample_vertices(BandSet::rgb());
+  write_vertex_data(data, folder / "a.glb");
+  const tinygltf::Model model = read_glb(folder / "a.glb");
+  ASSERT_EQ(model.meshes.size(), 2U);  // a surface without triangles has none
+  EXPECT_EQ(model.meshes[0].name, data.surface_names[0]);
+  EXPECT_EQ(model.meshes[1].name, data.surface_names[2]);
+  EXPECT_EQ(model.materials.at(0).name, "oak");
+  EXPECT_EQ(model.extensionsUsed, std::vector<std::string>{"KHR_materials_unlit"});
+  const VertexColours colours = colours_of(data);
+  const std::vector<std::size_t> vertices[] = {{0, 2, 4}, {1, 3, 5}};
+  for (std::size_t m = 0; m < 2; ++m) {
+    const auto position = attribute(model, m, "POSITION");
+    const auto normal = attribute(model, m, "NORMAL");
+    const auto colour = attribute(model, m, "COLOR_0");
+    const auto radiance = attribute(model, m, "_RADIANCE");
+    const auto irradiance = attribute(model, m, "_IRRADIANCE");
+    const auto error = attribute(model, m, "_STDERR");
+    const auto direct = attribute(model, m, "_DIRECT");
+    ASSERT_EQ(position.size(), 9U);
+    for (std::size_t i = 0; i < 9; ++i) {
+      const std::size_t v = vertices[m][i / 3];
+      const auto axis = static_cast<Eigen::Index>(i % 3);
+      EXPECT_EQ(position[i], static_cast<float>(data.positions[v][axis]));
+      EXPECT_FLOAT_EQ(normal[i], static_cast<float>(data.normals[v][axis]));
+      EXPECT_FLOAT_EQ(colour[i], static_cast<float>(colours.displayable(v)[axis]));
+      EXPECT_EQ(radiance[i], data.radiance[3 * v + i % 3]);
+      EXPECT_EQ(irradiance[i], data.irradiance[3 * v + i % 3]);
+      EXPECT_EQ(error[i], data.radiance_stderr[3 * v + i % 3]);
+      EXPECT_EQ(direct[i], data.direct_radiance[3 * v + i % 3]);
+      EXPECT_TRUE(colour[i] >= 0 && colour[i] <= 1);
+    }
+  }
+}
+
+TEST(GlbWriter, StatesUnitsSeedAndExposure) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::rgb());
+  data.tone_map.exposure_ev = -1;
+  write_vertex_data(data, folder / "a.glb");
+  const tinygltf::Model model = read_glb(folder / "a.glb");
+  const tinygltf::Value& extras = model.asset.extras;
+  EXPECT_EQ(extras.Get("seed").Get<std::string>(), "77");
+  EXPECT_THAT(extras.Get("units").Get<std::string>(), testing::HasSubstr("W/(m2 sr)"));
+  EXPECT_EQ(extras.Get("exposure").GetNumberAsDouble(), 0.5);
+}
+
+TEST(GlbWriter, SpectralBandsBecomeAttributes) {
+  const TempFolder folder;
+  const VertexData data = sample_vertices(BandSet::spectral({450, 550.5}));
+  write_vertex_data(data, folder / "a.glb");
+  const tinygltf::Model model = read_glb(folder / "a.glb");
+  EXPECT_EQ(attribute(model, 0, "_RADIANCE_450")[1], data.radiance[2 * 2]);
+  EXPECT_EQ(attribute(model, 0, "_STDERR_550.5")[2], data.radiance_stderr[2 * 4 + 1]);
+  EXPECT_FLOAT_EQ(attribute(model, 0, "_RADIANCE")[3], static_cast<float>(data.rgb(data.radiance, 2)[0]));
+}
+
+TEST(GlbWriter, FarRoomsKeepTheirShape) {
+  const TempFolder folder;
+  const VertexData data = sample_vertices(BandSet::rgb(), Vec3(1e7, -3e7, 0));
+  write_vertex_data(data, folder / "a.glb");
+  const tinygltf::Model model = read_glb(folder / "a.glb");
+  const auto position = attribute(model, 1, "POSITION");
+  ASSERT_EQ(model.nodes.at(1).translation.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(model.nodes[1].translation[i] + static_cast<double>(position[3 + i]),
+                data.positions[3][static_cast<Eigen::Index>(i)], 1e-7);
+}
+
+TEST(GlbWriter, NothingToDrawIsAnError) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::rgb());
+  data.triangles = {{0, 0, 2}};
+  EXPECT_THROW(write_vertex_data(data, folder / "a.glb"), InputError);
+  EXPECT_TRUE(folder.listing().empty());
+}
+
+TEST(GlbWriter, SatisfiesTheKhronosValidatorInRgb) {
+  const TempFolder folder;
+  write_vertex_data(sample_vertices(BandSet::rgb()), folder / "a.glb");
+  expect_valid(folder / "a.glb");
+}
+
+TEST(GlbWriter, SatisfiesTheKhronosValidatorInSpectralBandsFarAway) {
+  const TempFolder folder;
+  write_vertex_data(sample_vertices(BandSet::spectral({450, 550.5}), Vec3(1e7, 0, 0)), folder / "a.glb");
+  expect_valid(folder / "a.glb");
+}
+
+TEST(GlbWriter, SatisfiesTheKhronosValidatorWithNumbersThatAreNotFinite) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::grey());
+  data.radiance[0] = std::numeric_limits<float>::quiet_NaN();
+  data.radiance[2] = std::numeric_limits<float>::infinity();
+  data.radiance_stderr[1] = std::numeric_limits<float>::infinity();
+  data.normals[1] = Vec3::Zero();
+  write_vertex_data(data, folder / "a.glb");
+  expect_valid(folder / "a.glb");
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,60 @@
+#include "viewer_export/still/film.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace reemit {
+namespace {
+
+TEST(PixelFilter, box_and_tent_have_their_shapes) {
+  // Second moments 1/12 and 1/6 of the box and the tent; midpoint rule.
+  double box = 0;
+  double tent = 0;
+  constexpr int kCount = 10000;
+  for (int i = 0; i < kCount; ++i) {
+    const double u = (i + 0.5) / kCount;
+    box += std::pow(sample_filter(PixelFilter::kBox, u), 2) / kCount;
+    tent += std::pow(sample_filter(PixelFilter::kTent, u), 2) / kCount;
+  }
+  EXPECT_NEAR(box, 1.0 / 12, 1e-6);
+  EXPECT_NEAR(tent, 1.0 / 6, 1e-6);
+  EXPECT_NEAR(sample_filter(PixelFilter::kTent, 0), -1, 1e-12);
+  EXPECT_NEAR(sample_filter(PixelFilter::kTent, 0.5), 0, 1e-12);
+}
+
+TEST(Film, mean_and_error_of_replicates_that_grow_by_blocks) {
+  Film film(BandSet::grey(), 2, 1, 4);
+  const float albedo = 0.25F;
+  const auto add = [&](std::size_t replicate, float direct, float indirect, int earlier, int samples) {
+    film.add(1, replicate,
+             {.direct = &direct,
+              .indirect = &indirect,
+              .albedo = &albedo,
+              .normal = Vec3(0, 0, samples),
+              .depth = 2.0 * samples,
+              .seen = samples,
+              .samples = samples,
+              .earlier = earlier});
+  };
+  // Replicates end at 1, 2, 3 and 6: mean 3, variance of the mean 14/12.
+  for (std::size_t r = 0; r < 4; ++r) add(r, 1, 0, 0, 2);
+  const float last[] = {1, 2.5F, 4, 8.5F};
+  for (std::size_t r = 0; r < 4; ++r) add(r, 0.5F, last[r] - 0.5F, 2, 4);
+  EXPECT_NEAR(film.radiance(1, 0), 3, 1e-5);
+  EXPECT_NEAR(film.squared_error(1, 0), 14.0 / 12, 1e-5);
+  const StillImage image = film.finish();
+  ASSERT_NO_THROW(check_consistent(image));
+  EXPECT_NEAR(image.radiance[1], 3, 1e-5);
+  EXPECT_NEAR(image.direct[1], 2.0 / 3, 1e-5);
+  EXPECT_NEAR(image.indirect[1], 3 - 2.0 / 3, 1e-5);
+  EXPECT_NEAR(image.radiance_stderr[1], std::sqrt(14.0 / 12), 1e-5);
+  EXPECT_EQ(image.samples[1], 24);
+  EXPECT_NEAR(image.depth[1], 2, 1e-5);
+  EXPECT_NEAR(image.normal[5], 1, 1e-6);
+  EXPECT_EQ(image.samples[0], 0);
+  EXPECT_TRUE(std::isinf(image.depth[0]));
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,194 @@
+#include "viewer_export/vertex/vertex_radiance.h"
+
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "scenes/model/error.h"
+#include "solver/gather/direct_light.h"
+#include "tests/support/hand_made_solution.h"
+#include "tests/support/mean_test.h"
+#include "viewer_export/vertex/vertex_ring.h"
+
+namespace reemit {
+namespace {
+
+using std::numbers::pi;
+using test::MeanTest;
+using test::RoomBuilder;
+
+VertexData gather(const RoomBuilder& room, const Solution& solution, const VertexSettings& settings) {
+  const RayScene rays(solution.mesh);
+  const std::atomic<bool> interrupt{false};
+  return gather_vertices(room.scene(), solution, rays, settings, {}, interrupt);
+}
+
+double area_of(const std::vector<Vec3>& p, const std::array<std::uint32_t, 3>& t) {
+  return 0.5 * (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).z();
+}
+
+TEST(CutIntoTriangles, uses_every_vertex_and_keeps_the_area_without_slivers) {
+  // A right triangle with 0 to 3 further vertices on each side, in every combination.
+  const std::array<Vec3, 3> corner{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
+  for (int code = 0; code < 64; ++code) {
+    std::vector<Vec3> polygon;
+    for (int side = 0; side < 3; ++side) {
+      const int extra = (code >> (2 * side)) & 3;
+      for (int i = 0; i <= extra; ++i) {
+        const double t = static_cast<double>(i) / (extra + 1);
+        polygon.push_back((1 - t) * corner[static_cast<std::size_t>(side)] +
+                          t * corner[static_cast<std::size_t>((side + 1) % 3)]);
+      }
+    }
+    const auto triangles = cut_into_triangles(polygon);
+    ASSERT_EQ(triangles.size(), polygon.size() - 2);
+    double sum = 0;
+    for (const auto& t : triangles) {
+      EXPECT_GT(area_of(polygon, t), 0.05) << code;
+      sum += area_of(polygon, t);
+    }
+    EXPECT_NEAR(sum, 8, 1e-12);
+  }
+}
+
+TEST(GatherVertices, furnace_is_the_same_at_every_vertex) {
+  const double m = 3;
+  const double rho = 0.5;
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", rho, m);
+  room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, wall, wall}, 3);
+  const Solution solution = test::uniform_solution(room, m, rho * m / (1 - rho));
+  const VertexData data = gather(room, solution, {});
+  ASSERT_NO_THROW(check_consistent(data));
+  EXPECT_EQ(data.vertex_count(), 6U * 16U);
+  EXPECT_EQ(data.triangles.size(), 6U * 18U);
+  MeanTest vertices;
+  for (const float l : data.radiance) vertices.add(static_cast<double>(l));
+  EXPECT_TRUE(vertices.agrees_with(m / pi / (1 - rho)));
+  EXPECT_TRUE(vertices.would_notice(0.02, m / pi / (1 - rho)));
+  for (std::size_t v = 0; v < data.vertex_count(); ++v)
+    EXPECT_NEAR(data.radiance[v], m / pi / (1 - rho), 0.1 * m / pi / (1 - rho)) << v;
+}
+
+TEST(GatherVertices, follow_a_point_light_across_a_floor) {
+  RoomBuilder room;
+  room.quad(room.material("floor", 0.8), {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 8);
+  room.scene().lights.push_back(PointLight{"bulb", {0.5, 0.5, 1}, Spectrum::Constant(1, 10.0)});
+  const VertexData data = gather(room, test::dark_solution(room), {});
+  EXPECT_EQ(data.vertex_count(), 81U);
+  for (std::size_t v = 0; v < data.vertex_count(); ++v) {
+    const double r2 = (data.positions[v] - Vec3(0.5, 0.5, 1)).squaredNorm();
+    const double e = 10 / std::pow(r2, 1.5);
+    EXPECT_NEAR(data.irradiance[v], e, 0.02 * e) << data.positions[v].transpose();
+    EXPECT_NEAR(data.direct_radiance[v], 0.8 / pi * data.irradiance[v], 1e-4);
+    EXPECT_LT(data.normals[v].z() - 1, 1e-12);
+  }
+}
+
+TEST(GatherVertices, do_not_look_through_a_wall_that_stands_on_the_floor) {
+  // Two floors that meet under a wall: one lit, one dark. No vertex mixes them.
+  RoomBuilder room;
+  const MaterialId floor = room.material("floor", 0.5);
+  const MaterialId wall = room.material("wall", 0.5, 0, true);
+  room.quad(floor, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 4);
+  room.quad(floor, {Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)}, 4);
+  room.quad(wall, {Vec3(1, -9, 0), Vec3(1, 9, 0), Vec3(1, 9, 9), Vec3(1, -9, 9)}, 1);
+  room.scene().lights.push_back(PointLight{"bulb", {0.5, 0.5, 1}, Spectrum::Constant(1, 10.0)});
+  const VertexData data = gather(room, test::dark_solution(room), {});
+  for (std::size_t v = 0; v < data.vertex_count(); ++v) {
+    if (data.surfaces[v] == SurfaceId(0)) {
+      EXPECT_GT(data.irradiance[v], 1);
+    } else if (data.surfaces[v] == SurfaceId(1)) {
+      EXPECT_EQ(data.irradiance[v], 0);
+    }
+  }
+}
+
+TEST(GatherVertices, unlit_backs_are_left_out_unless_wanted) {
+  RoomBuilder room;
+  const MaterialId two_sided = room.material("sheet", 0.5, 0, true);
+  room.quad(two_sided, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 2);
+  Solution solution = test::dark_solution(room);
+  VertexSettings settings;
+  EXPECT_EQ(gather(room, solution, settings).vertex_count(), 9U);
+  settings.all_zones = true;
+  EXPECT_EQ(gather(room, solution, settings).vertex_count(), 18U);
+  settings.all_zones = false;
+  solution.sums.indirect.back() = 1;  // a packet met one zone of the back
+  EXPECT_EQ(gather(room, solution, settings).vertex_count(), 18U);
+}
+
+TEST(GatherVertices, zone_averages_are_area_weighted_means) {
+  RoomBuilder room;
+  const MaterialId m = room.material("sheet", 0.5, pi);
+  room.quad(m, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 1);
+  Solution solution = test::uniform_solution(room, 1, 2);
+  solution.sums.direct[1] = 5;
+  VertexSettings settings;
+  settings.average_zones = true;
+  const VertexData data = gather(room, solution, settings);
+  ASSERT_EQ(data.vertex_count(), 4U);
+  for (std::size_t v = 0; v < 4; ++v) {
+    const Vec3& p = data.positions[v];
+    const bool on_diagonal = p.x() == p.y();
+    const double expected = on_diagonal ? 5 : (p.x() > p.y() ? 3 : 7);
+    EXPECT_NEAR(data.irradiance[v], expected, 1e-5);
+    EXPECT_NEAR(data.radiance[v], 1 + 0.5 / pi * expected, 1e-5);
+    EXPECT_NEAR(data.direct_radiance[v], 0.5 / pi * (expected - 2), 1e-5);
+  }
+}
+
+TEST(GatherVertices, same_bits_for_any_number_of_threads_and_another_seed_differs) {
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 1);
+  room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, wall, wall}, 4);
+  const Solution solution = test::uniform_solution(room, 1, 0.7);
+  VertexSettings settings;
+  settings.gather_rays = 64;
+  settings.light_samples = 16;
+  settings.threads = 1;
+  const VertexData one = gather(room, solution, settings);
+  settings.threads = 2;
+  const VertexData two = gather(room, solution, settings);
+  EXPECT_EQ(one.radiance, two.radiance);
+  EXPECT_EQ(one.radiance_stderr, two.radiance_stderr);
+  settings.seed = 2;
+  EXPECT_NE(one.radiance, gather(room, solution, settings).radiance);
+}
+
+TEST(GatherVertices, standard_errors_shrink_with_rays_and_are_reported) {
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 1);
+  const MaterialId dark = room.material("dark", 0.1);
+  room.box({0, 0, 0}, {1, 1, 1}, {wall, dark, wall, dark, dark, dark}, 3);
+  const Solution solution = test::uniform_solution(room, 1, 0.7);
+  VertexSettings settings;
+  settings.gather_rays = settings.light_samples = 16;
+  const double coarse = gather(room, solution, settings).info.error;
+  settings.gather_rays = settings.light_samples = 1024;
+  const double fine = gather(room, solution, settings).info.error;
+  EXPECT_GT(fine, 0);
+  EXPECT_LT(fine, coarse / 6);  // better than the 8 of plain Monte Carlo, with room for luck
+}
+
+TEST(GatherVertices, refuses_nonsense) {
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 1);
+  room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, wall, wall}, 1);
+  const Solution solution = test::uniform_solution(room, 1, 0.7);
+  VertexSettings settings;
+  settings.replicates = 1;
+  EXPECT_THROW(gather(room, solution, settings), InputError);
+  settings = {};
+  settings.reach = 0;
+  EXPECT_THROW(gather(room, solution, settings), InputError);
+  settings = {};
+  settings.gather_rays = 0;
+  EXPECT_THROW(gather(room, solution, settings), InputError);
+}
+
+}  // namespace
+}  // namespace reemit

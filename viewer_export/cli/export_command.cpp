@@ -1,0 +1,117 @@
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "solver/solution/room_of_solution.h"
+#include "solver/solution/solution_file.h"
+#include "viewer_export/cli/command_options.h"
+#include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/messages.h"
+#include "viewer_export/cli/option_values.h"
+#include "viewer_export/cli/output_path.h"
+#include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/text_table.h"
+#include "viewer_export/formats/export_table.h"
+#include "viewer_export/vertex/vertex_radiance.h"
+
+namespace reemit::cli {
+namespace {
+
+struct ExportOptions {
+  std::filesystem::path solution;
+  std::optional<std::filesystem::path> room;
+  std::filesystem::path output;
+  VertexSettings vertex;
+  ToneMapSettings tone_map;
+  OutputStyle style;
+};
+
+void report(const ExportOptions& options, const VertexData& data, double seconds) {
+  if (options.style.json) {
+    const nlohmann::ordered_json json{
+        {"file", options.output.string()}, {"values", options.vertex.average_zones ? "zones" : "gather"},
+        {"vertices", data.vertex_count()}, {"triangles", data.triangles.size()},
+        {"error", data.info.error},        {"seconds", seconds}};
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}: {} vertices, {} triangles, error {}, {:.2f} s\n", options.output.string(),
+             data.vertex_count(), data.triangles.size(), percent_text(data.info.error), seconds);
+}
+
+ExitCode run_export(const ExportOptions& options) {
+  export_format_of(options.output);  // refuses an unknown one before the work
+  check_output_file(options.output, options.solution);
+  const Solution solution = load_solution(options.solution);
+  const Scene scene = read_room_of(solution, options.solution, options.room);
+  const RayScene rays(solution.mesh);
+
+  const auto start = std::chrono::steady_clock::now();
+  const InterruptGuard interrupt;
+  Progress progress("gathering", progress_style(options.style.quiet, options.style.verbose));
+  VertexData data = gather_vertices(
+      scene, solution, rays, options.vertex, [&progress](double done) { progress.update(done); },
+      interrupt.requested());
+  progress.finish();
+  data.tone_map = options.tone_map;
+  write_output([&] { write_vertex_data(data, options.output); });
+
+  if (interrupt.requested() && !options.style.quiet) {
+    print_note("interrupted; vertices not yet reached hold the mean of their zones");
+  }
+  report(options, data, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return ExitCode::kDone;
+}
+
+std::string output_help() {
+  std::string help = "File to write, the format by its extension:";
+  for (const ExportFormat& format : export_formats()) {
+    help += fmt::format("\n{}  {}", format.extension, format.description);
+  }
+  return help;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App& command = *program.add_subcommand(
+      "export", "Write radiance [W/(m2 sr)] and irradiance [W/m2] per band at every vertex");
+  command.footer(
+      "Examples:\n"
+      "  reemit export room.h5 -o room.ply\n"
+      "  reemit export room.h5 -o room.csv --samples 1024\n"
+      "  reemit export room.h5 -o quick.glb --values zones");
+  command.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
+  command.add_option("-o,--output", options->output, output_help())->required()->type_name("FILE");
+  add_room_option(command, options->room);
+
+  command.option_defaults()->group("Values");
+  add_choice_option<bool>(command, "--values", options->vertex.average_zones,
+                          {{"gather", false}, {"zones", true}},
+                          "gather: direct light and final gather at each vertex; zones: the mean of the\n"
+                          "zones around it, quick and as coarse as the zones");
+  add_integer_option(command, "--samples", options->vertex.gather_rays, 1, 1048576,
+                     "Gather rays per vertex, rounded up");
+  add_integer_option(command, "--light-samples", options->vertex.light_samples, 1, 65536,
+                     "Shadow rays per vertex, rounded up");
+  command.add_flag("--all-zones", options->vertex.all_zones,
+                   "Keep the backs of surfaces that no light reached and that do not emit");
+  add_seed_and_threads(command, options->vertex.seed, options->vertex.threads);
+  add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
+                    "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
+                    "(default: from the values)");
+
+  command.option_defaults()->group("Output");
+  add_json_option(command, options->style);
+  add_progress_options(command, options->style);
+  command.callback([options, &action] { action = [options] { return run_export(*options); }; });
+}
+
+}  // namespace reemit::cli

@@ -1,0 +1,136 @@
+#include "viewer_export/vertex/vertex_ring.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reemit {
+namespace {
+
+constexpr std::uint32_t kLeftOut = 0xffffffff;
+
+Vec3 to_vec3(const OpenMesh::Vec3d& v) {
+  return {v[0], v[1], v[2]};
+}
+
+/// Barycentric position of a point in the plane of a base triangle.
+Barycentric barycentric_of(const ZoneMesh& mesh, TriangleId t, const Vec3& p) {
+  const Vec3 e1 = mesh.corner(t, 1) - mesh.corner(t, 0);
+  const Vec3 e2 = mesh.corner(t, 2) - mesh.corner(t, 0);
+  const Vec3 d = p - mesh.corner(t, 0);
+  const Vec3 n = e1.cross(e2);
+  const double n2 = n.squaredNorm();
+  return {d.cross(e2).dot(n) / n2, e1.cross(d).dot(n) / n2};
+}
+
+/// Which zones are exported. A surface's backs stay or go together: a lit back shows no holes where packets
+/// happened to miss a zone.
+std::vector<bool> kept_zones(const Scene& scene, const Solution& solution, bool all_zones) {
+  const ZoneMesh& mesh = solution.mesh;
+  const std::size_t bands = scene.bands.count();
+  std::vector<bool> back_matters(scene.surfaces.size(), all_zones);
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    const Material& material = scene.material_of(scene.surfaces[s]);
+    if (material.emits() && material.emits_both_sides) back_matters[s] = true;
+  }
+  const ZoneSums& sums = solution.sums;
+  for (std::size_t z = 0; z < mesh.zone_count() && sums.batches > 0; ++z) {
+    if (mesh.zone_is_front(ZoneId(z))) continue;
+    for (std::size_t k = z * bands; k < (z + 1) * bands; ++k)
+      if (sums.direct[k] > 0 || sums.indirect[k] > 0)
+        back_matters[mesh.zone_surface(ZoneId(z)).index()] = true;
+  }
+  std::vector<bool> kept(mesh.zone_count());
+  for (std::size_t z = 0; z < kept.size(); ++z)
+    kept[z] = mesh.zone_is_front(ZoneId(z)) || back_matters[mesh.zone_surface(ZoneId(z)).index()];
+  return kept;
+}
+
+double turn_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
+/// Area over the square of the longest edge: small for slivers.
+double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return longest > 0 ? turn_area(a, b, c) / longest : 0;
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 3>> cut_into_triangles(const std::vector<Vec3>& polygon) {
+  std::vector<std::uint32_t> left(polygon.size());
+  for (std::uint32_t i = 0; i < left.size(); ++i) left[i] = i;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  while (left.size() > 3) {
+    const std::size_t n = left.size();
+    const auto at = [&](std::size_t i) -> const Vec3& { return polygon[left[i % n]]; };
+    const auto on_side = [&](std::size_t i) { return shape(at(i + n - 1), at(i), at(i + 1)) < 1e-6; };
+    // An ear next to a vertex on a side uses that vertex up; any other could leave only a line behind.
+    bool any_on_side = false;
+    for (std::size_t i = 0; i < n; ++i) any_on_side = any_on_side || on_side(i);
+    std::size_t best = 0;
+    double best_shape = -1;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (on_side(i)) continue;
+      if (any_on_side && !on_side(i + n - 1) && !on_side(i + 1)) continue;
+      const double s = shape(at(i + n - 1), at(i), at(i + 1));
+      if (s > best_shape) {
+        best = i;
+        best_shape = s;
+      }
+    }
+    triangles.push_back({left[(best + n - 1) % n], left[best], left[(best + 1) % n]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+  }
+  if (left.size() == 3) triangles.push_back({left[0], left[1], left[2]});
+  return triangles;
+}
+
+VertexRings::VertexRings(const Scene& scene, const Solution& solution, bool all_zones) {
+  const ZoneMesh& mesh = solution.mesh;
+  const ZoneTopology topology = make_zone_topology(mesh, solution.mesh_settings.crease_angle_deg);
+  const std::vector<bool> kept = kept_zones(scene, solution, all_zones);
+  std::vector<std::uint32_t> number(topology.n_vertices(), kLeftOut);
+  first_.push_back(0);
+  for (const auto vertex : topology.vertices()) {
+    const Vec3 position = to_vec3(topology.point(vertex));
+    for (auto face = topology.cvf_iter(vertex); face.is_valid(); ++face) {
+      const auto z = static_cast<std::size_t>(face->idx());
+      if (!kept[z]) continue;
+      const ZoneId zone(z);
+      rings_.push_back(
+          {zone, barycentric_of(mesh, mesh.zone_triangle(zone), position), mesh.zone_area(zone)});
+    }
+    if (rings_.size() == first_.back()) continue;
+    number[static_cast<std::size_t>(vertex.idx())] = static_cast<std::uint32_t>(positions_.size());
+    positions_.push_back(position);
+    normals_.push_back(to_vec3(topology.normal(vertex)));
+    first_.push_back(rings_.size());
+  }
+  add_triangles(topology, kept, number);
+}
+
+void VertexRings::add_triangles(const ZoneTopology& topology, const std::vector<bool>& kept,
+                                const std::vector<std::uint32_t>& number) {
+  std::vector<Vec3> polygon;
+  std::vector<std::uint32_t> corners;
+  for (const auto face : topology.faces()) {
+    if (!kept[static_cast<std::size_t>(face.idx())]) continue;
+    polygon.clear();
+    corners.clear();
+    for (auto v = topology.cfv_ccwiter(face); v.is_valid(); ++v) {
+      polygon.push_back(to_vec3(topology.point(*v)));
+      corners.push_back(number[static_cast<std::size_t>(v->idx())]);
+    }
+    for (const auto& t : cut_into_triangles(polygon))
+      triangles_.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+  }
+}
+
+double VertexRings::area(std::size_t vertex) const {
+  double sum = 0;
+  for (const RingZone* r = begin(vertex); r != end(vertex); ++r) sum += r->area;
+  return sum / 3;
+}
+
+}  // namespace reemit

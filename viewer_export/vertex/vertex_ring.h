@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/zone_topology.h"
+#include "scenes/model/scene.h"
+#include "solver/solution/solution.h"
+
+namespace reemit {
+
+/// One zone beside a vertex.
+struct RingZone {
+  ZoneId zone;
+  Barycentric vertex;  ///< Where the vertex lies in the parent triangle of the zone.
+  double area;         ///< [m2]
+};
+
+/// The vertices to export and the zones around each: those of one smooth part on one side.
+class VertexRings {
+ public:
+  /// Leaves out the backs of surfaces that no light reached and that do not emit, unless `all_zones`.
+  VertexRings(const Scene& scene, const Solution& solution, bool all_zones);
+
+  std::size_t size() const { return first_.size() - 1; }
+  const RingZone* begin(std::size_t vertex) const { return &rings_[first_[vertex]]; }
+  const RingZone* end(std::size_t vertex) const { return rings_.data() + first_[vertex + 1]; }
+  double area(std::size_t vertex) const;  ///< A third of the zones around [m2].
+
+  const std::vector<Vec3>& positions() const { return positions_; }  ///< [m]
+  const std::vector<Vec3>& normals() const { return normals_; }
+  /// Zones as triangles of these vertices, counter-clockwise seen from their side.
+  const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+
+ private:
+  void add_triangles(const ZoneTopology& topology, const std::vector<bool>& kept,
+                     const std::vector<std::uint32_t>& number);
+
+  std::vector<std::size_t> first_;
+  std::vector<RingZone> rings_;
+  std::vector<Vec3> positions_;
+  std::vector<Vec3> normals_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+/// Cuts a convex polygon, whose sides may carry further vertices, into triangles without slivers. Indices
+/// into `polygon`, wound as it is.
+std::vector<std::array<std::uint32_t, 3>> cut_into_triangles(const std::vector<Vec3>& polygon);
+
+}  // namespace reemit
