@@ -22,23 +22,17 @@ constexpr std::uintmax_t kLargestGltf = std::uintmax_t{2} << 30;  // The parser 
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
-/// A required extension outside this list changes what the file means.
-constexpr std::array<std::string_view, 16> kSupportedExtensions{"KHR_mesh_quantization",
-                                                                "KHR_texture_transform",
-                                                                "KHR_lights_punctual",
-                                                                "KHR_materials_emissive_strength",
-                                                                "KHR_materials_pbrSpecularGlossiness",
-                                                                "KHR_materials_transmission",
-                                                                "KHR_materials_ior",
-                                                                "KHR_materials_volume",
-                                                                "KHR_materials_specular",
-                                                                "KHR_materials_clearcoat",
-                                                                "KHR_materials_sheen",
-                                                                "KHR_materials_iridescence",
-                                                                "KHR_materials_unlit",
-                                                                "KHR_materials_variants",
-                                                                "KHR_texture_basisu",
-                                                                "EXT_mesh_gpu_instancing"};
+/// A required extension outside this list may change what the file means. Materials (KHR_materials_*) only
+/// change how a surface looks; those that are not taken over are warned of.
+constexpr std::array<std::string_view, 6> kSupportedExtensions{
+    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
+    "KHR_texture_basisu",    "EXT_texture_webp",      "EXT_mesh_gpu_instancing"};
+
+bool is_supported(const std::string& extension) {
+  return extension.starts_with("KHR_materials_") ||
+         std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) !=
+             kSupportedExtensions.end();
+}
 
 std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
   std::array<unsigned char, 4> b;
@@ -111,10 +105,7 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
 
 void check_extensions(const tinygltf::Model& model, const std::string& file) {
   for (const std::string& name : model.extensionsRequired) {
-    if (std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), name) !=
-        kSupportedExtensions.end()) {
-      continue;
-    }
+    if (is_supported(name)) continue;
     const bool compressed = name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression";
     throw InputError(
         file, fmt::format("the file requires the glTF extension \"{}\", which is not supported", name),

@@ -251,5 +251,16 @@ TEST(NativeFiles, SpectralRoomsNeedAMapping) {
   expect_input_error([&] { read_native_scene(file, {}); }, {"#/objects/0", "\"inside\"", "Map it"});
 }
 
+TEST(NativeReader, TheExampleOfTheDocumentationIsARoom) {
+  const std::string page =
+      test::read_bytes(std::filesystem::path(REEMIT_SOURCE_DIR) / "docs" / "room_format.md");
+  const std::size_t start = page.find("```json\n") + 8;
+  Scene scene = read_text(page.substr(start, page.find("```", start) - start));
+  finish_scene(scene);
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_EQ(scene.name, "A small room");
+  EXPECT_EQ(scene.surfaces.size(), 1u + 5u + 3u * 4u);
+}
+
 }  // namespace
 }  // namespace reemit
