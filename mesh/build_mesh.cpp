@@ -22,6 +22,8 @@
 namespace reemit {
 namespace {
 
+// Only triangles clearly worse than wanted are improved: a rectangle of 1:4 stays two triangles.
+constexpr double kToleratedAngle = 0.7;
 // Contacts that extend less than this part of a zone's edge are not worth a cut.
 constexpr double kSmallestContact = 0.25;
 // Triangles whose sides are below this many zone edges, or whose area is below this part of a zone, may have
@@ -133,7 +135,7 @@ MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
   on_edges.insert(on_edges.end(), cuts.on_boundary.begin(), cuts.on_boundary.end());
   insert_vertices_on_edges(vertices, on_edges, tolerances.weld, pieces);
 
-  const TriangleQuality quality{.smallest_angle_deg = settings.smallest_angle_deg,
+  const TriangleQuality quality{.smallest_angle_deg = kToleratedAngle * settings.smallest_angle_deg,
                                 .free_length = kFreeLength * zone_edge,
                                 .free_area = kFreeArea * zone_area,
                                 .most_new_points = 1'000'000};

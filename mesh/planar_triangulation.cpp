@@ -1,5 +1,5 @@
-// Points lie on edges only up to rounding, and CGAL's refinement may find itself in a face where it should
-// not be. Its checks must then stop it in every build, not only in debug builds.
+// Points lie on edges only up to rounding, and a triangulation may find itself in a face where it should not
+// be. CGAL's checks must then stop it in every build, not only in debug builds.
 #define CGAL_DEBUG
 
 #include "mesh/planar_triangulation.h"
@@ -8,12 +8,13 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
+#include <utility>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Delaunay_mesh_face_base_2.h>
-#include <CGAL/Delaunay_mesher_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/Unique_hash_map.h>
 
 namespace reemit {
 namespace {
@@ -22,12 +23,16 @@ constexpr std::uint32_t kNone = PlanarTriangulation::kNone;
 
 struct VertexInfo {
   std::uint32_t index = kNone;
-  bool before_refinement = false;
+};
+struct FaceInfo {
+  bool inside = false;
 };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<VertexInfo, Kernel>;
-using FaceBase = CGAL::Delaunay_mesh_face_base_2<Kernel>;
+using FaceBase =
+    CGAL::Constrained_triangulation_face_base_2<Kernel,
+                                                CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel>>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
 using FaceHandle = Cdt::Face_handle;
@@ -45,10 +50,6 @@ struct Shape {
   double squared_sine;    // of the smallest angle
   double squared_length;  // of the longest side
   double area;
-
-  bool matters(const TriangleQuality& quality) const {
-    return squared_length > quality.free_length * quality.free_length && area > quality.free_area;
-  }
 };
 
 Shape shape_of(const FaceHandle& f) {
@@ -61,44 +62,6 @@ Shape shape_of(const FaceHandle& f) {
   const double product = side2[1] * side2[2];  // the smallest angle lies between the two longer sides
   return {product > 0 ? cross * cross / product : 0.0, side2[2], 0.5 * std::abs(cross)};
 }
-
-double squared_sine_of(double degrees) {
-  const double s = std::sin(degrees * std::numbers::pi / 180);
-  return s * s;
-}
-
-// The criterion that CGAL's mesher asks: small angles count only in triangles that are not small themselves.
-class AngleCriteria {
- public:
-  using Face_handle = FaceHandle;
-  using Quality = double;
-
-  explicit AngleCriteria(const TriangleQuality& quality) : is_bad_(quality) {}
-
-  class Is_bad {
-   public:
-    explicit Is_bad(const TriangleQuality& quality)
-        : quality_(quality), squared_sine_(squared_sine_of(quality.smallest_angle_deg)) {}
-    CGAL::Mesh_2::Face_badness operator()(Quality q) const {
-      return q < squared_sine_ ? CGAL::Mesh_2::BAD : CGAL::Mesh_2::NOT_BAD;
-    }
-    CGAL::Mesh_2::Face_badness operator()(const Face_handle& f, Quality& q) const {
-      const Shape shape = shape_of(f);
-      // A triangle as thin as rounding has no usable circumcentre; its neighbours are refined instead.
-      constexpr double kFlat = 1e-20;
-      q = shape.matters(quality_) && shape.squared_sine > kFlat ? shape.squared_sine : 1.0;
-      return operator()(q);
-    }
-
-   private:
-    TriangleQuality quality_;
-    double squared_sine_;
-  };
-  Is_bad is_bad_object() const { return is_bad_; }
-
- private:
-  Is_bad is_bad_;
-};
 
 // Connected parts of the triangulation between constrained edges.
 struct Regions {
@@ -144,20 +107,6 @@ Regions find_regions(const Cdt& cdt, Admit admit) {
   return regions;
 }
 
-// Meshes are worth refining only when a triangle is clearly worse than wanted: a 1:4 rectangle is left alone.
-constexpr double kTolerated = 0.7;
-
-bool wants_refinement(const Cdt& cdt, const TriangleQuality& quality) {
-  if (quality.smallest_angle_deg <= 0 || quality.most_new_points == 0) return false;
-  const double limit = squared_sine_of(kTolerated * quality.smallest_angle_deg);
-  for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f) {
-    if (!f->is_in_domain()) continue;
-    const Shape shape = shape_of(f);
-    if (shape.matters(quality) && shape.squared_sine < limit) return true;
-  }
-  return false;
-}
-
 // CGAL prints before it throws; we fall back instead, which is nothing to tell the user.
 void silence_cgal() {
   static std::once_flag once;
@@ -165,71 +114,144 @@ void silence_cgal() {
       once, [] { CGAL::set_error_handler([](const char*, const char*, const char*, int, const char*) {}); });
 }
 
-// Returns false if the limit on new points was met.
-bool refine(Cdt& cdt, const TriangleQuality& quality) {
-  using Mesher = CGAL::Delaunay_mesher_2<Cdt, AngleCriteria>;
-  Mesher mesher(cdt, AngleCriteria(quality));
-  mesher.init(true);
-  const std::size_t limit = cdt.number_of_vertices() + quality.most_new_points;
-  // A step may refuse its point and mark another for later, so steps are bounded as well as points.
-  std::size_t steps = 20 * quality.most_new_points;
-  while (!mesher.is_edges_refinement_done() || !mesher.is_refinement_done()) {
-    if (cdt.number_of_vertices() >= limit || steps == 0) return false;
-    --steps;
-    if (!mesher.try_one_step_refine_mesh()) break;
+class Triangulator {
+ public:
+  Triangulator(const std::vector<Vec2>& points, const std::vector<std::array<std::uint32_t, 2>>& segments,
+               const std::function<bool(const Vec2&)>& inside)
+      : inside_(inside) {
+    out_.points = points;
+    insert_input(segments);
+    number_crossings(points.size());
+    mark_inside();
   }
-  return true;
-}
 
-// The numbered vertex at the end of the chain of constrained edges that leaves `from` towards `next`.
-std::uint32_t end_of_chain(const Cdt& cdt, VertexHandle from, VertexHandle next) {
-  while (!next->info().before_refinement) {
-    VertexHandle onward;
-    auto edge = cdt.incident_edges(next);
-    const auto first = edge;
-    do {
-      if (cdt.is_infinite(*edge) || !edge->first->is_constrained(edge->second)) continue;
-      const VertexHandle a = edge->first->vertex(Cdt::cw(edge->second));
-      const VertexHandle b = edge->first->vertex(Cdt::ccw(edge->second));
-      const VertexHandle other = a == next ? b : a;
-      if (other != from) onward = other;
-    } while (++edge != first);
-    if (onward == VertexHandle()) return kNone;
-    from = next;
-    next = onward;
-  }
-  return next->info().index;
-}
+  /// Returns false if more points than allowed would be needed.
+  bool refine(const TriangleQuality& quality);
+  PlanarTriangulation result();
 
-std::array<std::uint32_t, 2> segment_of(const Cdt& cdt, VertexHandle v) {
-  std::array<std::uint32_t, 2> ends{kNone, kNone};
-  std::size_t found = 0;
-  auto edge = cdt.incident_edges(v);
-  const auto first = edge;
-  do {
-    if (cdt.is_infinite(*edge) || !edge->first->is_constrained(edge->second)) continue;
-    const VertexHandle a = edge->first->vertex(Cdt::cw(edge->second));
-    const VertexHandle b = edge->first->vertex(Cdt::ccw(edge->second));
-    if (found < 2) ends[found] = end_of_chain(cdt, v, a == v ? b : a);
-    ++found;
-  } while (++edge != first);
-  if (found != 2 || ends[0] == kNone || ends[1] == kNone) return {kNone, kNone};
-  return ends;
-}
+ private:
+  struct LongSide {
+    double squared_length;
+    std::array<std::uint32_t, 2> ends;
+  };
 
-void insert_input(Cdt& cdt, const std::vector<Vec2>& points,
-                  const std::vector<std::array<std::uint32_t, 2>>& segments) {
-  std::vector<VertexHandle> handle;
-  handle.reserve(points.size());
+  void insert_input(const std::vector<std::array<std::uint32_t, 2>>& segments);
+  void number_crossings(std::size_t given);
+  void mark_inside();
+  std::vector<LongSide> sides_to_split(const TriangleQuality& quality) const;
+  void split(const LongSide& side);
+
+  const std::function<bool(const Vec2&)>& inside_;
+  Cdt cdt_;
+  std::vector<VertexHandle> handle_;  // by index of the point
+  PlanarTriangulation out_;
+};
+
+void Triangulator::insert_input(const std::vector<std::array<std::uint32_t, 2>>& segments) {
   FaceHandle hint;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const VertexHandle v = cdt.insert(Cdt::Point(points[i].x(), points[i].y()), hint);
-    if (v->info().index == kNone) v->info() = {static_cast<std::uint32_t>(i), true};
+  for (std::size_t i = 0; i < out_.points.size(); ++i) {
+    const VertexHandle v = cdt_.insert(Cdt::Point(out_.points[i].x(), out_.points[i].y()), hint);
+    if (v->info().index == kNone) v->info().index = static_cast<std::uint32_t>(i);
     hint = v->face();
-    handle.push_back(v);
+    handle_.push_back(v);
   }
   for (const auto& [a, b] : segments)
-    if (handle[a] != handle[b]) cdt.insert_constraint(handle[a], handle[b]);
+    if (handle_[a] != handle_[b]) cdt_.insert_constraint(handle_[a], handle_[b]);
+}
+
+void Triangulator::number_crossings(std::size_t given) {
+  for (auto v = cdt_.finite_vertices_begin(); v != cdt_.finite_vertices_end(); ++v) {
+    if (v->info().index != kNone) continue;
+    v->info().index = static_cast<std::uint32_t>(out_.points.size());
+    out_.points.push_back(to_vec(v->point()));
+    handle_.push_back(v);
+  }
+  out_.on_segment.resize(out_.points.size() - given, {kNone, kNone});
+}
+
+void Triangulator::mark_inside() {
+  if (cdt_.dimension() < 2) return;
+  for (auto f = cdt_.all_faces_begin(); f != cdt_.all_faces_end(); ++f) f->info().inside = false;
+  const Regions all = find_regions(cdt_, [](const FaceHandle&) { return true; });
+  for (std::size_t r = 0; r < all.faces.size(); ++r) {
+    const bool is_inside = inside_(all.point[r]);
+    for (const FaceHandle& f : all.faces[r]) f->info().inside = is_inside;
+  }
+}
+
+std::vector<Triangulator::LongSide> Triangulator::sides_to_split(const TriangleQuality& quality) const {
+  const double sine = std::sin(quality.smallest_angle_deg * std::numbers::pi / 180);
+  // A triangle as thin as rounding cannot be improved.
+  constexpr double kFlat = 1e-20;
+  std::vector<LongSide> sides;
+  for (auto f = cdt_.finite_faces_begin(); f != cdt_.finite_faces_end(); ++f) {
+    if (!f->info().inside) continue;
+    const Shape shape = shape_of(f);
+    if (shape.squared_sine >= sine * sine || shape.squared_sine <= kFlat || shape.area <= quality.free_area ||
+        shape.squared_length <= quality.free_length * quality.free_length)
+      continue;
+    LongSide longest{-1, {0, 0}};
+    for (int i = 0; i < 3; ++i) {
+      const VertexHandle a = f->vertex(Cdt::ccw(i));
+      const VertexHandle b = f->vertex(Cdt::cw(i));
+      const double length2 = (to_vec(a->point()) - to_vec(b->point())).squaredNorm();
+      if (length2 <= longest.squared_length) continue;
+      const auto [low, high] = std::minmax(a->info().index, b->info().index);
+      longest = {length2, {low, high}};
+    }
+    sides.push_back(longest);
+  }
+  std::sort(sides.begin(), sides.end(), [](const LongSide& x, const LongSide& y) {
+    return x.squared_length != y.squared_length ? x.squared_length > y.squared_length : x.ends < y.ends;
+  });
+  sides.erase(std::unique(sides.begin(), sides.end(),
+                          [](const LongSide& x, const LongSide& y) { return x.ends == y.ends; }),
+              sides.end());
+  return sides;
+}
+
+void Triangulator::split(const LongSide& side) {
+  const auto [a, b] = side.ends;
+  FaceHandle f;
+  int i = 0;
+  if (!cdt_.is_edge(handle_[a], handle_[b], f, i)) return;  // an earlier point of this round took it away
+  const Vec2 middle = 0.5 * (out_.points[a] + out_.points[b]);
+  const Cdt::Point p(middle.x(), middle.y());
+  const bool on_segment = f->is_constrained(i);
+  const VertexHandle v = on_segment ? cdt_.insert(p, Cdt::EDGE, f, i) : cdt_.insert(p, f);
+  if (v->info().index != kNone) return;
+  v->info().index = static_cast<std::uint32_t>(out_.points.size());
+  handle_.push_back(v);
+  out_.points.push_back(middle);
+  out_.on_segment.push_back(on_segment ? side.ends : std::array<std::uint32_t, 2>{kNone, kNone});
+}
+
+bool Triangulator::refine(const TriangleQuality& quality) {
+  if (cdt_.dimension() < 2 || quality.smallest_angle_deg <= 0) return true;
+  const std::size_t limit = out_.points.size() + quality.most_new_points;
+  for (;;) {
+    const std::vector<LongSide> sides = sides_to_split(quality);
+    if (sides.empty()) return true;
+    if (out_.points.size() + sides.size() > limit) return false;
+    const std::size_t before = out_.points.size();
+    for (const LongSide& side : sides) split(side);
+    if (out_.points.size() == before) return true;
+    mark_inside();
+  }
+}
+
+PlanarTriangulation Triangulator::result() {
+  if (cdt_.dimension() < 2) return std::move(out_);
+  const Regions kept = find_regions(cdt_, [](const FaceHandle& f) { return f->info().inside; });
+  for (std::size_t r = 0; r < kept.faces.size(); ++r) {
+    out_.region_point.push_back(kept.point[r]);
+    for (const FaceHandle& f : kept.faces[r]) {
+      out_.triangles.push_back(
+          {f->vertex(0)->info().index, f->vertex(1)->info().index, f->vertex(2)->info().index});
+      out_.region.push_back(static_cast<std::uint32_t>(r));
+    }
+  }
+  return std::move(out_);
 }
 
 }  // namespace
@@ -238,49 +260,20 @@ PlanarTriangulation triangulate_planar(const std::vector<Vec2>& points,
                                        const std::vector<std::array<std::uint32_t, 2>>& segments,
                                        const std::function<bool(const Vec2&)>& inside,
                                        const TriangleQuality& quality) {
-  PlanarTriangulation out;
-  out.points = points;
   silence_cgal();
-  Cdt cdt;
-  insert_input(cdt, points, segments);
-  if (cdt.dimension() < 2) return out;
-  for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) {
-    if (v->info().index != kNone) continue;
-    v->info() = {static_cast<std::uint32_t>(out.points.size()), true};
-    out.points.push_back(to_vec(v->point()));
-    out.on_segment.push_back({kNone, kNone});
-  }
-
-  for (auto f = cdt.all_faces_begin(); f != cdt.all_faces_end(); ++f) f->set_in_domain(false);
-  const Regions all = find_regions(cdt, [](const FaceHandle&) { return true; });
-  for (std::size_t r = 0; r < all.faces.size(); ++r) {
-    const bool is_inside = inside(all.point[r]);
-    for (const FaceHandle& f : all.faces[r]) f->set_in_domain(is_inside);
-  }
-  if (wants_refinement(cdt, quality)) {
+  if (quality.most_new_points > 0) {
     try {
-      Cdt refined = cdt;
-      if (refine(refined, quality)) cdt.swap(refined);
+      Triangulator refined(points, segments, inside);
+      if (refined.refine(quality)) return refined.result();
     } catch (const CGAL::Failure_exception&) {
-      // Thinner than rounding somewhere: the unrefined triangulation stays.
+      // Something is thinner than rounding; without refinement it may still do.
     }
   }
-  for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) {
-    if (v->info().index != kNone) continue;
-    v->info().index = static_cast<std::uint32_t>(out.points.size());
-    out.points.push_back(to_vec(v->point()));
-    out.on_segment.push_back(segment_of(cdt, v));
+  try {
+    return Triangulator(points, segments, inside).result();
+  } catch (const CGAL::Failure_exception&) {
+    return {};
   }
-  const Regions kept = find_regions(cdt, [](const FaceHandle& f) { return f->is_in_domain(); });
-  for (std::size_t r = 0; r < kept.faces.size(); ++r) {
-    out.region_point.push_back(kept.point[r]);
-    for (const FaceHandle& f : kept.faces[r]) {
-      out.triangles.push_back(
-          {f->vertex(0)->info().index, f->vertex(1)->info().index, f->vertex(2)->info().index});
-      out.region.push_back(static_cast<std::uint32_t>(r));
-    }
-  }
-  return out;
 }
 
 }  // namespace reemit

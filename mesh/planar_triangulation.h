@@ -8,9 +8,11 @@
 
 namespace reemit {
 
-/// What triangles a planar region is cut into.
+/// What triangles a planar region is cut into. Long thin triangles are improved by points in the middle of
+/// their longest sides. (Ruppert's refinement would guarantee the angle, but also answers every small feature
+/// with a cascade of triangles, which costs rays and serves no zone.)
 struct TriangleQuality {
-  double smallest_angle_deg = 20;   ///< Aimed at by adding points; 0 = none are added.
+  double smallest_angle_deg = 0;    ///< Aimed at by adding points; 0 = none are added.
   double free_length = 0;           ///< Triangles whose longest side is shorter may have any shape [m],
   double free_area = 0;             ///< and so may triangles of less area [m2].
   std::size_t most_new_points = 0;  ///< If more would be needed, none are added.
@@ -32,7 +34,8 @@ struct PlanarTriangulation {
 
 /// Triangulates the plane with the given segments kept as edges (they may cross, touch and repeat), and
 /// returns the part for which `inside` holds; it is asked once per region. Shewchuk/Ruppert refinement by
-/// CGAL. Equal points are one: triangles then name the first of them. Deterministic.
+/// CGAL. Equal points are one: triangles then name the first of them. No triangles if the input defeats the
+/// arithmetic. Deterministic.
 PlanarTriangulation triangulate_planar(const std::vector<Vec2>& points,
                                        const std::vector<std::array<std::uint32_t, 2>>& segments,
                                        const std::function<bool(const Vec2&)>& inside,
