@@ -1,6 +1,7 @@
 #include "viewer_export/cli/text_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -36,6 +37,7 @@ std::string number_text(double value) {
 }
 
 std::string percent_text(double share) {
+  if (!std::isfinite(share)) return "not known yet";
   return fmt::format("{:.3g} %", 100 * share);
 }
 

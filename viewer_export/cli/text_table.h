@@ -19,7 +19,7 @@ class TextTable {
 
 /// Six significant digits, as in all tables.
 std::string number_text(double value);
-/// "1.25 %".
+/// "1.25 %", or "not known yet" unless finite.
 std::string percent_text(double share);
 
 }  // namespace reemit::cli
