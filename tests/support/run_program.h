@@ -24,6 +24,7 @@ struct ProgramRun {
 
 struct RunOptions {
   std::optional<std::uint64_t> largest_file;  ///< No file may grow beyond this [bytes], as on a full disk.
+  std::optional<std::uint64_t> most_memory;   ///< Address space [bytes]; not with the address sanitizer.
   std::string stdout_path;                    ///< Where standard output goes instead of into ProgramRun::out.
   std::filesystem::path working_folder;       ///< Empty: the one of the test.
   unsigned time_limit_s = 120;                ///< Then the run is killed, so that a hang fails a test.
@@ -46,6 +47,10 @@ class RunningProgram {
     if (options.largest_file) {
       const rlimit limit{*options.largest_file, *options.largest_file};
       ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    if (options.most_memory) {
+      const rlimit limit{*options.most_memory, *options.most_memory};
+      ::setrlimit(RLIMIT_AS, &limit);
     }
     ::alarm(options.time_limit_s);
     ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);

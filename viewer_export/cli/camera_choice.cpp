@@ -50,6 +50,7 @@ std::vector<Camera> choose_cameras(const CameraOptions& options, const Scene& sc
                                   [&](const Camera& camera) { return camera.name == options.name; });
   if (found != cameras.end()) return {*found};
   std::vector<std::string> names;
+  names.reserve(cameras.size());
   for (const Camera& camera : cameras) names.push_back(camera.name);
   throw InputError("--camera", fmt::format("the room has no camera '{}'", options.name),
                    fmt::format("it has: {}; or use 'all', or --eye and --look-at", fmt::join(names, ", ")));

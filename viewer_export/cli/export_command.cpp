@@ -37,12 +37,12 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
     const nlohmann::ordered_json json{
         {"file", options.output.string()}, {"values", options.vertex.average_zones ? "zones" : "gather"},
         {"vertices", data.vertex_count()}, {"triangles", data.triangles.size()},
-        {"error", data.info.error},        {"seconds", seconds}};
+        {"error", known_error(data.info)}, {"seconds", seconds}};
     fmt::print("{}\n", json.dump(2));
     return;
   }
   fmt::print("{}: {} vertices, {} triangles, error {}, {:.2f} s\n", options.output.string(),
-             data.vertex_count(), data.triangles.size(), percent_text(data.info.error), seconds);
+             data.vertex_count(), data.triangles.size(), percent_text(known_error(data.info)), seconds);
 }
 
 ExitCode run_export(const ExportOptions& options) {

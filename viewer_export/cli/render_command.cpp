@@ -115,10 +115,11 @@ class Renderer {
   void report(const Job& job, const StillImage& image, const WrittenImage& written, double seconds) {
     const std::string integrator = to_string(options_.still.integrator);
     if (options_.style.json) {
-      nlohmann::ordered_json picture{{"file", job.file.string()}, {"camera", job.camera.name},
-                                     {"width_px", image.width},   {"height_px", image.height},
-                                     {"integrator", integrator},  {"samples_per_pixel", mean_samples(image)},
-                                     {"error", image.info.error}, {"seconds", seconds}};
+      nlohmann::ordered_json picture{
+          {"file", job.file.string()},        {"camera", job.camera.name},
+          {"width_px", image.width},          {"height_px", image.height},
+          {"integrator", integrator},         {"samples_per_pixel", mean_samples(image)},
+          {"error", known_error(image.info)}, {"seconds", seconds}};
       if (written.tone_mapped) picture["exposure_ev"] = written.tone_map.exposure_ev();
       pictures_.push_back(std::move(picture));
       return;
@@ -126,7 +127,7 @@ class Renderer {
     fmt::print(
         "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel, error {}, {}{:.2f} s\n", job.file.string(),
         job.camera.name, image.width, image.height, integrator, mean_samples(image),
-        percent_text(image.info.error),
+        percent_text(known_error(image.info)),
         written.tone_mapped ? fmt::format("exposure {:+.2f} EV, ", written.tone_map.exposure_ev()) : "",
         seconds);
   }

@@ -1,11 +1,13 @@
 #include "viewer_export/cli/room_report.h"
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "viewer_export/cli/luminaire_list.h"
@@ -35,8 +37,30 @@ Json spectrum_json(const Spectrum& value) {
   return std::vector<double>(value.begin(), value.end());
 }
 
-void add_cells(std::vector<std::string>& cells, const Spectrum& value) {
+constexpr std::size_t kMostBandColumns = 4;
+constexpr std::size_t kMostRows = 40;
+
+/// Heads of the columns of a quantity: one per band, or lowest and highest where bands are many.
+void add_band_heads(std::vector<std::string>& cells, const std::string& quantity, const BandSet& bands) {
+  if (bands.count() > kMostBandColumns) {
+    cells.insert(cells.end(), {quantity + " lowest", quantity + " highest"});
+    return;
+  }
+  for (const std::string& band : bands.names()) cells.push_back(quantity + " " + band);
+}
+
+void add_band_cells(std::vector<std::string>& cells, const Spectrum& value) {
+  if (static_cast<std::size_t>(value.size()) > kMostBandColumns) {
+    cells.insert(cells.end(), {number_text(value.minCoeff()), number_text(value.maxCoeff())});
+    return;
+  }
   for (const double v : value) cells.push_back(number_text(v));
+}
+
+/// Where a long table was cut.
+std::string rest_text(std::size_t rows, const std::string& of_what) {
+  if (rows <= kMostRows) return "";
+  return fmt::format("  ... and {} more {}; --json lists all\n", rows - kMostRows, of_what);
 }
 
 std::size_t face_count(const Scene& scene) {
@@ -66,30 +90,32 @@ std::string sides_text(const Material& material) {
 std::string materials_text(const Scene& scene) {
   TextTable table;
   std::vector<std::string> head{"material"};
-  for (const std::string& band : scene.bands.names()) head.push_back("rho " + band);
-  for (const std::string& band : scene.bands.names()) head.push_back("L_e " + band);
+  add_band_heads(head, "rho", scene.bands);
+  add_band_heads(head, "L_e", scene.bands);
   head.emplace_back("sides");
   table.row(std::move(head));
-  for (const Material& material : scene.materials) {
+  for (std::size_t m = 0; m < std::min(kMostRows, scene.materials.size()); ++m) {
+    const Material& material = scene.materials[m];
     std::vector<std::string> cells{"  " + material.name};
-    add_cells(cells, material.reflectance);
-    add_cells(cells, material.emitted_radiance);
+    add_band_cells(cells, material.reflectance);
+    add_band_cells(cells, material.emitted_radiance);
     cells.push_back(sides_text(material));
     table.row(std::move(cells));
   }
-  return "Materials: diffuse reflectance rho [1], emitted radiance L_e [W/(m2 sr)]\n" + table.text();
+  return "Materials: diffuse reflectance rho [1], emitted radiance L_e [W/(m2 sr)]\n" + table.text() +
+         rest_text(scene.materials.size(), "materials");
 }
 
 std::string surfaces_text(const Scene& scene, const MeshReport& report) {
   TextTable table;
   table.row({"surface", "faces", "area [m2]", "removed [m2]", "material"});
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+  for (std::size_t s = 0; s < std::min(kMostRows, scene.surfaces.size()); ++s) {
     const Surface& surface = scene.surfaces[s];
     table.row({"  " + surface.name, std::to_string(surface.faces.size()),
                number_text(report.surfaces[s].input), number_text(report.surfaces[s].removed),
                scene.material_of(surface).name});
   }
-  return table.text();
+  return table.text() + rest_text(scene.surfaces.size(), "surfaces");
 }
 
 std::string luminaires_text(const Scene& scene, const MeshReport& report) {
@@ -97,25 +123,28 @@ std::string luminaires_text(const Scene& scene, const MeshReport& report) {
   if (rows.empty()) return "Luminaires: none\n";
   TextTable table;
   std::vector<std::string> head{"luminaire", "kind", "area [m2]"};
-  for (const std::string& band : scene.bands.names()) head.push_back("power " + band + " [W]");
+  add_band_heads(head, "W", scene.bands);
   head.emplace_back("flux [lm]");
   table.row(std::move(head));
   Spectrum total = Spectrum::Zero(static_cast<Eigen::Index>(scene.bands.count()));
   for (const LuminaireRow& luminaire : rows) {
+    if (luminaire.power.size() > 0) total += luminaire.power;
+  }
+  for (std::size_t l = 0; l < std::min(kMostRows, rows.size()); ++l) {
+    const LuminaireRow& luminaire = rows[l];
     std::vector<std::string> cells{"  " + luminaire.name, luminaire.kind,
                                    luminaire.area > 0 ? number_text(luminaire.area) : "-"};
     if (luminaire.power.size() > 0) {
-      add_cells(cells, luminaire.power);
+      add_band_cells(cells, luminaire.power);
       cells.push_back(number_text(lumens(luminaire.power, scene.bands)));
-      total += luminaire.power;
     }
     table.row(std::move(cells));
   }
   std::vector<std::string> cells{"  total", "", ""};
-  add_cells(cells, total);
+  add_band_cells(cells, total);
   cells.push_back(number_text(lumens(total, scene.bands)));
   table.row(std::move(cells));
-  return table.text();
+  return "Luminaires: power [W] per band\n" + table.text() + rest_text(rows.size(), "luminaires");
 }
 
 std::string cameras_text(const Scene& scene) {

@@ -10,7 +10,7 @@ namespace reemit::cli {
 
 /// The line `solve` ends with: why it stopped, packets, rays, seconds, error.
 std::string solve_line(const Solution& solution);
-/// The same as the document of `solve --json` (docs/file_formats.md).
+/// The same as the document of `solve --json` (docs/command_line.md).
 nlohmann::ordered_json solve_json(const Solution& solution, const std::filesystem::path& file);
 
 /// What `info` says about a solution. `room_status` in words: whether the room is still the one solved.

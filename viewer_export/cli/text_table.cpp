@@ -1,6 +1,8 @@
 #include "viewer_export/cli/text_table.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -36,7 +38,12 @@ std::string number_text(double value) {
 }
 
 std::string percent_text(double share) {
+  if (!std::isfinite(share)) return "not known";
   return fmt::format("{:.3g} %", 100 * share);
+}
+
+double known_error(const ExportInfo& info) {
+  return info.error > 0 ? info.error : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace reemit::cli

@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "viewer_export/formats/export_info.h"
+
 namespace reemit::cli {
 
 /// Columns of text for people: the first is aligned left, the others right.
@@ -19,7 +21,10 @@ class TextTable {
 
 /// Six significant digits, as in all tables.
 std::string number_text(double value);
-/// "1.25 %".
+/// "1.25 %", or "not known" unless finite.
 std::string percent_text(double share);
+
+/// The achieved error of exported values; infinite where it is not known, which JSON shows as null.
+double known_error(const ExportInfo& info);
 
 }  // namespace reemit::cli

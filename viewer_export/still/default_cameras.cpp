@@ -23,12 +23,40 @@ constexpr double kLeastClearance = 0.04;   // of the box diagonal: nothing is cl
 constexpr double kMostWrongSides = 0.005;  // share of surrounding rays that may meet backs of faces
 constexpr double kLeastEnclosed = 0.3;     // share of surrounding rays that must meet the room at all
 constexpr std::size_t kMostCameras = 3;
+constexpr double kMostlyDown =
+    0.8;  // part of the emission that leaves downwards if luminaires tell which way is up
 
 struct View {
   Vec3 eye;
   Vec3 direction;  // unit
   double depth;    // mean distance seen [m]
 };
+
+/// Twice the area of a face times its normal.
+Vec3 doubled_area_vector(const Surface& surface, const Face& face) {
+  Vec3 sum(0, 0, 0);
+  const Vec3& origin = surface.positions[face.outer.front()];
+  for (std::size_t i = 1; i + 1 < face.outer.size(); ++i) {
+    sum += (surface.positions[face.outer[i]] - origin).cross(surface.positions[face.outer[i + 1]] - origin);
+  }
+  return sum;
+}
+
+/// Mean of the normals of emitting faces, weighted by power: of unit length if all look the same way.
+Vec3 mean_emission_direction(const Scene& scene) {
+  Vec3 sum(0, 0, 0);
+  double total = 0;
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.material_of(surface);
+    if (!material.emits()) continue;
+    for (const Face& face : surface.faces) {
+      const Vec3 weighted = material.emitted_radiance.sum() * doubled_area_vector(surface, face);
+      total += weighted.norm();
+      if (!material.emits_both_sides) sum += weighted;
+    }
+  }
+  return total > 0 ? Vec3(sum / total) : Vec3(0, 0, 0);
+}
 
 /// Box and axes of the room; a and b are level, up is up.
 struct Frame {
@@ -180,7 +208,12 @@ Camera camera_of(const View& view, const Vec3& up, std::size_t number) {
 Vec3 up_direction(const Scene& scene) {
   std::string extension = std::filesystem::path(scene.source).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".mgf" ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+  if (extension == ".mgf" || extension == ".obj") {
+    const Vec3 flow = mean_emission_direction(scene);
+    if (flow.y() < -kMostlyDown) return Vec3::UnitY();
+    if (flow.z() < -kMostlyDown) return Vec3::UnitZ();
+  }
+  return extension == ".mgf" ? Vec3::UnitZ() : Vec3::UnitY();
 }
 
 std::vector<Camera> default_cameras(const Scene& scene, const RayScene& rays) {

@@ -7,7 +7,8 @@
 
 namespace reemit {
 
-/// The way that is up in rooms of this format: +z for MGF, else +y. Unit.
+/// The way that is up: +y or +z, unit. Where the format leaves it open (MGF, OBJ), the luminaires tell if
+/// nearly all of them shine down along one of the two; else +z for MGF and +y for all others.
 Vec3 up_direction(const Scene& scene);
 
 /// One to three cameras for a room that has none, named auto-1, auto-2, ... Eyes stand in the free space at

@@ -37,7 +37,7 @@ struct Misuse {
 TEST(Usage, MistakesEndWithCode2AndAHint) {
   const std::vector<Misuse> misuses{
       {{}, "subcommand is required"},
-      {{"sovle", "room.json"}, "did you mean 'solve'"},
+      {{"solv", "room.json"}, "did you mean 'solve'"},
       {{"solve", "room.json", "-o", "x.h5", "--eror", "1%"}, "did you mean '--error'"},
       {{"solve", "room.json"}, "--output is required"},
       {{"solve", "-o", "x.h5"}, "room is required"},

@@ -87,6 +87,20 @@ TEST(DefaultCameras, ShowALonePolygonFromItsFront) {
   EXPECT_LT(cameras[0].look_at.z(), cameras[0].eye.z());
 }
 
+TEST(DefaultCameras, LampsThatShineDownTellWhichWayIsUp) {
+  // A lamp in the ceiling of a room that has y up, in a format that does not say so.
+  RoomBuilder room;
+  room.box(Vec3(0, 0, 0), Vec3(3, 3, 3), all(room.material("wall", 0.5)), 1);
+  room.quad(room.material("lamp", 0, 10),
+            {Vec3(1, 2.9, 1), Vec3(2, 2.9, 1), Vec3(2, 2.9, 2), Vec3(1, 2.9, 2)}, 1);
+  room.scene().source = "room.mgf";
+  EXPECT_EQ(up_direction(room.scene()), Vec3(0, 1, 0));
+  // As much light from a window in a wall: nothing to be learnt.
+  room.quad(room.material("window", 0, 10),
+            {Vec3(0.1, 1, 1), Vec3(0.1, 2, 1), Vec3(0.1, 2, 2), Vec3(0.1, 1, 2)}, 1);
+  EXPECT_EQ(up_direction(room.scene()), Vec3(0, 0, 1));
+}
+
 TEST(DefaultCameras, UpFollowsTheFormat) {
   Scene scene;
   scene.source = "room.MGF";

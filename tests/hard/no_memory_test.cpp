@@ -1,0 +1,50 @@
+// Rooms and pictures that do not fit into memory: exit code 3, a message, nothing left behind.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/run_program.h"
+#include "tests/support/small_rooms.h"
+#include "tests/support/solved_room.h"
+#include "tests/support/temp_folder.h"
+
+namespace reemit::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(NoMemory, EndsWithCode3) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs the address space that this test takes away";
+#endif
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const std::string solution = solve_small_room(folder, "room.h5").string();
+  RunOptions options;
+  options.most_memory = 2'000'000'000;
+  const std::vector<std::vector<std::string>> commands{
+      {"solve", (folder / "room.json").string(), "-o", (folder / "big.h5").string(), "--zone-area", "1e-7"},
+      {"render", solution, "--size", "16384x16384", "-o", (folder / "big.exr").string()}};
+  for (const std::vector<std::string>& command : commands) {
+    const ProgramRun run = run_reemit(command, options);
+    EXPECT_EQ(run.exit_code, 3) << command.front() << ": " << run.err;
+    EXPECT_THAT(run.err, HasSubstr("memory")) << command.front();
+    EXPECT_THAT(folder.listing(), ElementsAre("room.h5", "room.json")) << command.front();
+  }
+}
+
+TEST(NoMemory, AbsurdlySmallZonesAreRefusedAtOnce) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const ProgramRun run = run_reemit(
+      {"solve", (folder / "room.json").string(), "-o", (folder / "big.h5").string(), "--zone-area", "1e-14"});
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("larger zones"));
+  EXPECT_THAT(folder.listing(), ElementsAre("room.json"));
+}
+
+}  // namespace
+}  // namespace reemit::test
