@@ -20,12 +20,6 @@ namespace {
 constexpr std::uintmax_t kLargestObj = std::uintmax_t{2} << 30;
 constexpr std::size_t kMostWarnings = 20;
 
-std::string rest_of(const TextLine& line, std::size_t first) {
-  if (first >= line.words.size()) return "";
-  const std::string_view last = line.words.back();
-  return {line.words[first].data(), last.data() + last.size()};
-}
-
 // First pass: checks every line, follows names and materials, and leaves clean v, vn and f lines for
 // tinyobjloader.
 class ObjChecker {

@@ -33,13 +33,6 @@ constexpr std::array kRules = {
     NumberRule{"illum", 1, 1, 0, 10},
 };
 
-// The rest of a line from word `first` on, blanks inside kept: names may have them.
-std::string rest_of(const TextLine& line, std::size_t first) {
-  if (first >= line.words.size()) return "";
-  const std::string_view last = line.words.back();
-  return {line.words[first].data(), last.data() + last.size()};
-}
-
 // The words of a numeric statement up to a comment.
 std::vector<std::string_view> without_comment(const TextLine& line) {
   const auto comment =

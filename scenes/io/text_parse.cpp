@@ -44,6 +44,12 @@ std::string at_line(const std::string& file, std::uint32_t line) {
   return fmt::format("{}:{}", file, line);
 }
 
+std::string rest_of(const TextLine& line, std::size_t first) {
+  if (first >= line.words.size()) return "";
+  const std::string_view last = line.words.back();
+  return {line.words[first].data(), last.data() + last.size()};
+}
+
 std::vector<TextLine> split_lines(std::string_view text) {
   std::vector<TextLine> lines;
   TextLine line{1, {}};

@@ -23,6 +23,10 @@ struct TextLine {
   std::vector<std::string_view> words;
 };
 
+/// The line from word `first` on as it stands, blanks inside kept, as names may have them; empty if there is
+/// no such word.
+std::string rest_of(const TextLine& line, std::size_t first);
+
 /// Splits text into its non-blank lines. A backslash at the end of a line joins the next one to it; LF, CRLF
 /// and CR end lines. The text must outlive the result.
 std::vector<TextLine> split_lines(std::string_view text);

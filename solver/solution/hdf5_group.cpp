@@ -69,8 +69,17 @@ constexpr H5T_class_t kClass = std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INT
 constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 18;
 constexpr unsigned kDeflateLevel = 2;
 
+// Properties of a new object without the times that HDF5 would put into it: the same solution must give the
+// same bytes.
+Hdf5Id timeless_properties(hid_t kind) {
+  const char* what = "cannot make object properties";
+  Hdf5Id properties(H5Pcreate(kind), H5Pclose, what);
+  check_hdf5(H5Pset_obj_track_times(properties.get(), false), what);
+  return properties;
+}
+
 Hdf5Id dataset_properties(const Hdf5Shape& shape, std::size_t value_size) {
-  Hdf5Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make dataset properties");
+  Hdf5Id properties = timeless_properties(H5P_DATASET_CREATE);
   if (value_count(shape) == 0) return properties;  // nothing to cut into chunks
   std::vector<hsize_t> chunk(shape.begin(), shape.end());
   const std::uint64_t row_bytes = value_count(shape) / shape[0] * value_size;
@@ -144,7 +153,8 @@ std::string Hdf5Group::full_name(const std::string& name) const {
 
 Hdf5Group Hdf5Group::create_group(const std::string& name) const {
   const std::string full = full_name(name);
-  return {Hdf5Id(H5Gcreate2(id_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+  const Hdf5Id properties = timeless_properties(H5P_GROUP_CREATE);
+  return {Hdf5Id(H5Gcreate2(id_.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Gclose,
                  "cannot create the group " + full),
           full};
 }

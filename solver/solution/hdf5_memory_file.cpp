@@ -47,7 +47,9 @@ Hdf5MemoryFile::Hdf5MemoryFile() : image_(std::make_unique<Image>()) {
   // Metadata of this version carry checksums, so damage is found before it is believed.
   check_hdf5(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110), what);
   check_hdf5(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), what);
-  file_.emplace(H5Fcreate("reemit solution in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose,
+  const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
+  check_hdf5(H5Pset_obj_track_times(creation.get(), false), what);  // of the root group; see hdf5_group.cpp
+  file_.emplace(H5Fcreate("reemit solution in memory", H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose,
                 "cannot create the file");
 }
 

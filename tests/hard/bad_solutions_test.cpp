@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include "solver/solution/file_seal.h"
 #include "tests/support/run_program.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/solved_room.h"
@@ -88,6 +89,9 @@ TEST_F(BadSolutions, OtherVersion) {
   EXPECT_GE(H5Awrite(attribute, H5T_NATIVE_UINT, &version), 0);
   H5Aclose(attribute);
   H5Fclose(file);
+  const std::string changed = read_bytes(folder_ / "bad.h5");
+  expect_refused_by_all("bad.h5", "changed");  // the seal is gone
+  folder_.write("bad.h5", changed + seal_of(changed));
   expect_refused_by_all("bad.h5", "4711");
 }
 

@@ -157,6 +157,21 @@ TEST_F(SolutionFile, SavingTwiceGivesTheSameBytes) {
   EXPECT_EQ(read_bytes(file_), read_bytes(folder_ / "again"));
 }
 
+TEST_F(SolutionFile, HoldsNoTimes) {
+  save_solution(sample_solution(BandSet::rgb()), file_);
+  const hid_t id = H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(id, 0);
+  const auto look = [](hid_t /*root*/, const char* name, const H5O_info_t* info, void* count) -> herr_t {
+    EXPECT_TRUE(info->atime == 0 && info->mtime == 0 && info->ctime == 0 && info->btime == 0) << name;
+    ++*static_cast<int*>(count);
+    return 0;
+  };
+  int objects = 0;
+  EXPECT_GE(H5Ovisit2(id, H5_INDEX_NAME, H5_ITER_NATIVE, look, &objects, H5O_INFO_TIME), 0);
+  EXPECT_GT(objects, 60);
+  H5Fclose(id);
+}
+
 TEST_F(SolutionFile, HoldsZoneValuesWithUnits) {
   const Solution solution = sample_solution(BandSet::rgb());
   save_solution(solution, file_);

@@ -1,0 +1,144 @@
+#include <memory>
+
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/scenes/io/gltf_building.h"
+
+namespace reemit {
+namespace {
+
+using nlohmann::json;
+using test::expect_gltf_refused;
+using test::GltfBuilder;
+using test::read_gltf;
+using testing::Contains;
+using testing::HasSubstr;
+
+GltfBuilder with_material(const json& material) {
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.json["materials"][0] = material;
+  return gltf;
+}
+
+Material read_material(const json& material, const ReadOptions& options = {}) {
+  return read_gltf(with_material(material), options).materials.at(0);
+}
+
+TEST(GltfMaterials, MetallicPartIsNotDiffuse) {
+  const Material m = read_material(
+      {{"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.3}}}});
+  EXPECT_NEAR(m.reflectance[0], 0.6, 1e-12);
+  EXPECT_NEAR(m.non_diffuse.specular_reflectance[1], 0.1, 1e-12);
+  EXPECT_EQ(m.non_diffuse.roughness, 0.3);
+  const Material by_default = read_material(json::object());
+  EXPECT_TRUE((by_default.reflectance == 0).all());  // glTF materials are metallic unless they say otherwise.
+  EXPECT_TRUE((by_default.non_diffuse.specular_reflectance == 1).all());
+}
+
+TEST(GltfMaterials, TransmissionAndSpecularGlossiness) {
+  const Material glass = read_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                                        {"extensions",
+                                         {{"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
+                                          {"KHR_materials_ior", {{"ior", 1.4}}}}}});
+  EXPECT_NEAR(glass.reflectance[0], 0.1, 1e-12);
+  EXPECT_NEAR(glass.non_diffuse.specular_transmittance[0], 0.9, 1e-12);
+  EXPECT_EQ(glass.non_diffuse.index_of_refraction, 1.4);
+  const Material old = read_material({{"extensions",
+                                       {{"KHR_materials_pbrSpecularGlossiness",
+                                         {{"diffuseFactor", {0.3, 0.4, 0.5, 1}},
+                                          {"specularFactor", {0.6, 0.1, 0.1}},
+                                          {"glossinessFactor", 0.75}}}}}});
+  EXPECT_NEAR(old.reflectance[2], 0.5, 1e-12);
+  EXPECT_NEAR(old.non_diffuse.specular_reflectance[0], 0.6, 1e-12);
+  EXPECT_NEAR(old.non_diffuse.roughness, 0.25, 1e-12);
+}
+
+TEST(GltfMaterials, EmissionAndItsUnits) {
+  const json lamp = {{"emissiveFactor", {1, 0.5, 0}},
+                     {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 358}}}}}};
+  const Material photometric = read_material(lamp);
+  EXPECT_NEAR(photometric.emitted_radiance[0], 2, 1e-12);
+  EXPECT_NEAR(photometric.emitted_radiance[1], 1, 1e-12);
+  EXPECT_FALSE(photometric.emits_both_sides);
+  ReadOptions watts;
+  watts.gltf_emissive_units = EmissiveUnits::kWatt;
+  EXPECT_NEAR(read_material(lamp, watts).emitted_radiance[0], 358, 1e-12);
+  EXPECT_THAT(read_gltf(with_material(lamp)).notes, Contains(HasSubstr("cd/m2 and divided by 179")));
+  EXPECT_THAT(read_gltf(with_material(lamp), watts).notes, Contains(HasSubstr("W/(sr m2)")));
+  json both = lamp;
+  both["doubleSided"] = true;
+  EXPECT_TRUE(read_material(both).two_sided);
+  EXPECT_TRUE(read_material(both).emits_both_sides);
+}
+
+TEST(GltfMaterials, NoMaterialIsGrey) {
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.json["meshes"][0]["primitives"][0].erase("material");
+  const Scene scene = read_gltf(gltf);
+  EXPECT_TRUE((scene.material_of(scene.surfaces.at(0)).reflectance == 0.5).all());
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("have no material")));
+}
+
+TEST(GltfMaterials, RefusesWrongValues) {
+  expect_gltf_refused(with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {1.5, 0, 0, 1}}}}}),
+                      {"material 0", "baseColorFactor is 1.5"});
+  expect_gltf_refused(with_material({{"pbrMetallicRoughness", {{"metallicFactor", -1}}}}),
+                      {"metallicFactor is -1"});
+  expect_gltf_refused(with_material({{"emissiveFactor", {-1, 0, 0}}}), {"emissiveFactor is -1"});
+  expect_gltf_refused(with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 3}}}}}}),
+                      {"no texture 3"});
+}
+
+/// A PNG of one black and three white texels.
+std::string checker_png(const test::TempFolder& folder) {
+  const auto file = folder / "checker.png";
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file.string());
+  const std::vector<unsigned char> texels{0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 128, 0};
+  out->open(file.string(), OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::UINT8));
+  out->write_image(OIIO::TypeDesc::UINT8, texels.data());
+  out->close();
+  return test::read_bytes(file);
+}
+
+TEST(GltfMaterials, TexturesBecomeTheirLinearMean) {
+  const test::TempFolder folder;
+  const std::string png = checker_png(folder);
+  GltfBuilder gltf = with_material(
+      {{"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.5, 1, 1, 1}}, {"metallicFactor", 0}, {"baseColorTexture", {{"index", 0}}}}}});
+  gltf.json["textures"] = {{{"source", 0}}};
+  const double green = (2 + 0.2158605) / 4;  // 128/255 decoded by IEC 61966-2-1.
+  const auto check = [&](const Scene& scene) {
+    EXPECT_NEAR(scene.materials[0].reflectance[0], 0.375, 1e-6);
+    EXPECT_NEAR(scene.materials[0].reflectance[1], green, 1e-6);
+    EXPECT_NEAR(scene.materials[0].reflectance[2], 0.5, 1e-6);
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("base colour texture is replaced by its mean")));
+  };
+  gltf.json["images"] = {{{"uri", "checker.png"}}};
+  check(read_gltf_scene(folder.write("room.gltf", gltf.text()), {}));
+  gltf.json["images"] = {{{"uri", "data:image/png;base64," + test::base64(png)}}};
+  check(read_gltf_scene(folder.write("room.gltf", gltf.text()), {}));
+  gltf.json["images"] = {
+      {{"bufferView", gltf.view(std::vector<char>(png.begin(), png.end()))}, {"mimeType", "image/png"}}};
+  check(read_gltf_scene(folder.write("room.glb", gltf.glb()), {}));
+}
+
+TEST(GltfMaterials, UnreadableTexturesCountAsWhite) {
+  GltfBuilder gltf = with_material(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorTexture", {{"index", 0}}}}}});
+  gltf.json["textures"] = {{{"source", 0}}};
+  for (const char* uri : {"missing.png", "data:image/png;base64,iVBORw0KGgoAAAAN", "/dev/zero"}) {
+    gltf.json["images"] = {{{"uri", uri}}};
+    const Scene scene = read_gltf(gltf);
+    EXPECT_EQ(scene.materials[0].reflectance[0], 1) << uri;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("cannot be read and counts as white"))) << uri;
+  }
+}
+
+}  // namespace
+}  // namespace reemit
