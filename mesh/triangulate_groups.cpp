@@ -42,6 +42,7 @@ class GroupTriangulation {
   std::vector<std::uint32_t> lift(const PieceGroup& group, const PlanarTriangulation& cut,
                                   std::vector<std::uint32_t> ids);
   bool conserves_area(std::size_t piece) const;
+  void count_cut_pieces(std::size_t g);
   void report_overlaps();
 
   double area_of(const std::array<std::uint32_t, 3>& t) const {
@@ -185,6 +186,18 @@ void GroupTriangulation::triangulate(std::size_t g) {
                    "it may cross itself or overlap its holes: split it into simple polygons");
 }
 
+void GroupTriangulation::count_cut_pieces(std::size_t g) {
+  const PieceGroup& group = groups_.groups[g];
+  if (cuts_.segments[g].empty()) return;
+  for (const std::size_t p : group.pieces) {
+    const PlanarLoops outline(vertices_, pieces_[p], group.plane);
+    const auto runs_inside = [&](const Segment& s) {
+      return outline.contains(group.plane.project(0.5 * (vertices_[s[0]] + vertices_[s[1]])));
+    };
+    if (std::any_of(cuts_.segments[g].begin(), cuts_.segments[g].end(), runs_inside)) ++report_.cut_faces;
+  }
+}
+
 void GroupTriangulation::report_overlaps() {
   std::map<std::size_t, double> lost;
   std::map<std::pair<SurfaceId, SurfaceId>, double> by_surface;
@@ -215,7 +228,7 @@ void GroupTriangulation::report_overlaps() {
 GroupTriangles GroupTriangulation::run() {
   for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
     triangulate(g);
-    if (!cuts_.segments[g].empty()) report_.cut_faces += groups_.groups[g].pieces.size();
+    count_cut_pieces(g);
   }
   report_overlaps();
   return {std::move(out_), std::move(covered_)};

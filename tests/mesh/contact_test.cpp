@@ -153,6 +153,23 @@ TEST(Contact, SmallContactsAreNotWorthACut) {
   EXPECT_EQ(r.report.cut_faces, 0U);
 }
 
+TEST(Contact, ManySmallFeaturesDoNotCascade) {
+  TestRoom room;
+  room.box("hull", room.material(false), {0, 0, 0}, {5, 4, 3}, true);
+  const MaterialId m = room.material();
+  const SurfaceId board = room.polygon("board", m, floor_rectangle(1, 1, 2.2, 1.3, 1));
+  for (int i = 0; i < 30; ++i)  // books, 2 mm apart
+    room.box("book" + std::to_string(i), m, {1.02 + i * 0.038, 1.02, 1}, {1.056 + i * 0.038, 1.22, 1.25});
+  MeshSettings settings;
+  settings.zone_area = 0.005;
+  const MeshResult r = build_mesh(room.scene(), settings);
+  std::size_t triangles = 0;
+  for (const BaseTriangle& t : r.mesh.base().triangles) triangles += t.surface == board ? 1 : 0;
+  EXPECT_GT(triangles, 100U) << "cut along every book";
+  EXPECT_LT(triangles, 500U);
+  EXPECT_LT(worst_book_gap(r), kExact);
+}
+
 TEST(Coplanar, BoxOnTheFloor) {
   TestRoom room;
   const SurfaceId hull = room.box("hull", room.material(false), {0, 0, 0}, {4, 4, 4}, true);
