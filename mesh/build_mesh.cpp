@@ -95,17 +95,10 @@ class BaseMeshBuilder {
   BaseMesh mesh_;
 };
 
-void check(const Scene& scene) {
-  for (const Surface& s : scene.surfaces)
-    if (s.material.index() >= scene.materials.size())
-      throw InputError("surface '" + s.name + "'", "it refers to a material that does not exist",
-                       "check the material of this surface");
-}
-
 }  // namespace
 
 MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
-  check(scene);
+  check_faces(scene);
   if (!(settings.smallest_angle_deg >= 0 && settings.smallest_angle_deg <= 30))
     throw InputError("smallest angle", fmt::format("{} degrees is out of range", settings.smallest_angle_deg),
                      "use a value from 0 to 30");

@@ -47,7 +47,7 @@ class PolygonRepair {
  private:
   void repair(SurfaceId surface, std::uint32_t face);
   Polygon read(SurfaceId surface, std::uint32_t face);
-  std::vector<Corner> read_loop(SurfaceId surface, std::uint32_t face, const std::vector<std::uint32_t>& loop,
+  std::vector<Corner> read_loop(SurfaceId surface, const std::vector<std::uint32_t>& loop,
                                 const std::vector<std::uint32_t>& normals);
   void weld(Polygon& polygon);
   void drop(const FacePiece& piece, double area);
@@ -73,26 +73,16 @@ class PolygonRepair {
   double largest_bend_ = 0;
 };
 
-std::vector<Corner> PolygonRepair::read_loop(SurfaceId surface, std::uint32_t face,
-                                             const std::vector<std::uint32_t>& loop,
+std::vector<Corner> PolygonRepair::read_loop(SurfaceId surface, const std::vector<std::uint32_t>& loop,
                                              const std::vector<std::uint32_t>& normals) {
   const Surface& s = scene_.surfaces[surface.index()];
   std::vector<Corner> out;
   out.reserve(loop.size());
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const auto name = [&] { return "face " + face_name(scene_, surface, face); };
-    if (loop[i] >= s.positions.size())
-      throw InputError(name(),
-                       fmt::format("corner {} refers to vertex {} of {}", i, loop[i], s.positions.size()),
-                       "check the vertex indices of this face");
-    const Vec3& p = s.positions[loop[i]];
-    if (!p.allFinite())
-      throw InputError(name(), fmt::format("corner {} has a coordinate that is not a finite number", i),
-                       "correct the vertex in the file");
     Vec3 normal = Vec3::Zero();
     if (i < normals.size() && normals[i] < s.normals.size()) normal = s.normals[normals[i]];
     if (!normal.allFinite()) normal.setZero();
-    out.push_back({p, 0, normal});
+    out.push_back({s.positions[loop[i]], 0, normal});
   }
   return out;
 }
@@ -100,8 +90,8 @@ std::vector<Corner> PolygonRepair::read_loop(SurfaceId surface, std::uint32_t fa
 Polygon PolygonRepair::read(SurfaceId surface, std::uint32_t face) {
   const Face& f = scene_.surfaces[surface.index()].faces[face];
   Polygon polygon;
-  polygon.loops.push_back(read_loop(surface, face, f.outer, f.normals));
-  for (const auto& hole : f.holes) polygon.loops.push_back(read_loop(surface, face, hole, {}));
+  polygon.loops.push_back(read_loop(surface, f.outer, f.normals));
+  for (const auto& hole : f.holes) polygon.loops.push_back(read_loop(surface, hole, {}));
   return polygon;
 }
 
@@ -272,8 +262,6 @@ void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
   piece.emits = material.emits();
   piece.emits_both_sides = material.emits_both_sides;
   Polygon polygon = read(surface, face);
-  if (polygon.loops[0].size() < 3)
-    throw bad_face(piece, "fewer than three corners", "remove the face or add corners");
   const double area_as_read = vector_area_as_read(polygon.loops[0]).norm();
   weld(polygon);
   double deviation = 0;
@@ -321,7 +309,37 @@ std::vector<FacePiece> PolygonRepair::run() {
   return std::move(pieces_);
 }
 
+void check_loop(const Scene& scene, SurfaceId surface, std::uint32_t face,
+                const std::vector<std::uint32_t>& loop) {
+  const Surface& s = scene.surfaces[surface.index()];
+  const auto fail = [&](const std::string& problem, const std::string& advice) {
+    throw InputError("face " + face_name(scene, surface, face), problem, advice);
+  };
+  if (loop.size() < 3) fail("fewer than three corners", "remove the face or add corners");
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    if (loop[i] >= s.positions.size())
+      fail(fmt::format("corner {} refers to vertex {} of {}", i, loop[i], s.positions.size()),
+           "check the vertex indices of this face");
+    if (!s.positions[loop[i]].allFinite())
+      fail(fmt::format("corner {} has a coordinate that is not a finite number", i),
+           "correct the vertex in the file");
+  }
+}
+
 }  // namespace
+
+void check_faces(const Scene& scene) {
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    const Surface& surface = scene.surfaces[s];
+    if (surface.material.index() >= scene.materials.size())
+      throw InputError("surface '" + surface.name + "'", "it refers to a material that does not exist",
+                       "check the material of this surface");
+    for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
+      check_loop(scene, SurfaceId(s), f, surface.faces[f].outer);
+      for (const auto& hole : surface.faces[f].holes) check_loop(scene, SurfaceId(s), f, hole);
+    }
+  }
+}
 
 std::vector<FacePiece> repair_polygons(const Scene& scene, const MeshTolerances& tolerances,
                                        VertexTable& vertices, MeshReport& report) {
