@@ -6,37 +6,32 @@ namespace reemit {
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-void CounterRng::bits4x16(const std::uint32_t index[16], std::uint32_t batch, std::uint32_t step,
-                          std::uint32_t out[4][16]) const {
-  std::uint32_t c0[16];
-  std::uint32_t c1[16];
-  std::uint32_t c2[16];
-  std::uint32_t c3[16];
+void CounterRng::bits4x16(const std::uint32_t* __restrict index, std::uint32_t batch, std::uint32_t step,
+                          BitLanes& __restrict bits) const {
   for (int i = 0; i < 16; ++i) {
-    c0[i] = index[i];
-    c1[i] = 0;
-    c2[i] = batch;
-    c3[i] = step;
-  }
-  std::uint32_t k0 = key0_;
-  std::uint32_t k1 = key1_;
-  for (int round = 0; round < 7; ++round) {
-    for (int i = 0; i < 16; ++i) {
-      const std::uint64_t p0 = std::uint64_t{kMultiplier0} * c0[i];
-      const std::uint64_t p1 = std::uint64_t{kMultiplier1} * c2[i];
-      c0[i] = static_cast<std::uint32_t>(p1 >> 32) ^ c1[i] ^ k0;
-      c1[i] = static_cast<std::uint32_t>(p1);
-      c2[i] = static_cast<std::uint32_t>(p0 >> 32) ^ c3[i] ^ k1;
-      c3[i] = static_cast<std::uint32_t>(p0);
+    std::uint32_t c0 = index[i];
+    std::uint32_t c1 = 0;
+    std::uint32_t c2 = batch;
+    std::uint32_t c3 = step;
+    std::uint32_t k0 = key0_;
+    std::uint32_t k1 = key1_;
+#pragma GCC unroll 7
+    for (int round = 0; round < 7; ++round) {
+      const std::uint32_t high0 = static_cast<std::uint32_t>((std::uint64_t{kMultiplier0} * c0) >> 32);
+      const std::uint32_t high1 = static_cast<std::uint32_t>((std::uint64_t{kMultiplier1} * c2) >> 32);
+      const std::uint32_t low0 = kMultiplier0 * c0;
+      const std::uint32_t low1 = kMultiplier1 * c2;
+      c0 = high1 ^ c1 ^ k0;
+      c1 = low1;
+      c2 = high0 ^ c3 ^ k1;
+      c3 = low0;
+      k0 += kWeyl0;
+      k1 += kWeyl1;
     }
-    k0 += kWeyl0;
-    k1 += kWeyl1;
-  }
-  for (int i = 0; i < 16; ++i) {
-    out[0][i] = c0[i];
-    out[1][i] = c1[i];
-    out[2][i] = c2[i];
-    out[3][i] = c3[i];
+    bits.word[0][i] = c0;
+    bits.word[1][i] = c1;
+    bits.word[2][i] = c2;
+    bits.word[3][i] = c3;
   }
 }
 

@@ -18,6 +18,11 @@ enum class RngPurpose : std::uint32_t {
   kDither,
 };
 
+/// Four 32-bit numbers of each of 16 packets: word[k][lane].
+struct alignas(64) BitLanes {
+  std::uint32_t word[4][16];
+};
+
 /// Counter-based random numbers: Philox4x32 with 7 rounds, the fewest that pass BigCrush [SMDS11, table 2]. A
 /// number is a function of (seed, purpose, batch, index, step): no state, no order, the same on any number of
 /// threads.
@@ -48,9 +53,8 @@ class CounterRng {
     return {c0, c1, c2, c3};
   }
 
-  /// The same for 16 indices at once: out[k][i] = bits4(index[i], batch, step)[k].
-  void bits4x16(const std::uint32_t index[16], std::uint32_t batch, std::uint32_t step,
-                std::uint32_t out[4][16]) const;
+  /// The same for 16 indices at once: bits.word[k][i] = bits4(index[i], batch, step)[k].
+  void bits4x16(const std::uint32_t* index, std::uint32_t batch, std::uint32_t step, BitLanes& bits) const;
 
   /// Four independent uniform numbers in [0,1).
   std::array<float, 4> uniform4(std::uint64_t index, std::uint32_t batch, std::uint32_t step) const {

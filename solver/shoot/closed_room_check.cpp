@@ -36,7 +36,7 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
       Ray16 rays;
       Hit16 hits;
       ZoneLanes lanes{};
-      alignas(64) float u[4][16] = {};
+      UniformLanes numbers_of_bounce{};
       cursor.start16(first, count, numbers, rays, power.data());
       for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
         transport.rays().closest16(rays, count, hits);
@@ -46,10 +46,10 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
               transport.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
           if (!zone.valid()) return;
           const auto x = rng.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
-          for (std::size_t d = 0; d < 4; ++d) u[d][lane] = x[d];
+          for (std::size_t d = 0; d < 4; ++d) numbers_of_bounce.u[d][lane] = x[d];
           transport.put_zone(zone, lanes, lane, lane + 1);
         }
-        start_rays(lanes, u, rays);
+        start_rays(lanes, numbers_of_bounce, rays);
       }
     }
     throw InputError(scene.source,

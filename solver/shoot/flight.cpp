@@ -38,14 +38,14 @@ FlightNumbers::FlightNumbers(SamplingKind kind, std::uint64_t seed, std::uint32_
       batch_(batch),
       flight_(flight) {}
 
-void FlightNumbers::get16(std::uint32_t first, float u[4][16]) const {
+void FlightNumbers::get16(std::uint32_t first, UniformLanes& numbers) const {
   if (kind_ == SamplingKind::kSobol) {
-    for (int d = 0; d < 4; ++d) sobol_.sample16(first, d, u[d]);
+    for (int d = 0; d < 4; ++d) sobol_.sample16(first, d, numbers.u[d]);
     return;
   }
   for (std::uint32_t i = 0; i < 16; ++i) {
     const auto x = rng_.uniform4(first + i, batch_, flight_);
-    for (std::size_t d = 0; d < 4; ++d) u[d][i] = x[d];
+    for (std::size_t d = 0; d < 4; ++d) numbers.u[d][i] = x[d];
   }
 }
 
@@ -73,8 +73,8 @@ void FlightCursor::enter_source(std::size_t source) {
 
 void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
                            std::int64_t* quanta) {
-  alignas(64) float u[4][16];
-  numbers.get16(first, u);
+  UniformLanes x;
+  numbers.get16(first, x);
   std::array<const PunctualLight*, 16> light{};
   bool any_light = false;
   for (int lane = 0; lane < count;) {
@@ -93,11 +93,12 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
     for (; lane < until; ++lane, ++k)
       for (std::size_t b = 0; b < bands_; ++b) *quanta++ = share_[b] + (k < remainder_[b] ? 1 : 0);
   }
-  start_rays(lanes_, u, rays);
+  start_rays(lanes_, x, rays);
   if (!any_light) return;
   for (int lane = 0; lane < count; ++lane)
     if (const PunctualLight* l = light[static_cast<std::size_t>(lane)])
-      start_light_ray(*l, transport_.rays(), u[0][lane], u[1][lane], u[2][lane], u[3][lane], rays, lane);
+      start_light_ray(*l, transport_.rays(), x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane], rays,
+                      lane);
 }
 
 }  // namespace reemit

@@ -38,8 +38,8 @@ Flight plan_emission_flight(const Emission& emission, std::size_t bands, std::ui
 class FlightNumbers {
  public:
   FlightNumbers(SamplingKind kind, std::uint64_t seed, std::uint32_t batch, std::uint32_t flight);
-  /// Numbers of packets first .. first+15, dimension-major u[4][16]. Pre: first is a multiple of 16.
-  void get16(std::uint32_t first, float u[4][16]) const;
+  /// Numbers of packets first .. first+15. Pre: first is a multiple of 16.
+  void get16(std::uint32_t first, UniformLanes& numbers) const;
 
  private:
   SamplingKind kind_;

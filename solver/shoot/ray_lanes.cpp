@@ -10,12 +10,12 @@ namespace reemit {
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-void start_rays(const ZoneLanes& zones, const float u[4][16], Ray16& rays) {
+void start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restrict numbers, Ray16& __restrict rays) {
   constexpr float kQuarter = std::numbers::pi_v<float> / 4;
   for (int i = 0; i < 16; ++i) {
-    const float s = std::sqrt(u[0][i]);
-    const float a = s * (1 - u[1][i]);
-    const float b = s * u[1][i];
+    const float s = std::sqrt(numbers.u[0][i]);
+    const float a = s * (1 - numbers.u[1][i]);
+    const float b = s * numbers.u[1][i];
     const float px = zones.corner[0][i] + a * zones.edge1[0][i] + b * zones.edge2[0][i];
     const float py = zones.corner[1][i] + a * zones.edge1[1][i] + b * zones.edge2[1][i];
     const float pz = zones.corner[2][i] + a * zones.edge1[2][i] + b * zones.edge2[2][i];
@@ -31,8 +31,8 @@ void start_rays(const ZoneLanes& zones, const float u[4][16], Ray16& rays) {
 
     // Concentric map [SC97]: the angle stays within a quarter of pi, where short polynomials give sine and
     // cosine to the last bits of a float.
-    const float c = 2 * u[2][i] - 1;
-    const float d = 2 * u[3][i] - 1;
+    const float c = 2 * numbers.u[2][i] - 1;
+    const float d = 2 * numbers.u[3][i] - 1;
     const bool wide = std::fabs(c) > std::fabs(d);
     const float r = wide ? c : d;
     const float q = wide ? d : c;

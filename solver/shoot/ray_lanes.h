@@ -12,8 +12,13 @@ struct alignas(64) ZoneLanes {
   float tangent[3][16], bitangent[3][16], normal[3][16];
 };
 
+/// Four uniform numbers of each of 16 packets: u[dimension][lane].
+struct alignas(64) UniformLanes {
+  float u[4][16];
+};
+
 /// Makes 16 rays from uniform points of the zones (u[0], u[1]) in cosine-distributed directions (u[2], u[3]).
 /// Lane by lane the same as sample_triangle, RayScene::lifted and sample_cosine_hemisphere.
-void start_rays(const ZoneLanes& zones, const float u[4][16], Ray16& rays);
+void start_rays(const ZoneLanes& zones, const UniformLanes& numbers, Ray16& rays);
 
 }  // namespace reemit

@@ -35,9 +35,9 @@ struct WaitingPackets {
 };
 
 /// Uniform number in [0,1) from the low bytes of four random words, whose high 24 bits make four others.
-float low_bytes_to_unit(const std::uint32_t bits[4][16], std::size_t lane) {
+float low_bytes_to_unit(const BitLanes& bits, std::size_t lane) {
   std::uint32_t low = 0;
-  for (std::size_t k = 0; k < 4; ++k) low = (low << 8) | (bits[k][lane] & 0xffU);
+  for (std::size_t k = 0; k < 4; ++k) low = (low << 8) | (bits.word[k][lane] & 0xffU);
   return CounterRng::to_unit(low);
 }
 
@@ -81,17 +81,17 @@ class WalkTask {
   void trace_on(std::uint32_t bounce) {
     std::swap(waiting_, leaving_);
     waiting_.clear();
-    alignas(64) float u[4][16] = {};
+    UniformLanes numbers{};
     std::uint32_t id[16] = {};
     for (std::size_t first = 0; first < leaving_.id.size(); first += 16) {
       const int count = static_cast<int>(std::min<std::size_t>(16, leaving_.id.size() - first));
       for (int lane = 0; lane < count; ++lane) {
         const std::size_t i = first + static_cast<std::size_t>(lane);
-        for (std::size_t d = 0; d < 4; ++d) u[d][lane] = leaving_.numbers[d][i];
+        for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = leaving_.numbers[d][i];
         id[lane] = leaving_.id[i];
         transport_.put_zone(leaving_.zone[i], lanes_, lane, lane + 1);
       }
-      start_rays(lanes_, u, rays_);
+      start_rays(lanes_, numbers, rays_);
       arrive(count, id, &leaving_.quanta[first * bands_], books_.indirect, bounce);
     }
   }
@@ -109,7 +109,7 @@ class WalkTask {
       // With many zones the books are larger than the caches.
       if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * bands_], 1);
     }
-    alignas(64) std::uint32_t bits[4][16];
+    BitLanes bits;
     rng_.bits4x16(id, batch_, bounce, bits);
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
@@ -130,7 +130,7 @@ class WalkTask {
   }
 
   void reflect(ZoneId zone, SurfaceId surface, std::uint32_t id, const std::int64_t* quanta,
-               const std::uint32_t bits[4][16], std::size_t lane) {
+               const BitLanes& bits, std::size_t lane) {
     const double survival = transport_.largest_reflectance(surface);
     const double* rho = transport_.reflectance(surface);
     std::int64_t* absorbed = &absorbed_[surface.index() * bands_];
@@ -140,7 +140,8 @@ class WalkTask {
     }
     waiting_.zone.push_back(zone);
     waiting_.id.push_back(id);
-    for (std::size_t k = 0; k < 4; ++k) waiting_.numbers[k].push_back(CounterRng::to_unit(bits[k][lane]));
+    for (std::size_t k = 0; k < 4; ++k)
+      waiting_.numbers[k].push_back(CounterRng::to_unit(bits.word[k][lane]));
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::int64_t kept = share_of(quanta[b], rho[b] / survival);
       waiting_.quanta.push_back(kept);

@@ -210,30 +210,30 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.ray.id[i] = 0;
     query.ray.flags[i] = 0;
     query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    query.hit.primID[i] = kMiss;
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   intersect16(valid, embree_->scene, query);
+  bool any_missed = false;
   for (int i = 0; i < count; ++i) {
-    if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
-      const std::uint32_t t = query.hit.primID[i];
-      const Vec3f& n = normals_[t];
-      hits.triangle[i] = t;
-      hits.u[i] = query.hit.u[i];
-      hits.v[i] = query.hit.v[i];
-      hits.distance[i] = query.ray.tfar[i];
-      hits.front[i] = n.x() * rays.dx[i] + n.y() * rays.dy[i] + n.z() * rays.dz[i] < 0;
-      continue;
-    }
-    Hit hit;
-    const Vec3f direction(rays.dx[i], rays.dy[i], rays.dz[i]);
-    hits.triangle[i] = kMiss;
-    if (closest(Vec3f(rays.ox[i], rays.oy[i], rays.oz[i]), nudged(direction), hit)) {
-      hits.triangle[i] = static_cast<std::uint32_t>(hit.triangle.index());
-      hits.u[i] = hit.u;
-      hits.v[i] = hit.v;
-      hits.distance[i] = hit.distance;
-      hits.front[i] = hit.front;
-    }
+    valid[i] = query.hit.primID[i] == kMiss ? -1 : 0;
+    if (valid[i] == 0) continue;
+    any_missed = true;
+    const Vec3f d = nudged(Vec3f(rays.dx[i], rays.dy[i], rays.dz[i]));
+    query.ray.dir_x[i] = d.x();
+    query.ray.dir_y[i] = d.y();
+    query.ray.dir_z[i] = d.z();
+  }
+  if (any_missed) intersect16(valid, embree_->scene, query);
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t t = query.hit.primID[i];
+    hits.triangle[i] = t;
+    if (t == kMiss) continue;
+    const Vec3f& n = normals_[t];
+    hits.u[i] = query.hit.u[i];
+    hits.v[i] = query.hit.v[i];
+    hits.distance[i] = query.ray.tfar[i];
+    hits.front[i] = n.x() * rays.dx[i] + n.y() * rays.dy[i] + n.z() * rays.dz[i] < 0;
   }
 }
 
