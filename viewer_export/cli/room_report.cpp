@@ -189,7 +189,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
   for (const auto& [name, count] : repairs(meshed.report)) {
     if (count == 0) continue;
     std::string words = name;
-    words.replace(words.find('_'), 1, " ");
+    std::replace(words.begin(), words.end(), '_', ' ');
     repaired += fmt::format("{}{} {}", repaired.empty() ? "" : ", ", count, words);
   }
   text += fmt::format("repairs       {}\n", repaired.empty() ? "none" : repaired);
