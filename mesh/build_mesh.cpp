@@ -115,7 +115,9 @@ MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
   if (!(total_area > 0))
     throw InputError(scene.source.empty() ? "room" : scene.source, "there is no face with an area",
                      "check that the file holds polygons, and its unit of length");
-  const double zone_area = wanted_zone_area(settings, total_area);
+  double zoned_area = 0;
+  for (const FacePiece& p : pieces) zoned_area += (p.two_sided ? 2 : 1) * p.area;
+  const double zone_area = wanted_zone_area(settings, zoned_area);
   const double zone_edge = std::sqrt(zone_area);
 
   PieceGroups groups = group_overlapping_pieces(pieces, tolerances, vertices);

@@ -40,6 +40,7 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
       cursor.start16(first, count, numbers, rays, power.data());
       for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
         transport.rays().closest16(rays, count, hits);
+        transport.rays().look_again16(rays, count, hits);
         for (int lane = 0; lane < count; ++lane) {
           if (hits.triangle[lane] == RayScene::kMiss) return;
           const ZoneId zone =

@@ -1,5 +1,5 @@
 #pragma once
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +38,60 @@ class LocalBooks {
  private:
   BatchBooks& books_;
   std::vector<std::int64_t> escaped_;
+};
+
+/// 16 rays with what their packets carry.
+struct PacketBlock {
+  explicit PacketBlock(std::size_t bands) : power(16 * bands) {}
+  int count = 0;
+  Ray16 rays{};
+  std::uint32_t id[16] = {};
+  std::vector<std::int64_t> power;  ///< [lane * bands + band]
+};
+
+/// Packets whose rays met nothing, waiting for their second look until there are enough for a block: traced
+/// one by one beside rays that hit, they would cost as much as a whole block.
+class MissedPackets {
+ public:
+  explicit MissedPackets(std::size_t bands) : bands_(bands) {}
+
+  std::size_t count() const { return id_.size(); }
+
+  void add(const Ray16& rays, int lane, std::uint32_t id, const std::int64_t* power) {
+    origin_.emplace_back(rays.ox[lane], rays.oy[lane], rays.oz[lane]);
+    direction_.emplace_back(rays.dx[lane], rays.dy[lane], rays.dz[lane]);
+    id_.push_back(id);
+    power_.insert(power_.end(), power, power + bands_);
+  }
+
+  /// Moves the last 16 packets, or as many as there are, into `block`, with their rays turned a little.
+  void take(PacketBlock& block) {
+    block.count = static_cast<int>(std::min<std::size_t>(16, count()));
+    for (int lane = 0; lane < block.count; ++lane) {
+      const Vec3f& o = origin_.back();
+      const Vec3f d = RayScene::nudged(direction_.back());
+      block.rays.ox[lane] = o.x();
+      block.rays.oy[lane] = o.y();
+      block.rays.oz[lane] = o.z();
+      block.rays.dx[lane] = d.x();
+      block.rays.dy[lane] = d.y();
+      block.rays.dz[lane] = d.z();
+      block.id[lane] = id_.back();
+      std::copy(power_.end() - static_cast<std::ptrdiff_t>(bands_), power_.end(),
+                block.power.begin() + lane * static_cast<std::ptrdiff_t>(bands_));
+      origin_.pop_back();
+      direction_.pop_back();
+      id_.pop_back();
+      power_.resize(power_.size() - bands_);
+    }
+  }
+
+ private:
+  std::size_t bands_;
+  std::vector<Vec3f> origin_;
+  std::vector<Vec3f> direction_;
+  std::vector<std::uint32_t> id_;
+  std::vector<std::int64_t> power_;
 };
 
 }  // namespace reemit

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -18,24 +19,30 @@ constexpr std::uint32_t kPacketsPerTask = 4096;
 /// unshot.
 constexpr std::uint32_t kMostSweeps = 200'000;
 
-/// Account that each of 16 packets is booked to, null if it left the room. Their memory is asked for at once,
-/// before the first is needed: with many zones the books are larger than the caches.
-void find_accounts(const TransportScene& transport, const Hit16& hits, int count, SweepAccounts& sweep,
-                   BatchBooks& books, std::int64_t** accounts) {
+/// Account that a packet is booked to, and whether other threads may book to it at the same time.
+struct Account {
+  std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room.
+  bool shared = false;
+};
+
+/// Accounts of 16 packets. Their memory is asked for at once, before the first is needed: with many zones the
+/// books are larger than the caches.
+void find_accounts(const TransportScene& transport, const Hit16& hits, int count,
+                   SweepAccounts::Incident& incident, bool shared, BatchBooks& books, Account* accounts) {
   const std::size_t bands = transport.bands();
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t t = hits.triangle[lane];
-    accounts[lane] = nullptr;
+    accounts[lane] = {};
     if (t == RayScene::kMiss) continue;
     const ZoneId zone = transport.zone_of(t, hits.u[lane], hits.v[lane], hits.front[lane]);
     if (zone.valid()) {
-      accounts[lane] = &sweep.incident[zone.index() * bands];
-      sweep.touch(zone.index());
+      accounts[lane] = {&incident.quanta[zone.index() * bands], shared};
+      incident.touch(zone.index());
     } else {
-      accounts[lane] =
-          &books.absorbed_on_backs[transport.mesh().triangle(TriangleId(t)).surface.index() * bands];
+      const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
+      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true};
     }
-    __builtin_prefetch(accounts[lane], 1);
+    __builtin_prefetch(accounts[lane].quanta, 1);
   }
 }
 
@@ -44,34 +51,51 @@ void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
                   SweepAccounts& sweep, BatchBooks& books) {
   const TransportScene& transport = batch.transport;
   const std::size_t bands = transport.bands();
+  const bool shared = accounts_are_shared(sweep.incident.size());
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     LocalBooks local(books);
+    SweepAccounts::Incident& incident = sweep.mine();
+    MissedPackets missed(bands);
+    PacketBlock second(bands);
     std::vector<std::int64_t> power(16 * bands);
+    Hit16 hits;
+    Account accounts[16];
+    const auto trace_and_book = [&](const Ray16& rays, int count, const std::int64_t* quanta,
+                                    bool second_look) {
+      transport.rays().closest16(rays, count, hits);
+      find_accounts(transport, hits, count, incident, shared, books, accounts);
+      for (int lane = 0; lane < count; ++lane, quanta += bands) {
+        const Account& account = accounts[lane];
+        if (account.quanta == nullptr && !second_look) {
+          missed.add(rays, lane, 0, quanta);
+          continue;
+        }
+        for (std::size_t b = 0; b < bands; ++b)
+          if (account.quanta != nullptr)
+            book(account.quanta[b], quanta[b], account.shared);
+          else
+            local.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
+      }
+    };
+    const auto look_again = [&] {
+      missed.take(second);
+      trace_and_book(second.rays, second.count, second.power.data(), true);
+    };
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
       const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
       FlightCursor cursor(transport, flight, begin);
       Ray16 rays;
-      Hit16 hits;
-      std::int64_t* accounts[16];
       for (std::uint32_t first = begin; first < end; first += 16) {
         const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
         cursor.start16(first, count, numbers, rays, power.data());
         if (batch.ray_observer != nullptr) (*batch.ray_observer)(rays, count);
-        transport.rays().closest16(rays, count, hits);
-        find_accounts(transport, hits, count, sweep, books, accounts);
-        for (int lane = 0; lane < count; ++lane) {
-          const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands];
-          std::int64_t* account = accounts[lane];
-          for (std::size_t b = 0; b < bands; ++b)
-            if (account != nullptr)
-              book(account[b], quanta[b]);
-            else
-              local.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
-        }
+        trace_and_book(rays, count, power.data(), false);
+        if (missed.count() >= 16) look_again();
       }
     }
+    look_again();
   });
   books.rays += flight.packets();
 }
@@ -91,21 +115,28 @@ void reflect(const TransportScene& transport, SweepAccounts& sweep, std::vector<
       }
     };
     for (std::size_t block = range.begin(); block != range.end(); ++block) {
-      if (sweep.live[block] == 0) continue;
+      std::vector<std::int64_t*> copies;
+      for (SweepAccounts::Incident& copy : sweep.incident) {
+        if (copy.live[block] != 0) copies.push_back(copy.quanta.data());
+        copy.live[block] = 0;
+      }
+      if (copies.empty()) continue;
+      sweep.live[block] = 1;
       for (std::size_t z = sweep.block_begin(block); z < sweep.block_end(block); ++z) {
-        std::int64_t* in = &sweep.incident[z * bands];
-        if (std::all_of(in, in + bands, [](std::int64_t q) { return q == 0; })) continue;
         if (const SurfaceId s = mesh.zone_surface(ZoneId(z)); s != surface) {
           settle();
           surface = s;
         }
         const double* rho = transport.reflectance(surface);
         for (std::size_t b = 0; b < bands; ++b) {
-          const std::int64_t reflected = share_of(in[b], rho[b]);
-          part[z * bands + b] += in[b];
-          sweep.unshot[z * bands + b] += reflected;
-          absorbed[b] += in[b] - reflected;
-          in[b] = 0;
+          const std::size_t i = z * bands + b;
+          std::int64_t in = 0;
+          for (std::int64_t* copy : copies) in += std::exchange(copy[i], 0);
+          if (in == 0) continue;
+          const std::int64_t reflected = share_of(in, rho[b]);
+          part[i] += in;
+          sweep.unshot[i] += reflected;
+          absorbed[b] += in - reflected;
         }
       }
     }

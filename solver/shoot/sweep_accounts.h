@@ -4,6 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include <tbb/task_arena.h>
+
+#include "solver/tally/batch_books.h"
+
 namespace reemit {
 
 /// What zones have caught in a sweep and have yet to send on, in quanta, indexed zone * bands + band. Late
@@ -14,23 +18,36 @@ struct SweepAccounts {
   SweepAccounts(std::size_t zone_count, std::size_t band_count)
       : zones(zone_count),
         bands(band_count),
-        incident(zones * bands),
+        incident(account_copies(zones * bands),
+                 Incident(zones * bands, (zones + kBlockZones - 1) / kBlockZones)),
         unshot(zones * bands),
         live((zones + kBlockZones - 1) / kBlockZones) {}
 
-  /// Notes that a zone's accounts are no longer 0. May be called from any thread.
-  void touch(std::size_t zone) {
-    std::atomic_ref<std::uint8_t>(live[zone / kBlockZones]).store(1, std::memory_order_relaxed);
-  }
+  /// Incident power booked by one thread, or by all of them if there is one copy only.
+  struct Incident {
+    Incident(std::size_t values, std::size_t blocks) : quanta(values), live(blocks) {}
+    std::vector<std::int64_t> quanta;
+    std::vector<std::uint8_t> live;  // by block: 0 only if all its quanta are 0
+
+    /// Notes that a zone's account is no longer 0. Looks before it writes, so that threads do not fight for
+    /// the line.
+    void touch(std::size_t zone) {
+      const std::atomic_ref<std::uint8_t> flag(live[zone / kBlockZones]);
+      if (flag.load(std::memory_order_relaxed) == 0) flag.store(1, std::memory_order_relaxed);
+    }
+  };
+  /// The copy that the calling thread books into.
+  Incident& mine() { return incident.size() == 1 ? incident[0] : incident[current_copy()]; }
+
   std::size_t block_count() const { return live.size(); }
   std::size_t block_begin(std::size_t block) const { return block * kBlockZones; }
   std::size_t block_end(std::size_t block) const { return std::min(zones, (block + 1) * kBlockZones); }
 
   std::size_t zones;
   std::size_t bands;
-  std::vector<std::int64_t> incident;
+  std::vector<Incident> incident;
   std::vector<std::int64_t> unshot;
-  std::vector<std::uint8_t> live;  ///< By block: 0 only if all its accounts are 0.
+  std::vector<std::uint8_t> live;  ///< By block: 0 only if all its unshot power is 0.
 };
 
 }  // namespace reemit

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "solver/shoot/flight.h"
@@ -41,10 +40,19 @@ float low_bytes_to_unit(const BitLanes& bits, std::size_t lane) {
   return CounterRng::to_unit(low);
 }
 
+/// Accounts of one thread, indexed as those of BatchBooks; of all threads if there is one copy only.
+struct WalkAccounts {
+  std::vector<std::int64_t> direct;
+  std::vector<std::int64_t> indirect;
+  std::vector<std::int64_t> absorbed;
+  std::uint64_t rays = 0;
+};
+
 /// Follows packets, 16 rays at a time; those that end make room so that blocks stay full.
 class WalkTask {
  public:
-  WalkTask(const BatchTask& task, BatchBooks& books, std::vector<std::int64_t>& absorbed)
+  WalkTask(const BatchTask& task, BatchBooks& books, WalkAccounts& zones, std::vector<std::int64_t>& absorbed,
+           bool shared)
       : transport_(task.transport),
         bands_(task.transport.bands()),
         rng_(task.settings.seed, RngPurpose::kReflection),
@@ -52,7 +60,11 @@ class WalkTask {
         observer_(task.ray_observer),
         books_(books),
         local_(books),
-        absorbed_(absorbed) {}
+        missed_(bands_),
+        second_(bands_),
+        zones_(zones),
+        absorbed_(absorbed),
+        shared_(shared) {}
 
   void run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
     start(flight, numbers, begin, end);
@@ -74,8 +86,9 @@ class WalkTask {
       const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
       cursor.start16(first, count, numbers, rays_, power.data());
       std::iota(id, id + count, first);
-      arrive(count, id, power.data(), books_.direct, 0);
+      trace(count, id, power.data(), zones_.direct, 0);
     }
+    look_again(zones_.direct, 0);
   }
 
   void trace_on(std::uint32_t bounce) {
@@ -92,16 +105,28 @@ class WalkTask {
         transport_.put_zone(leaving_.zone[i], lanes_, lane, lane + 1);
       }
       start_rays(lanes_, numbers, rays_);
-      arrive(count, id, &leaving_.quanta[first * bands_], books_.indirect, bounce);
+      trace(count, id, &leaving_.quanta[first * bands_], zones_.indirect, bounce);
     }
+    look_again(zones_.indirect, bounce);
   }
 
-  /// Traces the rays of a block, books where each packet comes to, and keeps those that survive.
-  void arrive(int count, const std::uint32_t id[16], const std::int64_t* power,
-              std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+  void trace(int count, const std::uint32_t id[16], const std::int64_t* power,
+             std::vector<std::int64_t>& incident, std::uint32_t bounce) {
     if (observer_ != nullptr) (*observer_)(rays_, count);
-    transport_.rays().closest16(rays_, count, hits_);
     ray_count_ += static_cast<std::uint64_t>(count);
+    arrive(rays_, count, id, power, incident, bounce, false);
+    if (missed_.count() >= 16) look_again(incident, bounce);
+  }
+
+  void look_again(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+    missed_.take(second_);
+    arrive(second_.rays, second_.count, second_.id, second_.power.data(), incident, bounce, true);
+  }
+
+  /// Traces a block, books where each packet comes to, and keeps those that survive.
+  void arrive(const Ray16& rays, int count, const std::uint32_t id[16], const std::int64_t* power,
+              std::vector<std::int64_t>& incident, std::uint32_t bounce, bool second_look) {
+    transport_.rays().closest16(rays, count, hits_);
     ZoneId zone[16];
     for (int lane = 0; lane < count; ++lane) {
       if (hits_.triangle[lane] == RayScene::kMiss) continue;
@@ -114,8 +139,9 @@ class WalkTask {
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
       if (hits_.triangle[lane] == RayScene::kMiss) {
-        for (std::size_t b = 0; b < bands_; ++b)
-          local_.escape(rays_.dx[lane], rays_.dy[lane], rays_.dz[lane], b, quanta[b]);
+        if (!second_look) missed_.add(rays, lane, id[lane], quanta);
+        for (std::size_t b = 0; second_look && b < bands_; ++b)
+          local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
         continue;
       }
       const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits_.triangle[lane])).surface;
@@ -124,7 +150,8 @@ class WalkTask {
           book(books_.absorbed_on_backs[surface.index() * bands_ + b], quanta[b]);
         continue;
       }
-      for (std::size_t b = 0; b < bands_; ++b) book(incident[zone[lane].index() * bands_ + b], quanta[b]);
+      for (std::size_t b = 0; b < bands_; ++b)
+        book(incident[zone[lane].index() * bands_ + b], quanta[b], shared_);
       reflect(zone[lane], surface, id[lane], quanta, bits, static_cast<std::size_t>(lane));
     }
   }
@@ -161,7 +188,11 @@ class WalkTask {
   const RayObserver* observer_;
   BatchBooks& books_;
   LocalBooks local_;
-  std::vector<std::int64_t>& absorbed_;  // [surface * bands + band], of this thread
+  MissedPackets missed_;
+  PacketBlock second_;
+  WalkAccounts& zones_;
+  std::vector<std::int64_t>& absorbed_;  // of this thread alone
+  bool shared_;
   std::uint64_t ray_count_ = 0;
   ZoneLanes lanes_{};
   Ray16 rays_{};
@@ -169,6 +200,13 @@ class WalkTask {
   WaitingPackets waiting_;
   WaitingPackets leaving_;
 };
+
+/// Adds the accounts of a thread, which may have none.
+void add(const std::vector<std::int64_t>& from, std::vector<std::int64_t>& to) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, from.size(), 16384), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) to[i] += from[i];
+  });
+}
 
 }  // namespace
 
@@ -181,18 +219,21 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
   for (std::size_t i = 0; i < flight.quanta.size(); ++i) books.emitted[i % bands] += flight.quanta[i];
   books.packets += flight.packets();
 
-  struct Thread {
-    std::vector<std::int64_t> absorbed;
-    std::uint64_t rays = 0;
-  };
-  tbb::enumerable_thread_specific<Thread> threads([&] {
-    return Thread{std::vector<std::int64_t>(books.absorbed.size()), 0};
-  });
+  // Absorbed power is few numbers that every packet adds to, so each thread has its own in any case.
+  const std::size_t copies = account_copies(2 * books.direct.size());
+  const bool shared = accounts_are_shared(copies);
+  std::vector<WalkAccounts> accounts(static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  for (std::size_t i = 0; i < accounts.size(); ++i) {
+    accounts[i].absorbed.resize(books.absorbed.size());
+    if (i >= copies) continue;
+    accounts[i].direct.resize(books.direct.size());
+    accounts[i].indirect.resize(books.indirect.size());
+  }
   std::atomic<bool> abandoned = false;
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
-    Thread& mine = threads.local();
-    WalkTask walk(task, books, mine.absorbed);
+    const std::size_t thread = current_copy();
+    WalkTask walk(task, books, accounts[shared ? 0 : thread], accounts[thread].absorbed, shared);
     for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
       if (task.abandon != nullptr && task.abandon->load(std::memory_order_relaxed)) {
         abandoned = true;
@@ -200,11 +241,13 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
       }
       walk.run(flight, numbers, t * kPacketsPerTask, std::min(flight.packets(), (t + 1) * kPacketsPerTask));
     }
-    mine.rays += walk.rays();
+    accounts[thread].rays += walk.rays();
   });
-  for (const Thread& t : threads) {
-    for (std::size_t i = 0; i < t.absorbed.size(); ++i) books.absorbed[i] += t.absorbed[i];
-    books.rays += t.rays;
+  for (const WalkAccounts& a : accounts) {
+    add(a.direct, books.direct);
+    add(a.indirect, books.indirect);
+    add(a.absorbed, books.absorbed);
+    books.rays += a.rays;
   }
   return !abandoned;
 }

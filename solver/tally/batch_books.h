@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <tbb/task_arena.h>
+
 #include "mesh/zone_mesh.h"
 
 namespace reemit {
@@ -15,6 +17,29 @@ inline constexpr std::int64_t kBatchQuanta = std::int64_t{1} << 42;
 /// depend on the order or on the number of threads.
 inline void book(std::int64_t& account, std::int64_t quanta) {
   std::atomic_ref<std::int64_t>(account).fetch_add(quanta, std::memory_order_relaxed);
+}
+
+/// Adds to a number that only the calling thread uses, or that all threads use.
+inline void book(std::int64_t& account, std::int64_t quanta, bool shared) {
+  if (shared)
+    book(account, quanta);
+  else
+    account += quanta;
+}
+
+/// How many copies of an array of accounts the threads of this arena should book into: one each while that is
+/// cheap, because memory that two cores write to in turn costs more than the rays do; else one for all.
+inline std::size_t account_copies(std::size_t values) {
+  constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  return threads * values * sizeof(std::int64_t) <= kMostBytes ? threads : 1;
+}
+inline bool accounts_are_shared(std::size_t copies) {
+  return copies == 1 && tbb::this_task_arena::max_concurrency() > 1;
+}
+/// Copy of the calling thread, which is in a task arena.
+inline std::size_t current_copy() {
+  return static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
 }
 
 /// `share` in [0,1] of `quanta` >= 0, rounded to the nearest.

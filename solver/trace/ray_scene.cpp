@@ -61,14 +61,6 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float f
   return ray;
 }
 
-/// A ray that meets nothing may have slipped through the hairline where triangles with different vertices
-/// meet. It is traced once more, turned by a few millionths: a second miss is a true one. Closed rooms so
-/// lose no light, and open ones are not changed measurably.
-Vec3f nudged(const Vec3f& d) {
-  constexpr float kTurn = 3e-6F;
-  return Vec3f(d.x() + kTurn * d.y(), d.y() + kTurn * d.z(), d.z() - kTurn * d.x()).normalized();
-}
-
 }  // namespace
 
 struct RayScene::EmbreeScene {
@@ -214,17 +206,6 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   intersect16(valid, embree_->scene, query);
-  bool any_missed = false;
-  for (int i = 0; i < count; ++i) {
-    valid[i] = query.hit.primID[i] == kMiss ? -1 : 0;
-    if (valid[i] == 0) continue;
-    any_missed = true;
-    const Vec3f d = nudged(Vec3f(rays.dx[i], rays.dy[i], rays.dz[i]));
-    query.ray.dir_x[i] = d.x();
-    query.ray.dir_y[i] = d.y();
-    query.ray.dir_z[i] = d.z();
-  }
-  if (any_missed) intersect16(valid, embree_->scene, query);
   for (int i = 0; i < count; ++i) {
     const std::uint32_t t = query.hit.primID[i];
     hits.triangle[i] = t;
@@ -234,6 +215,40 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     hits.v[i] = query.hit.v[i];
     hits.distance[i] = query.ray.tfar[i];
     hits.front[i] = n.x() * rays.dx[i] + n.y() * rays.dy[i] + n.z() * rays.dz[i] < 0;
+  }
+}
+
+Vec3f RayScene::nudged(const Vec3f& direction) {
+  constexpr float kTurn = 3e-6F;
+  const Vec3f& d = direction;
+  return Vec3f(d.x() + kTurn * d.y(), d.y() + kTurn * d.z(), d.z() - kTurn * d.x()).normalized();
+}
+
+void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
+  Ray16 missed;
+  int lanes[16];
+  int missed_count = 0;
+  for (int i = 0; i < count; ++i) {
+    if (hits.triangle[i] != kMiss) continue;
+    missed.ox[missed_count] = rays.ox[i];
+    missed.oy[missed_count] = rays.oy[i];
+    missed.oz[missed_count] = rays.oz[i];
+    const Vec3f d = nudged({rays.dx[i], rays.dy[i], rays.dz[i]});
+    missed.dx[missed_count] = d.x();
+    missed.dy[missed_count] = d.y();
+    missed.dz[missed_count] = d.z();
+    lanes[missed_count++] = i;
+  }
+  if (missed_count == 0) return;
+  Hit16 again;
+  closest16(missed, missed_count, again);
+  for (int k = 0; k < missed_count; ++k) {
+    const int i = lanes[k];
+    hits.triangle[i] = again.triangle[k];
+    hits.u[i] = again.u[k];
+    hits.v[i] = again.v[k];
+    hits.distance[i] = again.distance[k];
+    hits.front[i] = again.front[k];
   }
 }
 

@@ -68,8 +68,15 @@ class RayScene {
   bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hit that is not the back of a one-sided triangle: what a camera sees.
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
-  /// Nearest hits of the first `count` rays, count <= 16.
+  /// Nearest hits of the first `count` rays, count <= 16. Unlike closest() it does not look twice where a ray
+  /// meets nothing: the caller does, with look_again16 or, cheaper, with full blocks of nudged() rays.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
+  /// Second look at the rays that `hits` says met nothing.
+  void look_again16(const Ray16& rays, int count, Hit16& hits) const;
+  /// Direction of the second look. A ray that meets nothing may have slipped through the hairline where
+  /// triangles with different vertices meet. It is traced once more, turned by a few millionths: a second
+  /// miss is a true one. Closed rooms so lose no light, and open ones are not changed measurably.
+  static Vec3f nudged(const Vec3f& direction);
   /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
   /// eye).
   bool visible(const Vec3f& from, const Vec3f& to) const;

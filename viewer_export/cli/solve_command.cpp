@@ -123,7 +123,7 @@ void add_solve_command(CLI::App& program, Action& action) {
 
   solve.option_defaults()->group("Room");
   add_parsed_option(solve, "--zone-area", options->mesh.zone_area, parse_positive, "M2",
-                    "Largest zone area [m2] (default: area of the room / 4000)");
+                    "Largest zone area [m2] (default: so that there are about 8000 zones)");
   solve.add_flag("--two-sided", options->read.force_two_sided,
                  "Let every face reflect on both sides (rooms with mixed winding)");
   add_choice_option<EmissiveUnits>(
