@@ -21,6 +21,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/shoot/packet_batch.h"
+#include "solver/tally/stop_rule.h"
 
 namespace {
 
@@ -115,8 +116,8 @@ void measure(const Case& c, int threads, int rounds) {
   const Emission emission = collect_emission(transport);
   SolverSettings settings;
   settings.method = c.method;
-  const auto packets =
-      static_cast<std::uint32_t>(std::max<std::size_t>(1'000'000, 4 * built.mesh.zone_count()));
+  const auto packets = static_cast<std::uint32_t>(
+      std::max<std::size_t>(1'000'000, StopRule(settings, built.mesh.zone_count()).batch_packets()));
   BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
   const auto run = [&](const RayObserver* observer) {
     books.clear();

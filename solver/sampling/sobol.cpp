@@ -80,7 +80,10 @@ __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 void SobolSequence::sample16(std::uint32_t first_index, int dimension, float* out) const {
   const auto d = static_cast<std::size_t>(dimension);
-  const std::uint32_t high = sobol_bits(first_index, dimension);
+  // As sobol_bits, but without a branch on random bits.
+  std::uint32_t high = 0;
+  for (std::uint32_t bit = 0; bit < 32; ++bit)
+    high ^= kDirections[d][bit] & (0U - ((first_index >> bit) & 1U));
   const std::uint32_t seed = seeds_[d];
   for (std::size_t i = 0; i < 16; ++i) out[i] = unit(owen_scramble(high ^ kLowPoints[d][i], seed));
 }

@@ -18,18 +18,19 @@ constexpr std::uint32_t kPacketsPerTask = 1024;
 /// power is unshot.
 constexpr std::uint32_t kMostBounces = 200'000;
 
-/// Packets that wait to leave a zone, component by component.
+/// Packets that wait to leave a zone.
 struct WaitingPackets {
-  std::vector<ZoneId> zone;
-  std::vector<std::uint32_t> id;              ///< Number within the flight: selects the random numbers.
-  std::vector<std::int64_t> quanta;           ///< [packet * bands + band]
-  std::array<std::vector<float>, 4> numbers;  ///< Uniform, for the point and direction it leaves with.
+  struct Packet {
+    ZoneId zone;
+    std::uint32_t id;        ///< Number within the flight: selects the random numbers.
+    std::array<float, 4> u;  ///< Uniform, for the point and direction it leaves with.
+  };
+  std::vector<Packet> packets;
+  std::vector<std::int64_t> quanta;  ///< [packet * bands + band]
 
   void clear() {
-    zone.clear();
-    id.clear();
+    packets.clear();
     quanta.clear();
-    for (auto& n : numbers) n.clear();
   }
 };
 
@@ -68,7 +69,7 @@ class WalkTask {
 
   void run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
     start(flight, numbers, begin, end);
-    for (std::uint32_t bounce = 1; !waiting_.id.empty(); ++bounce) {
+    for (std::uint32_t bounce = 1; !waiting_.packets.empty(); ++bounce) {
       if (bounce == kMostBounces) return leave_unshot();
       trace_on(bounce);
     }
@@ -96,13 +97,13 @@ class WalkTask {
     waiting_.clear();
     UniformLanes numbers{};
     std::uint32_t id[16] = {};
-    for (std::size_t first = 0; first < leaving_.id.size(); first += 16) {
-      const int count = static_cast<int>(std::min<std::size_t>(16, leaving_.id.size() - first));
+    for (std::size_t first = 0; first < leaving_.packets.size(); first += 16) {
+      const int count = static_cast<int>(std::min<std::size_t>(16, leaving_.packets.size() - first));
       for (int lane = 0; lane < count; ++lane) {
-        const std::size_t i = first + static_cast<std::size_t>(lane);
-        for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = leaving_.numbers[d][i];
-        id[lane] = leaving_.id[i];
-        transport_.put_zone(leaving_.zone[i], lanes_, lane, lane + 1);
+        const WaitingPackets::Packet& p = leaving_.packets[first + static_cast<std::size_t>(lane)];
+        for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = p.u[d];
+        id[lane] = p.id;
+        transport_.put_zone(p.zone, lanes_, lane, lane + 1);
       }
       start_rays(lanes_, numbers, rays_);
       trace(count, id, &leaving_.quanta[first * bands_], zones_.indirect, bounce);
@@ -165,10 +166,11 @@ class WalkTask {
       for (std::size_t b = 0; b < bands_; ++b) absorbed[b] += quanta[b];
       return;
     }
-    waiting_.zone.push_back(zone);
-    waiting_.id.push_back(id);
-    for (std::size_t k = 0; k < 4; ++k)
-      waiting_.numbers[k].push_back(CounterRng::to_unit(bits.word[k][lane]));
+    waiting_.packets.push_back(
+        {zone,
+         id,
+         {CounterRng::to_unit(bits.word[0][lane]), CounterRng::to_unit(bits.word[1][lane]),
+          CounterRng::to_unit(bits.word[2][lane]), CounterRng::to_unit(bits.word[3][lane])}});
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::int64_t kept = share_of(quanta[b], rho[b] / survival);
       waiting_.quanta.push_back(kept);

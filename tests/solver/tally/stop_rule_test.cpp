@@ -47,7 +47,7 @@ TEST(StopRule, InterruptWins) {
 
 TEST(StopRule, BatchesGrowWithTheNumberOfZones) {
   EXPECT_EQ(StopRule({}, 100).batch_packets(), 65'536U);
-  EXPECT_EQ(StopRule({}, 1'000'000).batch_packets(), 4'000'000U);
+  EXPECT_EQ(StopRule({}, 1'000'000).batch_packets(), 16'000'000U);
 }
 
 TEST(StopRule, ProgressFollowsTheSquareOfTheError) {
