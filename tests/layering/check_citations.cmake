@@ -1,0 +1,27 @@
+# Fails when code or documentation cites a key, such as [SWZ96], that docs/references.bib does not have.
+# Usage: cmake -DSOURCE_DIR=<root of the source tree> -P check_citations.cmake
+cmake_minimum_required(VERSION 3.25)
+file(STRINGS ${SOURCE_DIR}/docs/references.bib entries REGEX "^@[a-z]+{")
+set(keys)
+foreach(entry IN LISTS entries)
+  string(REGEX REPLACE "^@[a-z]+{([A-Za-z0-9]+),.*" "\\1" key "${entry}")
+  list(APPEND keys ${key})
+endforeach()
+
+file(GLOB files ${SOURCE_DIR}/docs/*.md)
+foreach(layer scenes mesh solver viewer_export bench)
+  file(GLOB_RECURSE more ${SOURCE_DIR}/${layer}/*.h ${SOURCE_DIR}/${layer}/*.cpp)
+  list(APPEND files ${more})
+endforeach()
+foreach(file IN LISTS files)
+  file(READ ${file} text)
+  # A key is two or more capitals and a number. Brackets go first: CMake lists treat them specially.
+  string(REGEX REPLACE "\\[([A-Z][A-Z]+[0-9][0-9]+)[],]" "<cited \\1>" text "${text}")
+  string(REGEX MATCHALL "<cited [A-Z0-9]+>" citations "${text}")
+  foreach(citation IN LISTS citations)
+    string(REGEX REPLACE "<cited ([A-Z0-9]+)>" "\\1" key "${citation}")
+    if(NOT key IN_LIST keys)
+      message(SEND_ERROR "${file}: cites [${key}], which docs/references.bib does not have")
+    endif()
+  endforeach()
+endforeach()
