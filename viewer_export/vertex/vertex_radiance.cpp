@@ -13,9 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
-#include "solver/gather/direct_light.h"
-#include "solver/gather/hemisphere_gather.h"
-#include "solver/gather/point_sampler.h"
+#include "solver/gather/replicate_gather.h"
 #include "solver/reflect/lambert.h"
 #include "solver/tally/replicates.h"
 #include "viewer_export/vertex/vertex_ring.h"
@@ -56,9 +54,9 @@ class VertexGatherer {
                 GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
         bands_(scene.bands.count()) {
     const auto points = static_cast<unsigned>((settings.light_samples + kReplicates - 1) / kReplicates);
-    points_ = static_cast<int>(std::bit_ceil(points));
-    const int all_points = points_ * kReplicates;
-    gathers_ = (settings.gather_rays + all_points - 1) / all_points;
+    effort_.points = static_cast<int>(std::bit_ceil(points));
+    const int all_points = effort_.points * kReplicates;
+    effort_.gathers = (settings.gather_rays + all_points - 1) / all_points;
   }
   VertexGatherer(const VertexGatherer&) = delete;
   VertexGatherer& operator=(const VertexGatherer&) = delete;
@@ -74,28 +72,20 @@ class VertexGatherer {
     float* next = sums.data();
     for (std::size_t v = first; v < last; ++v)
       for (std::size_t r = 0; r < replicates; ++r, next += 2 * bands_)
-        add_replicate(v, static_cast<int>(r), next, next + bands_, batch);
+        add_vertex_replicate(v, static_cast<int>(r), next, next + bands_, batch);
     batch.flush();
     for (std::size_t v = first; v < last; ++v) store(v, &sums[(v - first) * replicates * 2 * bands_], data);
   }
 
  private:
-  void add_replicate(std::size_t v, int replicate, float* direct, float* indirect, GatherBatch& batch) const {
+  void add_vertex_replicate(std::size_t v, int replicate, float* direct, float* indirect,
+                            GatherBatch& batch) const {
     const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, replicate,
-                               std::countr_zero(static_cast<unsigned>(points_)));
+                               std::countr_zero(static_cast<unsigned>(effort_.points)));
     const auto part = static_cast<std::uint32_t>(replicate) % static_cast<std::uint32_t>(field_.parts());
-    const std::vector<float> light_weight(bands_, 1.0F / static_cast<float>(points_));
-    const std::vector<float> ray_weight(bands_, 1.0F / static_cast<float>(points_ * gathers_));
-    for (int i = 0; i < points_; ++i) {
-      const SurfacePoint x = point_beside(v, sampler.place(i));
-      direct_.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), direct);
-      for (int j = 0; j < gathers_; ++j) {
-        const std::array<float, 2> u = sampler.hemisphere(i, j, gathers_);
-        const PathKey key{v, static_cast<std::uint32_t>(replicate),
-                          static_cast<std::uint32_t>(i * gathers_ + j), part};
-        batch.add(x, u[0], u[1], key, ray_weight.data(), indirect);
-      }
-    }
+    add_replicate(
+        direct_, sampler, effort_, {v, static_cast<std::uint32_t>(replicate), 0, part},
+        [&](const std::array<float, 2>& u) { return point_beside(v, u); }, batch, direct, indirect);
   }
 
   /// A point inside one of the zones around a vertex, zones in proportion to their areas, uniform in the copy
@@ -147,8 +137,7 @@ class VertexGatherer {
   DirectLight direct_;
   HemisphereGather gather_;
   std::size_t bands_;
-  int points_ = 1;   // per replicate, each with one shadow ray
-  int gathers_ = 1;  // per point
+  ReplicateEffort effort_;
 };
 
 /// Vertex values as area-weighted means of the zones around. With two parts of the zone solution or more
