@@ -24,14 +24,15 @@ inline SurfacePoint point_in_zone(const RayScene& rays, ZoneId zone, const std::
 
 /// How many rays one replicate of the light at a place takes.
 struct ReplicateEffort {
-  int points = 1;   ///< Places, each with one shadow ray; a power of two.
+  int points = 1;   ///< Places, each with one shadow ray.
   int gathers = 1;  ///< Gather rays from each of them.
+  int first = 0;    ///< Places that this replicate had before; best a multiple of points, a power of two.
 };
 
 /// One replicate of the light around a place. `place(u)` gives the SurfacePoint for two uniform numbers. Adds
 /// the mean direct irradiance [W/m2] to direct[b] and the mean reflected radiance over cosine-distributed
 /// rays [W/(m2 sr)] to indirect[b] (pi times it is the indirect irradiance; complete after batch.flush()).
-/// The same sampler must have been made for log2(points) samples.
+/// The sampler must have been made for first + points samples.
 template <class Place>
 void add_replicate(const DirectLight& light, const PointSampler& sampler, const ReplicateEffort& effort,
                    PathKey key, Place&& place, GatherBatch& batch, float* direct, float* indirect) {
@@ -39,7 +40,7 @@ void add_replicate(const DirectLight& light, const PointSampler& sampler, const 
   const std::vector<float> ray_weight(light.band_count(),
                                       1.0F / static_cast<float>(effort.points * effort.gathers));
   const std::uint32_t first_path = key.path;
-  for (int i = 0; i < effort.points; ++i) {
+  for (int i = effort.first; i < effort.first + effort.points; ++i) {
     const SurfacePoint x = place(sampler.place(i));
     light.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), direct);
     for (int j = 0; j < effort.gathers; ++j) {
