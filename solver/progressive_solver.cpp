@@ -10,6 +10,8 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
+#include "solver/gather/discretisation.h"
+#include "solver/gather/small_zones.h"
 #include "solver/shoot/closed_room_check.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/tally/batch_statistics.h"
@@ -43,11 +45,20 @@ Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSetting
   return solution;
 }
 
+/// Share of all rays, and of the time, that goes to gathering on small zones at most.
+constexpr double kSmallZoneShare = 0.15;
+
+bool gathers_small_zones(const Solution& solution) {
+  return solution.settings.gather_small_zones && small_zone_count(solution.mesh) > 0;
+}
+
 /// Adds batches to `solution` until a rule stops it.
 void run_batches(const TransportScene& transport, const Emission& emission, Solution& solution,
                  const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
   const SolverSettings& settings = solution.settings;
-  const StopRule rule(settings, transport.zones());
+  SolverSettings limits = settings;
+  if (gathers_small_zones(solution)) limits.time_limit_s *= 1 - kSmallZoneShare;
+  const StopRule rule(limits, transport.zones());
   const auto start = std::chrono::steady_clock::now();
   SolveRecord& record = solution.record;
   BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
@@ -105,8 +116,18 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
+    const auto start = std::chrono::steady_clock::now();
     run_batches(transport, emission, solution, progress, interrupt);
+    if (gathers_small_zones(solution)) {
+      const double share = kSmallZoneShare / (1 - kSmallZoneShare);
+      gather_small_zones(scene, rays,
+                         static_cast<std::uint64_t>(share * static_cast<double>(solution.record.rays)),
+                         solution, interrupt);
+    }
+    if (!interrupt) solution.record.discretisation = discretisation_error(scene, rays, solution);
+    solution.record.seconds = seconds_since(start);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
+    solution.record.error = error.rms;
     solution.record.error_bound = error.bound;
     solution.record.error_95th_percentile = error.percentile_95;
     solution.record.unreached_zones = error.unreached;

@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::array<SolveMethod, 2> kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
 /// Rays of one solution.
-constexpr double kRays = 1e7;
+constexpr double kRays = 1.5e7;
 constexpr GatherEffort kAtPoint{256, 4096};
 
 /// A walk is reflected a geometric number of times, rho/(1-rho) on average and about as much by chance: below
 /// a number of walks the mean over a whole room is not known well enough. Shooting knows it almost exactly.
 double packets_for(SolveMethod method, double rho, const Effort& effort) {
-  constexpr double kFewestWalks = 4e5;
+  constexpr double kFewestWalks = 3e5;
   return effort.work * std::max(kRays * (1 - rho), method == SolveMethod::kWalk ? kFewestWalks : 0.0);
 }
 

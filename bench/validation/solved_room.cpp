@@ -15,7 +15,7 @@ SolvedRoom::SolvedRoom(const Scene& scene, const MeshResult& mesh, SolveMethod m
   settings.method = method;
   settings.batch_packets = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(packets / kReplicates));
   settings.packets = settings.batch_packets * ZoneSums::kGroups;
-  settings.stop_share = 1e-6;
+  settings.stop_share = 1e-5;
   const std::uint64_t seed = seed_of(seed_text + to_string(method));
   const std::atomic<bool> interrupt{false};
   for (std::size_t i = 0; i < kSolves; ++i) {

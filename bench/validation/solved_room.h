@@ -61,6 +61,6 @@ Estimates scaled(Estimates estimates, double factor, double offset);
 
 /// Relative bound of what zone values of SolvedRoom lack: the power that shooting leaves unshot, and
 /// rounding.
-inline constexpr double kSolveBound = 3e-6;
+inline constexpr double kSolveBound = 1.2e-5;
 
 }  // namespace reemit::validation

@@ -16,6 +16,9 @@ enum class RngPurpose : std::uint32_t {
   kPath,
   kProbe,
   kDither,
+  kSmallZone,
+  kSmallZonePilot,
+  kDiscretisation,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

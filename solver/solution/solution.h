@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,9 +55,13 @@ struct SolveRecord {
   std::uint64_t rays = 0;     ///< Traced in all.
   double seconds = 0;         ///< Wall time of the solve without meshing.
   double error = 0;        ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
-  double error_bound = 0;  ///< The true rms error stays below this with odds of 99 %, worst band.
+  double error_bound = 0;  ///< The true rms error stays below this with odds of 99.9 %, worst band.
   double error_95th_percentile = 0;   ///< 95th percentile over zones of s/B, worst band; lit zones only.
   std::uint64_t unreached_zones = 0;  ///< Zones that no packet met.
+  std::uint64_t gathered_zones = 0;   ///< Zones too small for packets, found by gathering.
+  /// How far radiosity at points lies from that of their zones, relative rms, worst band: an error that more
+  /// packets do not lessen. Nothing if it was not estimated.
+  std::optional<double> discretisation;
 };
 
 /// The view-independent solution of a room and all that later questions need.

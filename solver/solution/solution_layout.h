@@ -33,6 +33,7 @@ void transfer_solver_settings(Archive& archive, Settings& settings) {
   archive.attribute("batch_packets", settings.batch_packets);
   archive.attribute("smallest_batch_count", settings.smallest_batch_count);
   archive.attribute("stop_share", settings.stop_share);
+  archive.attribute("gather_small_zones", settings.gather_small_zones);
   archive.attribute("seed", settings.seed);
   archive.attribute("threads", settings.threads);
 }
@@ -47,6 +48,8 @@ void transfer_record(Archive& archive, Record& record) {
   archive.attribute("error_bound", record.error_bound);
   archive.attribute("error_95th_percentile", record.error_95th_percentile);
   archive.attribute("unreached_zones", record.unreached_zones);
+  archive.attribute("gathered_zones", record.gathered_zones);
+  archive.attribute("discretisation", record.discretisation);
 }
 
 template <class Archive, class Report>

@@ -205,7 +205,7 @@ double zone_rms_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& 
 }
 
 ZoneError zone_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums) {
-  constexpr double kSigmas99 = 2.326;  // one-sided 99 % of the normal distribution
+  constexpr double kSigmas = 3.09;  // one-sided 99.9 % of the normal distribution
   ZoneError result;
   find_percentile(sums, scene.bands.count(), result);
   if (sums.batches < 2) {
@@ -216,7 +216,7 @@ ZoneError zone_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& s
     const double rms = relative_rms(band);
     result.rms = std::max(result.rms, rms);
     result.bound =
-        std::max(result.bound, rms * std::sqrt(1 + kSigmas99 * spread_of_squared_error(band, sums)));
+        std::max(result.bound, rms * std::sqrt(1 + kSigmas * spread_of_squared_error(band, sums)));
   }
   return result;
 }

@@ -15,7 +15,7 @@ namespace reemit {
 /// bright lamp known without error would otherwise hide the noise of the room that it lights.
 struct ZoneError {
   double rms = 0;  ///< sqrt(sum A s^2 / sum A (rho E)^2), s = standard error of rho E, worst band.
-  /// What the true rms error of these very values stays below with odds of 99 %. rms is the mean of what it
+  /// What the true rms error of these very values stays below with odds of 99.9 %. rms is the mean of what it
   /// can be; how far one run strays from that mean shows in how much the batch groups differ among each
   /// other.
   double bound = 0;

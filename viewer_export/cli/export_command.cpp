@@ -62,6 +62,9 @@ ExitCode run_export(const ExportOptions& options) {
   data.tone_map = options.tone_map;
   write_output([&] { write_vertex_data(data, options.output); });
 
+  if (data.limited_by_zones && !options.style.quiet) {
+    print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
+  }
   if (interrupt.requested() && !options.style.quiet) {
     print_note("interrupted; vertices not yet reached hold the mean of their zones");
   }
@@ -97,10 +100,16 @@ void add_export_command(CLI::App& program, Action& action) {
                           {{"gather", false}, {"zones", true}},
                           "gather: direct light and final gather at each vertex; zones: the mean of the\n"
                           "zones around it, quick and as coarse as the zones");
+  auto* error =
+      add_parsed_option(command, "--error", options->vertex.error_target, parse_share, "SHARE",
+                        "Refine until the relative error (area-weighted rms over vertices, worst band) is\n"
+                        "below: 1%");
   add_integer_option(command, "--samples", options->vertex.gather_rays, 1, 1048576,
-                     "Gather rays per vertex, rounded up");
+                     "Gather rays per vertex, rounded up")
+      ->excludes(error);
   add_integer_option(command, "--light-samples", options->vertex.light_samples, 1, 65536,
-                     "Shadow rays per vertex, rounded up");
+                     "Shadow rays per vertex, rounded up")
+      ->excludes(error);
   command.add_flag("--all-zones", options->vertex.all_zones,
                    "Keep the backs of surfaces that no light reached and that do not emit");
   add_seed_and_threads(command, options->vertex.seed, options->vertex.threads);

@@ -100,6 +100,11 @@ class Renderer {
     progress.finish();
     std::optional<WrittenImage> written;
     write_output([&] { written = write_still_image(image, job.file, options_.tone_map); });
+    if (image.limited_by_zones && !options_.style.quiet)
+      print_note(
+          fmt::format("{}: the noise of the zone solution keeps the error above the target; solve to a lower "
+                      "--error",
+                      job.camera.name));
     report(job, image, *written,
            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }

@@ -17,9 +17,12 @@ Json record_json(const Solution& solution) {
           {"rays", record.rays},
           {"seconds", record.seconds},
           {"error", record.error},
+          {"error_bound", record.error_bound},
           {"error_95th_percentile", record.error_95th_percentile},
+          {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
           {"zones", solution.mesh.zone_count()},
           {"unreached_zones", record.unreached_zones},
+          {"gathered_zones", record.gathered_zones},
           {"batches", solution.sums.batches},
           {"seed", solution.settings.seed},
           {"method", to_string(solution.settings.method)},
@@ -34,8 +37,12 @@ Json record_json(const Solution& solution) {
 
 std::string solve_line(const Solution& solution) {
   const SolveRecord& record = solution.record;
-  return fmt::format("stopped: {}; {} packets, {} rays, {:.2f} s, error {}", to_string(record.stopped),
-                     record.packets, record.rays, record.seconds, percent_text(record.error));
+  std::string line =
+      fmt::format("stopped: {}; {} packets, {} rays, {:.2f} s, error {}", to_string(record.stopped),
+                  record.packets, record.rays, record.seconds, percent_text(record.error));
+  if (record.discretisation)
+    line += fmt::format("; points differ from their zones by {}", percent_text(*record.discretisation));
+  return line;
 }
 
 Json solve_json(const Solution& solution, const std::filesystem::path& file) {
@@ -60,6 +67,14 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
                       solution.sums.batches, record.seconds);
   text += fmt::format("error     {} (95 % of the lit zones within {})\n", percent_text(record.error),
                       percent_text(record.error_95th_percentile));
+  text += fmt::format("bound     {} (99.9 % odds that the true rms noise of the zone values is below)\n",
+                      percent_text(record.error_bound));
+  if (record.discretisation)
+    text += fmt::format(
+        "zones     points differ from the zones they are in by {} rms; only finer zones lessen it\n",
+        percent_text(*record.discretisation));
+  if (record.gathered_zones > 0)
+    text += fmt::format("gathered  {} zones too small for packets\n", record.gathered_zones);
   text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",
                       solution.mesh.triangle_count(), solution.mesh.zone_count(), record.unreached_zones);
   text += fmt::format("books     {}\n", solution.audit.balanced() ? "balance exactly" : "DO NOT BALANCE");

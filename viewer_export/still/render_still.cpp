@@ -24,9 +24,19 @@ constexpr int kLargestBlock = 8;
 /// Camera rays per pixel before an error is believed.
 constexpr int kFewestToStop = 16;
 
+/// Blocks are left alone a little below the target: they stop when their estimate happens to be low, so the
+/// true error is a few per cent above it.
+constexpr double kTargetMargin = 0.95;
+/// Doubling the samples halves the variance, unless what is left is the noise of the zone solution. A tile
+/// whose variance stays above this share of the one before, twice in a row, is given up.
+constexpr double kStalledShare = 0.8;
+constexpr int kMostStalls = 2;
+
 struct TileState {
   Tile tile;
   bool active = true;
+  double error2_before = std::numeric_limits<double>::infinity();  ///< At half the samples.
+  int stalls = 0;
 };
 
 void check(const StillSettings& s) {
@@ -101,6 +111,11 @@ class Rendering {
   }
 
   double error() const { return progress_now_.error; }
+  bool limited_by_zones() const {
+    return to_target_ && progress_now_.error > settings_.error_target &&
+           std::any_of(tiles_.begin(), tiles_.end(),
+                       [](const TileState& t) { return t.stalls >= kMostStalls; });
+  }
 
  private:
   void render_block(const SampleBlock& block) {
@@ -134,7 +149,7 @@ class Rendering {
     if (film_.replicates() < 2) return;
     const std::size_t pixels = film_.image().pixel_count();
     const std::size_t bands = film_.image().bands.count();
-    const double target2 = settings_.error_target * settings_.error_target;
+    const double target2 = std::pow(kTargetMargin * settings_.error_target, 2);
     const bool may_stop = to_target_ && progress_now_.samples >= kFewestToStop;
     std::vector<double> worst(tiles_.size(), 0.0);
     double error2 = 0;
@@ -154,8 +169,14 @@ class Rendering {
     }
     progress_now_.error = std::sqrt(error2);
     if (may_stop)
-      for (std::size_t i = 0; i < tiles_.size(); ++i)
-        tiles_[i].active = tiles_[i].active && error2 > target2 && worst[i] > target2;
+      for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        TileState& t = tiles_[i];
+        if (t.active && std::has_single_bit(static_cast<unsigned>(progress_now_.samples))) {
+          t.stalls = worst[i] > kStalledShare * t.error2_before ? t.stalls + 1 : 0;
+          t.error2_before = worst[i];
+        }
+        t.active = t.active && error2 > target2 && worst[i] > target2 && t.stalls < kMostStalls;
+      }
     report(0);
   }
 
@@ -222,6 +243,7 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
   arena.execute([&] { rendering.run(); });
   StillImage image = film.finish();
   image.info = describe_still(scene, solution, settings, rendering.error());
+  image.limited_by_zones = rendering.limited_by_zones();
   return image;
 }
 

@@ -25,8 +25,9 @@ struct StillSettings {
   int height = 0;  ///< [px] 0 = as the camera says, [1, 65536].
   Integrator integrator = Integrator::kGather;
   PixelFilter filter = PixelFilter::kBox;
-  int spp = 16;           ///< Camera rays per pixel, rounded up to a multiple of 4 beyond 4 [1, 1048576].
-  int gathers = 4;        ///< Gather rays per camera ray [1, 1024]; kPath always follows one.
+  int spp = 16;     ///< Camera rays per pixel, rounded to a power of two below 8, up to a multiple of 8 above
+                    ///< [1, 1048576].
+  int gathers = 4;  ///< Gather rays per camera ray [1, 1024]; kPath always follows one.
   int light_samples = 1;  ///< Shadow rays per camera ray [1, 1024].
   /// Relative error to reach as a fraction [0, 1): rms over pixels of s/(L + floor), worst band, with s the
   /// standard error of radiance L. 0 = stop by spp; else spp is ignored.
@@ -48,13 +49,15 @@ struct StillProgress {
 };
 using StillProgressCallback = std::function<void(const StillProgress&)>;
 
-/// Renders a picture from four replicates of each pixel (fewer if spp is smaller). A replicate is an
-/// independent randomised quasi-Monte Carlo estimate that is refined block by block, so the spread of the
-/// replicates is the standard error. With an error target, 16 x 16 pixel tiles that have reached it get no
-/// more samples. Bit for bit the same for any number of threads. `progress` (may be empty) is called from one
-/// thread at a time. When `interrupt` becomes true, returns what stands.
-/// Throws InputError for settings or a camera out of range and a room that is not the one solved,
-/// ResourceError when the picture does not fit into memory.
+/// Renders a picture from eight replicates of each pixel (fewer if spp is smaller). A replicate is an
+/// independent randomised quasi-Monte Carlo estimate that is refined block by block and reads its own part of
+/// the zone solution, so the spread of the replicates is the standard error, the noise of the zones included:
+/// with 7 degrees of freedom, so a 95 % interval is 2.36 standard errors to each side. With an error target,
+/// 16 x 16 pixel tiles that have reached it get no more samples, nor do tiles whose error is that of the zone
+/// solution (StillImage::limited_by_zones). Bit for bit the same for any number of threads. `progress` (may
+/// be empty) is called from one thread at a time. When `interrupt` becomes true, returns what stands. Throws
+/// InputError for settings or a camera out of range and a room that is not the one solved, ResourceError when
+/// the picture does not fit into memory.
 StillImage render_still(const Scene& scene, const Solution& solution, const RayScene& rays,
                         const Camera& camera, const StillSettings& settings,
                         const StillProgressCallback& progress, const std::atomic<bool>& interrupt);

@@ -11,6 +11,8 @@ namespace reemit {
 /// that was not computed is empty; `radiance` is always there.
 struct StillImage {
   ExportInfo info;
+  /// True if an error target was missed because of the noise of the zone solution.
+  bool limited_by_zones = false;
   BandSet bands = BandSet::grey();
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]

@@ -16,6 +16,8 @@ namespace reemit {
 /// a crease splits them, so every vertex belongs to one surface.
 struct VertexData {
   ExportInfo info;
+  /// True if an error target was missed because of the noise of the zone solution.
+  bool limited_by_zones = false;
   BandSet bands = BandSet::grey();
   ToneMapSettings
       tone_map;  ///< Of the displayable colours in PLY and glTF; the radiances are never tone-mapped.

@@ -28,9 +28,10 @@ inline Solution sample_solution(const BandSet& bands) {
   s.settings.batch_packets = 1001;
   s.settings.smallest_batch_count = 9;
   s.settings.stop_share = 2e-5;
+  s.settings.gather_small_zones = false;
   s.settings.seed = 18'000'000'000'000'000'001U;
   s.settings.threads = 3;
-  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6};
+  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6, 5, 0.125};
   s.bands = bands;
 
   Scene scene;

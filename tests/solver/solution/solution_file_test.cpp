@@ -41,6 +41,7 @@ void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.settings.batch_packets, b.settings.batch_packets);
   EXPECT_EQ(a.settings.smallest_batch_count, b.settings.smallest_batch_count);
   EXPECT_EQ(a.settings.stop_share, b.settings.stop_share);
+  EXPECT_EQ(a.settings.gather_small_zones, b.settings.gather_small_zones);
   EXPECT_EQ(a.settings.seed, b.settings.seed);
   EXPECT_EQ(a.settings.threads, b.settings.threads);
   EXPECT_EQ(a.record.stopped, b.record.stopped);
@@ -50,6 +51,8 @@ void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.record.error, b.record.error);
   EXPECT_EQ(a.record.error_95th_percentile, b.record.error_95th_percentile);
   EXPECT_EQ(a.record.unreached_zones, b.record.unreached_zones);
+  EXPECT_EQ(a.record.gathered_zones, b.record.gathered_zones);
+  EXPECT_EQ(a.record.discretisation, b.record.discretisation);
 }
 
 void expect_same_room(const Solution& a, const Solution& b) {

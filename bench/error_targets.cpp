@@ -1,0 +1,184 @@
+// Are --error targets met by the true error? Many seeds of solve and render against long references.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "mesh/build_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "solver/progressive_solver.h"
+#include "viewer_export/still/render_still.h"
+
+namespace {
+
+using namespace reemit;
+
+struct Options {
+  std::string room;
+  int seeds = 20;
+  double solve_target = 0.01;
+  double render_target = 0.02;
+  double zone_area = 0;  ///< [m2], 0 = default.
+  int size = 128;
+  int reference_samples = 4096;
+};
+
+/// The true relative error of one run in one band, and what the run said.
+struct Outcome {
+  double true_error = 0;
+  double stated_error = 0;
+};
+
+void print(const std::string& what, double target, const std::vector<Outcome>& runs, double reference_error) {
+  std::vector<double> errors;
+  double sum = 0;
+  double stated = 0;
+  std::size_t met = 0;
+  for (const Outcome& run : runs) {
+    errors.push_back(run.true_error);
+    sum += run.true_error;
+    stated += run.stated_error;
+    if (run.true_error <= target) ++met;
+  }
+  const auto n = static_cast<double>(runs.size());
+  const auto [least, most] = std::minmax_element(errors.begin(), errors.end());
+  fmt::print("| {} | {:g} % | {} of {} | {:.3f} % | {:.3f} % .. {:.3f} % | {:.3f} % | {:.3f} % |\n", what,
+             100 * target, met, runs.size(), 100 * sum / n, 100 * *least, 100 * *most, 100 * stated / n,
+             100 * reference_error);
+  std::fflush(stdout);
+}
+
+/// sqrt(sum A (rho dE)^2 / sum A (rho E)^2), worst band; the reference's own error is taken out in squares.
+double true_zone_error(const Solution& solution, const Solution& reference) {
+  double worst = 0;
+  for (std::size_t b = 0; b < solution.bands.count(); ++b) {
+    double difference = 0;
+    double noise = 0;
+    double signal = 0;
+    for (std::size_t i = 0; i < solution.mesh.zone_count(); ++i) {
+      const ZoneId z(i);
+      const double rho = solution.zone_material(z).reflectance[static_cast<Eigen::Index>(b)];
+      const double weight = solution.mesh.zone_area(z) * rho * rho;
+      const Estimate truth = reference.irradiance(z, b);
+      const double d = solution.irradiance(z, b).mean - truth.mean;
+      difference += weight * d * d;
+      noise += weight * truth.stderr_of_mean * truth.stderr_of_mean;
+      signal += weight * truth.mean * truth.mean;
+    }
+    worst = std::max(worst, std::sqrt(std::max(0.0, difference - noise) / signal));
+  }
+  return worst;
+}
+
+/// sqrt(mean over pixels of (dL/(L + floor))^2), worst band; the reference's own error is taken out in
+/// squares.
+double true_still_error(const StillImage& image, const StillImage& reference, double floor_share,
+                        double* reference_error = nullptr) {
+  const std::size_t bands = image.bands.count();
+  const std::size_t pixels = image.pixel_count();
+  double worst = 0;
+  for (std::size_t b = 0; b < bands; ++b) {
+    double mean = 0;
+    for (std::size_t p = 0; p < pixels; ++p) mean += static_cast<double>(reference.radiance[p * bands + b]);
+    const double floor = floor_share * mean / static_cast<double>(pixels);
+    double difference = 0;
+    double noise = 0;
+    for (std::size_t k = b; k < pixels * bands; k += bands) {
+      const double truth = static_cast<double>(reference.radiance[k]);
+      const double scale = 1 / ((truth + floor) * (truth + floor));
+      const double d = static_cast<double>(image.radiance[k]) - truth;
+      const double s = static_cast<double>(reference.radiance_stderr[k]);
+      if (truth + floor == 0) continue;
+      difference += d * d * scale;
+      noise += s * s * scale;
+    }
+    const auto n = static_cast<double>(pixels);
+    worst = std::max(worst, std::sqrt(std::max(0.0, difference - noise) / n));
+    if (reference_error != nullptr) *reference_error = std::max(*reference_error, std::sqrt(noise / n));
+  }
+  return worst;
+}
+
+void measure(const Options& options) {
+  const Scene scene = read_scene(options.room);
+  MeshSettings mesh_settings;
+  if (options.zone_area > 0) mesh_settings.zone_area = options.zone_area;
+  const MeshResult mesh = build_mesh(scene, mesh_settings);
+  const std::atomic<bool> never{false};
+  fmt::print("{}: {} zones, {} seeds\n\n", options.room, mesh.mesh.zone_count(), options.seeds);
+  fmt::print(
+      "| command | target | met by the true error | mean true error | least .. most | mean stated error |"
+      " error of the reference |\n|---|---|---|---|---|---|---|\n");
+
+  SolverSettings settings;
+  settings.error_target = options.solve_target / 6;
+  settings.seed = 1'000'000;
+  const Solution reference = solve(scene, mesh, settings, {}, never);
+  settings.error_target = options.solve_target;
+  std::vector<Outcome> solves;
+  std::vector<Solution> solutions;
+  for (int seed = 1; seed <= options.seeds; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(seed);
+    solutions.push_back(solve(scene, mesh, settings, {}, never));
+    solves.push_back({true_zone_error(solutions.back(), reference), solutions.back().record.error});
+  }
+  print(fmt::format("solve --error {:g}%", 100 * options.solve_target), options.solve_target, solves,
+        reference.record.error);
+
+  const RayScene rays(solutions.front().mesh);
+  StillSettings still;
+  still.width = still.height = options.size;
+  still.integrator = Integrator::kPath;
+  still.spp = options.reference_samples;
+  still.seed = 1'000'000;
+  const Camera& camera = scene.cameras.at(0);
+  const StillImage traced = render_still(scene, reference, rays, camera, still, {}, never);
+  still.integrator = Integrator::kGather;
+  still.error_target = options.render_target;
+  double reference_error = 0;
+  std::vector<Outcome> stills;
+  for (int seed = 1; seed <= options.seeds; ++seed) {
+    still.seed = static_cast<std::uint64_t>(seed);
+    const StillImage image =
+        render_still(scene, solutions[static_cast<std::size_t>(seed - 1)], rays, camera, still, {}, never);
+    stills.push_back(
+        {true_still_error(image, traced, still.error_floor, &reference_error), image.info.error});
+  }
+  print(fmt::format("render --error {:g}% --size {}x{}, against path tracing", 100 * options.render_target,
+                    options.size, options.size),
+        options.render_target, stills, reference_error);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Whether the true error of solutions and stills meets the --error target");
+  Options options;
+  app.add_option("room", options.room, "Room file with a camera")->required();
+  app.add_option("--seeds", options.seeds, "Independent runs")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--solve-error", options.solve_target, "Target of solve, as a fraction")
+      ->capture_default_str();
+  app.add_option("--render-error", options.render_target, "Target of render, as a fraction")
+      ->capture_default_str();
+  app.add_option("--zone-area", options.zone_area, "Largest zone area [m2]");
+  app.add_option("--size", options.size, "Width and height of the stills [px]")->capture_default_str();
+  app.add_option("--reference-samples", options.reference_samples,
+                 "Path-traced samples per pixel of the reference")
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    measure(options);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  }
+  return 0;
+}

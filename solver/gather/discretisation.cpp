@@ -1,0 +1,127 @@
+#include "solver/gather/discretisation.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+#include "solver/gather/replicate_gather.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::size_t kHalves = 2;
+constexpr std::size_t kProbes = 1024;
+constexpr ReplicateEffort kEffort{64, 2};
+constexpr std::size_t kChunk = 64;
+
+/// A zone to look at, and the area it stands for [m2].
+struct Probe {
+  ZoneId zone;
+  double area = 0;
+};
+
+/// Zones in proportion to area times (their radiosity + the mean one), evenly along the numbering: squared
+/// differences are largest where it is bright, and dark parts keep a share.
+std::vector<Probe> choose_probes(const Solution& solution, double offset) {
+  const ZoneMesh& mesh = solution.mesh;
+  std::vector<double> power(mesh.zone_count(), 0.0);
+  double total_power = 0;
+  double total_area = 0;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    const ZoneId zone(z);
+    const Spectrum& reflectance = solution.zone_material(zone).reflectance;
+    for (std::size_t b = 0; b < solution.bands.count(); ++b)
+      power[z] += mesh.zone_area(zone) * reflectance[static_cast<Eigen::Index>(b)] *
+                  solution.irradiance(zone, b).mean;
+    total_power += power[z];
+    total_area += mesh.zone_area(zone);
+  }
+  std::vector<Probe> probes;
+  if (!(total_power > 0)) return probes;
+  double passed = 0;
+  double next = offset / kProbes;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    const double area = mesh.zone_area(ZoneId(z));
+    const double share = 0.5 * (power[z] / total_power + area / total_area);
+    passed += share;
+    for (; next < passed && probes.size() < kProbes; next += 1.0 / kProbes)
+      probes.push_back({ZoneId(z), area / share / kProbes});
+  }
+  return probes;
+}
+
+}  // namespace
+
+std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays,
+                                           const Solution& solution) {
+  const RadianceField field(scene, solution, rays, kHalves);
+  if (field.parts() != kHalves) return std::nullopt;
+  const std::size_t bands = scene.bands.count();
+  const std::uint64_t seed = solution.settings.seed;
+  const DirectLight direct(scene, rays);
+  const HemisphereGather gather(rays, field, direct, GatherSettings{.seed = seed});
+  const CounterRng rng(seed, RngPurpose::kDiscretisation);
+  const std::vector<Probe> probes = choose_probes(solution, static_cast<double>(rng.uniform4(0, 1, 0)[0]));
+
+  // By probe and band: product of the two differences, product of the two zone values.
+  std::vector<double> differences(probes.size() * bands);
+  std::vector<double> values(probes.size() * bands);
+  const std::size_t chunks = (probes.size() + kChunk - 1) / kChunk;
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
+    const std::size_t first = c * kChunk;
+    const std::size_t last = std::min(first + kChunk, probes.size());
+    std::vector<float> found((last - first) * kHalves * 2 * bands, 0.0F);
+    GatherBatch batch(gather);
+    float* next = found.data();
+    for (std::size_t i = first; i < last; ++i) {
+      const std::array<float, 4> u = rng.uniform4(i, 0, 0);
+      const SurfacePoint x = point_in_zone(rays, probes[i].zone, {u[0], u[1]});
+      for (std::size_t half = 0; half < kHalves; ++half, next += 2 * bands) {
+        const PointSampler sampler(seed, RngPurpose::kDiscretisation, i, static_cast<int>(half),
+                                   std::countr_zero(static_cast<unsigned>(kEffort.points)));
+        const auto part = static_cast<std::uint32_t>(half);
+        add_replicate(
+            direct, sampler, kEffort, {i, part, 0, part}, [&](const auto&) { return x; }, batch, next,
+            next + bands);
+      }
+    }
+    batch.flush();
+    for (std::size_t i = first; i < last; ++i) {
+      const float* reflectance = field.reflectance(solution.mesh.zone_triangle(probes[i].zone).index(),
+                                                   solution.mesh.zone_is_front(probes[i].zone));
+      for (std::size_t b = 0; b < bands; ++b) {
+        double difference = probes[i].area;
+        double value = probes[i].area;
+        for (std::size_t half = 0; half < kHalves; ++half) {
+          const float* light = &found[((i - first) * kHalves + half) * 2 * bands];
+          const double rho = static_cast<double>(reflectance[b]);
+          const double at_point = rho * (static_cast<double>(light[b]) / std::numbers::pi +
+                                         static_cast<double>(light[bands + b]));
+          const double of_zone = static_cast<double>(field.reflected(probes[i].zone, half)[b]);
+          difference *= at_point - of_zone;
+          value *= of_zone;
+        }
+        differences[i * bands + b] = difference;
+        values[i * bands + b] = value;
+      }
+    }
+  });
+
+  std::optional<double> worst;
+  for (std::size_t b = 0; b < bands; ++b) {
+    double difference = 0;
+    double value = 0;
+    for (std::size_t k = b; k < values.size(); k += bands) {
+      difference += differences[k];
+      value += values[k];
+    }
+    if (value > 0) worst = std::max(worst.value_or(0), std::sqrt(std::max(0.0, difference) / value));
+  }
+  return worst;
+}
+
+}  // namespace reemit

@@ -1,0 +1,19 @@
+#pragma once
+#include <optional>
+
+#include "scenes/model/scene.h"
+#include "solver/solution/solution.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// How far the radiosity at points lies from that of the zones they are in: the square root of the
+/// area means of (B(x) - B_z)^2 over B_z^2, reflected parts, worst band. B(x) is gathered, so it sees shadow
+/// edges and gradients inside a zone, which the standard error of the zone values knows nothing of; it is
+/// also the error of a picture that shows the zones themselves. Noise of gathers and zones is taken out: two
+/// independent halves of the batches give two differences, whose product has no noise on the mean. Takes
+/// about half a million rays. Nothing with fewer than two batches or without light.
+std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays,
+                                           const Solution& solution);
+
+}  // namespace reemit

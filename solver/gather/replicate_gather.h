@@ -1,0 +1,54 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "solver/gather/direct_light.h"
+#include "solver/gather/hemisphere_gather.h"
+#include "solver/gather/point_sampler.h"
+#include "solver/sampling/warp.h"
+
+namespace reemit {
+
+/// A point of a zone, uniform over it for uniform u.
+inline SurfacePoint point_in_zone(const RayScene& rays, ZoneId zone, const std::array<float, 2>& u) {
+  const ZoneMesh& mesh = rays.mesh();
+  const auto [s, t] = sample_triangle(u[0], u[1]);
+  const auto corners = mesh.zone_barycentrics(zone);
+  const auto inside = [&](double Barycentric::*k) {
+    return static_cast<float>((1 - s - t) * corners[0].*k + s * corners[1].*k + t * corners[2].*k);
+  };
+  return surface_point(rays, mesh.zone_triangle(zone), inside(&Barycentric::u), inside(&Barycentric::v),
+                       mesh.zone_is_front(zone));
+}
+
+/// How many rays one replicate of the light at a place takes.
+struct ReplicateEffort {
+  int points = 1;   ///< Places, each with one shadow ray.
+  int gathers = 1;  ///< Gather rays from each of them.
+  int first = 0;    ///< Places that this replicate had before; best a multiple of points, a power of two.
+};
+
+/// One replicate of the light around a place. `place(u)` gives the SurfacePoint for two uniform numbers. Adds
+/// the mean direct irradiance [W/m2] to direct[b] and the mean reflected radiance over cosine-distributed
+/// rays [W/(m2 sr)] to indirect[b] (pi times it is the indirect irradiance; complete after batch.flush()).
+/// The sampler must have been made for first + points samples.
+template <class Place>
+void add_replicate(const DirectLight& light, const PointSampler& sampler, const ReplicateEffort& effort,
+                   PathKey key, Place&& place, GatherBatch& batch, float* direct, float* indirect) {
+  const std::vector<float> light_weight(light.band_count(), 1.0F / static_cast<float>(effort.points));
+  const std::vector<float> ray_weight(light.band_count(),
+                                      1.0F / static_cast<float>(effort.points * effort.gathers));
+  const std::uint32_t first_path = key.path;
+  for (int i = effort.first; i < effort.first + effort.points; ++i) {
+    const SurfacePoint x = place(sampler.place(i));
+    light.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), direct);
+    for (int j = 0; j < effort.gathers; ++j) {
+      const std::array<float, 2> u = sampler.hemisphere(i, j, effort.gathers);
+      key.path = first_path + static_cast<std::uint32_t>(i * effort.gathers + j);
+      batch.add(x, u[0], u[1], key, ray_weight.data(), indirect);
+    }
+  }
+}
+
+}  // namespace reemit

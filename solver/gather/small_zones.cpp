@@ -1,0 +1,201 @@
+#include "solver/gather/small_zones.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+#include "solver/gather/replicate_gather.h"
+#include "solver/tally/batch_statistics.h"
+#include "solver/tally/replicates.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::size_t kReplicates = ZoneSums::kGroups;
+/// A zone is small when it would meet this many times fewer packets than the mean zone.
+constexpr double kFewerPackets = 9;
+/// Variance of packets over that of gathering, as foreseen, from which on a zone is gathered.
+constexpr double kWorthwhile = 2;
+/// Gather rays per shadow ray.
+constexpr int kGathersPerPoint = 2;
+constexpr double kRaysPerPoint = static_cast<double>(kReplicates) * (1 + kGathersPerPoint);
+/// Zones of one task; fixed, so that packets of rays are the same for any number of threads.
+constexpr std::size_t kChunk = 64;
+
+double mean_zone_area(const ZoneMesh& mesh) {
+  double area = 0;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) area += mesh.zone_area(ZoneId(z));
+  return area / static_cast<double>(mesh.zone_count());
+}
+
+/// Small zones, smallest first.
+std::vector<ZoneId> small_zones(const ZoneMesh& mesh) {
+  const double limit = mean_zone_area(mesh) / kFewerPackets;
+  std::vector<ZoneId> zones;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z)
+    if (mesh.zone_area(ZoneId(z)) < limit) zones.push_back(ZoneId(z));
+  std::stable_sort(zones.begin(), zones.end(),
+                   [&](ZoneId a, ZoneId b) { return mesh.zone_area(a) < mesh.zone_area(b); });
+  return zones;
+}
+
+/// Points per replicate, a power of two, that this many rays for one zone allow.
+int points_for(double rays) {
+  constexpr double kMostPoints = 1 << 16;
+  return static_cast<int>(
+      std::bit_floor(static_cast<unsigned>(std::clamp(rays / kRaysPerPoint, 1.0, kMostPoints))));
+}
+
+/// The irradiance of one zone in one band, one value per replicate.
+struct ZoneReplicates {
+  std::array<double, kReplicates> direct{};
+  std::array<double, kReplicates> indirect{};
+};
+
+/// Gathers at zones; every replicate reads its own part of the zone solution.
+class Gatherer {
+ public:
+  Gatherer(const Scene& scene, const RayScene& rays, const Solution& solution,
+           const std::atomic<bool>& interrupt)
+      : rays_(rays),
+        interrupt_(interrupt),
+        bands_(scene.bands.count()),
+        seed_(solution.settings.seed),
+        field_(scene, solution, rays, kReplicates),
+        direct_(scene, rays),
+        gather_(rays, field_, direct_, GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
+  Gatherer(const Gatherer&) = delete;
+  Gatherer& operator=(const Gatherer&) = delete;
+
+  /// Calls use(i, band, ZoneReplicates) for the zones i of the list from any thread; returns how many zones
+  /// it was called for.
+  template <class Use>
+  std::size_t gather(const std::vector<ZoneId>& zones, int points, RngPurpose purpose, Use&& use) const {
+    const std::size_t chunks = (zones.size() + kChunk - 1) / kChunk;
+    std::atomic<std::size_t> gathered{0};
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
+      if (interrupt_) return;
+      const std::size_t last = std::min((c + 1) * kChunk, zones.size());
+      gather_chunk(zones, c * kChunk, last, points, purpose, use);
+      gathered += last - c * kChunk;
+    });
+    return gathered;
+  }
+
+ private:
+  template <class Use>
+  void gather_chunk(const std::vector<ZoneId>& zones, std::size_t first, std::size_t last, int points,
+                    RngPurpose purpose, Use&& use) const {
+    // Per zone and replicate: direct irradiance, then mean reflected radiance over the hemisphere.
+    std::vector<float> found((last - first) * kReplicates * 2 * bands_, 0.0F);
+    GatherBatch batch(gather_);
+    float* next = found.data();
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t r = 0; r < kReplicates; ++r, next += 2 * bands_) {
+        const auto replicate = static_cast<std::uint32_t>(r);
+        const PointSampler sampler(seed_, purpose, zones[i].index(), static_cast<int>(r),
+                                   std::countr_zero(static_cast<unsigned>(points)));
+        const auto place = [&](const std::array<float, 2>& u) { return point_in_zone(rays_, zones[i], u); };
+        add_replicate(direct_, sampler, {points, kGathersPerPoint},
+                      {zones[i].index(), replicate, 0, replicate}, place, batch, next, next + bands_);
+      }
+    batch.flush();
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t b = 0; b < bands_; ++b) {
+        ZoneReplicates replicates;
+        for (std::size_t r = 0; r < kReplicates; ++r) {
+          const float* values = &found[((i - first) * kReplicates + r) * 2 * bands_];
+          replicates.direct[r] = static_cast<double>(values[b]);
+          replicates.indirect[r] = std::numbers::pi * static_cast<double>(values[bands_ + b]);
+        }
+        use(i, b, replicates);
+      }
+  }
+
+  const RayScene& rays_;
+  const std::atomic<bool>& interrupt_;
+  std::size_t bands_;
+  std::uint64_t seed_;
+  RadianceField field_;
+  DirectLight direct_;
+  HemisphereGather gather_;
+};
+
+/// What the pilot found out about a zone, all bands together.
+struct PilotResult {
+  double irradiance = 0;  // [W/m2]
+  double variance = 0;    // of its irradiance
+};
+
+/// Incident power that one ray of the solve carried on average [W].
+double power_per_ray(const Solution& solution) {
+  const std::size_t bands = solution.bands.count();
+  double power = 0;
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    for (std::size_t b = 0; b < bands; ++b)
+      power += solution.mesh.zone_area(ZoneId(z)) * solution.irradiance(ZoneId(z), b).mean;
+  return power / static_cast<double>(solution.record.rays);
+}
+
+/// True if gathering with `gain` times the rays of the pilot is foreseen to beat packets clearly.
+bool is_worthwhile(const PilotResult& pilot, double gain, double area, double watts_per_ray) {
+  const double packets = pilot.irradiance * area / watts_per_ray;
+  return pilot.variance / gain * packets * kWorthwhile <= pilot.irradiance * pilot.irradiance;
+}
+
+}  // namespace
+
+std::size_t small_zone_count(const ZoneMesh& mesh) {
+  return mesh.zone_count() == 0 ? 0 : small_zones(mesh).size();
+}
+
+void gather_small_zones(const Scene& scene, const RayScene& rays, std::uint64_t most_rays, Solution& solution,
+                        const std::atomic<bool>& interrupt) {
+  if (solution.sums.batches < static_cast<std::int64_t>(kReplicates)) return;
+  const ZoneMesh& mesh = solution.mesh;
+  std::vector<ZoneId> zones = small_zones(mesh);
+  // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
+  const auto budget = static_cast<double>(most_rays);
+  zones.resize(std::min(zones.size(), static_cast<std::size_t>(budget / (3 * kRaysPerPoint))));
+  if (zones.empty()) return;
+  const Gatherer gatherer(scene, rays, solution, interrupt);
+  const std::size_t bands = scene.bands.count();
+  const auto points_rays = [](int points) { return static_cast<std::uint64_t>(points * kRaysPerPoint); };
+
+  std::vector<PilotResult> pilots(zones.size());
+  const std::size_t piloted = gatherer.gather(
+      zones, 1, RngPurpose::kSmallZonePilot, [&](std::size_t i, std::size_t, const ZoneReplicates& x) {
+        const ReplicateMean mean = mean_of_replicates(
+            kReplicates, kReplicates, [&](std::size_t r) { return x.direct[r] + x.indirect[r]; });
+        pilots[i].irradiance += mean.mean;
+        pilots[i].variance += mean.squared_error;
+      });
+  solution.record.rays += piloted * points_rays(1);
+  if (piloted < zones.size()) return;
+
+  const double left = budget - static_cast<double>(piloted * points_rays(1));
+  const double watts_per_ray = power_per_ray(solution);
+  const double gain = points_for(left / static_cast<double>(zones.size()));
+  std::vector<ZoneId> chosen;
+  for (std::size_t i = 0; i < zones.size(); ++i)
+    if (is_worthwhile(pilots[i], gain, mesh.zone_area(zones[i]), watts_per_ray)) chosen.push_back(zones[i]);
+  if (chosen.empty()) return;
+
+  // As many rays as the mean zone meets packets leave about its error.
+  const double enough = std::max(
+      kRaysPerPoint, static_cast<double>(solution.record.rays) / static_cast<double>(mesh.zone_count()));
+  const int points = points_for(std::min(enough, left / static_cast<double>(chosen.size())));
+  const std::size_t gathered = gatherer.gather(
+      chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, std::size_t b, const ZoneReplicates& x) {
+        store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect);
+      });
+  solution.record.gathered_zones = gathered;
+  solution.record.rays += gathered * points_rays(points);
+}
+
+}  // namespace reemit

@@ -1,0 +1,98 @@
+#include "viewer_export/vertex/vertex_gatherer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "solver/reflect/lambert.h"
+#include "solver/tally/replicates.h"
+
+namespace reemit {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+}  // namespace
+
+VertexGatherer::VertexGatherer(const Scene& scene, const Solution& solution, const RayScene& rays,
+                               const VertexRings& rings, const VertexSettings& settings, int most_points)
+    : rays_(rays),
+      rings_(rings),
+      settings_(settings),
+      field_(scene, solution, rays, kReplicates),
+      direct_(scene, rays),
+      gather_(rays, field_, direct_, GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
+      bands_(scene.bands.count()),
+      gathers_per_point_(settings.gathers_per_point()),
+      log2_points_(std::countr_zero(static_cast<unsigned>(most_points))) {}
+
+const float* VertexGatherer::emitted(std::size_t v) const {
+  const ZoneId zone = rings_.begin(v)->zone;
+  return field_.emitted(rays_.mesh().zone_triangle(zone).index(), rays_.mesh().zone_is_front(zone));
+}
+
+void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
+                            VertexData& data) const {
+  std::vector<float> found((last - first) * values_per_vertex(), 0.0F);
+  GatherBatch batch(gather_);
+  const ReplicateEffort effort{block.count, gathers_per_point_, block.first};
+  float* next = found.data();
+  for (std::size_t v = first; v < last; ++v)
+    for (std::size_t r = 0; r < kReplicates; ++r, next += 2 * bands_) {
+      const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, static_cast<int>(r), log2_points_);
+      const PathKey key{v, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % field_.parts())};
+      add_replicate(
+          direct_, sampler, effort, key, [&](const std::array<float, 2>& u) { return point_beside(v, u); },
+          batch, next, next + bands_);
+    }
+  batch.flush();
+  const float share = static_cast<float>(block.count) / static_cast<float>(block.first + block.count);
+  for (std::size_t k = 0; k < found.size(); ++k) means[k] += share * (found[k] - means[k]);
+  for (std::size_t v = first; v < last; ++v) store(v, means + (v - first) * values_per_vertex(), data);
+}
+
+/// A point inside one of the zones around a vertex, zones in proportion to their areas, uniform in the copy
+/// of the zone that is shrunk towards the vertex by `reach`.
+SurfacePoint VertexGatherer::point_beside(std::size_t v, const std::array<float, 2>& u) const {
+  const double total = 3 * rings_.area(v);
+  double left = static_cast<double>(u[0]) * total;
+  const RingZone* ring = rings_.begin(v);
+  while (ring + 1 != rings_.end(v) && left >= ring->area) left -= (ring++)->area;
+  const auto stretched = static_cast<float>(std::clamp(left / ring->area, 0.0, 1 - 0x1p-24));
+  const auto [s, t] = sample_triangle(stretched, u[1]);
+  const ZoneMesh& mesh = rays_.mesh();
+  const auto corners = mesh.zone_barycentrics(ring->zone);
+  const auto towards = [&](double Barycentric::*k) {
+    const double inside = (1 - s - t) * corners[0].*k + s * corners[1].*k + t * corners[2].*k;
+    return static_cast<float>(ring->vertex.*k + settings_.reach * (inside - ring->vertex.*k));
+  };
+  return surface_point(rays_, mesh.zone_triangle(ring->zone), towards(&Barycentric::u),
+                       towards(&Barycentric::v), mesh.zone_is_front(ring->zone));
+}
+
+void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) const {
+  const ZoneMesh& mesh = rays_.mesh();
+  const ZoneId zone = rings_.begin(v)->zone;
+  const float* own = emitted(v);
+  const float* reflectance = field_.reflectance(mesh.zone_triangle(zone).index(), mesh.zone_is_front(zone));
+  constexpr std::size_t n = kReplicates;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    const auto value_of = [&](std::size_t r) {
+      const float* replicate = means + r * 2 * bands_;
+      return static_cast<double>(replicate[b] + kPi * replicate[bands_ + b]);
+    };
+    const auto [mean, squared_error] = mean_of_replicates(n, field_.parts(), value_of);
+    double direct = 0;
+    for (std::size_t r = 0; r < n; ++r) direct += static_cast<double>(means[r * 2 * bands_ + b]) / n;
+    const double brdf = lambert_brdf_per_sr(reflectance[b]);
+    const std::size_t k = v * bands_ + b;
+    data.irradiance[k] = static_cast<float>(mean);
+    data.radiance[k] = own[b] + static_cast<float>(brdf * mean);
+    data.radiance_stderr[k] = static_cast<float>(brdf * std::sqrt(squared_error));
+    data.direct_radiance[k] = static_cast<float>(brdf * direct);
+  }
+}
+
+}  // namespace reemit

@@ -1,0 +1,58 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "solver/gather/replicate_gather.h"
+#include "viewer_export/vertex/vertex_data.h"
+#include "viewer_export/vertex/vertex_radiance.h"
+#include "viewer_export/vertex/vertex_ring.h"
+
+namespace reemit {
+
+/// Points per replicate of a vertex that are gathered in one go: first .. first+count-1.
+struct PointBlock {
+  int first = 0;
+  int count = 1;
+};
+
+/// Gathers light at vertices. Const members may be called from any thread for different vertices.
+class VertexGatherer {
+ public:
+  /// Independent estimates of each vertex, each from its own part of the zone solution; their spread is the
+  /// standard error.
+  static constexpr std::size_t kReplicates = ZoneSums::kGroups;
+
+  /// `most_points`: per replicate, a power of two that no block exceeds.
+  VertexGatherer(const Scene& scene, const Solution& solution, const RayScene& rays, const VertexRings& rings,
+                 const VertexSettings& settings, int most_points);
+  VertexGatherer(const VertexGatherer&) = delete;
+  VertexGatherer& operator=(const VertexGatherer&) = delete;
+
+  const RadianceField& field() const { return field_; }
+  /// Self-emitted radiance of the surface a vertex belongs to, one number per band [W/(m2 sr)].
+  const float* emitted(std::size_t v) const;
+  /// Replicates of one vertex take this many numbers in `means` below.
+  std::size_t values_per_vertex() const { return kReplicates * 2 * bands_; }
+
+  /// Adds a block of points to the means of vertices first .. last-1. means: per vertex and replicate, direct
+  /// irradiance [W/m2] and mean reflected radiance over the hemisphere [W/(m2 sr)] per band; the first vertex
+  /// at means[0]. Then overwrites the values of these vertices in `data`.
+  void gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
+              VertexData& data) const;
+
+ private:
+  SurfacePoint point_beside(std::size_t v, const std::array<float, 2>& u) const;
+  void store(std::size_t v, const float* means, VertexData& data) const;
+
+  const RayScene& rays_;
+  const VertexRings& rings_;
+  const VertexSettings& settings_;
+  RadianceField field_;
+  DirectLight direct_;
+  HemisphereGather gather_;
+  std::size_t bands_;
+  int gathers_per_point_;
+  int log2_points_;
+};
+
+}  // namespace reemit

@@ -1,0 +1,156 @@
+#include "viewer_export/vertex/vertex_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+namespace reemit {
+namespace {
+
+/// Vertices of one task; fixed, so that packets of rays are the same for any number of threads.
+constexpr std::size_t kChunk = 64;
+constexpr int kFirstPoints = 2;
+constexpr int kMostPoints = 1 << 14;
+/// Chunks stop when their estimate happens to be low, so the true error is a few per cent above it.
+constexpr double kTargetMargin = 0.95;
+/// Doubling the samples halves the variance, unless what is left is the noise of the zone solution. A chunk
+/// whose variance stays above this share of the one before, twice in a row, is given up.
+constexpr double kStalledShare = 0.8;
+constexpr int kMostStalls = 2;
+
+/// Sums over vertices for one band.
+struct BandSums {
+  double errors = 0;  // sum A s^2
+  double values = 0;  // sum A (L - L_e)^2
+};
+
+/// Of vertices first .. last-1, by band.
+std::vector<BandSums> band_sums(const VertexGatherer& gatherer, const VertexRings& rings,
+                                const VertexData& data, std::size_t first, std::size_t last) {
+  const std::size_t bands = data.bands.count();
+  std::vector<BandSums> sums(bands);
+  for (std::size_t v = first; v < last; ++v)
+    for (std::size_t b = 0; b < bands; ++b) {
+      const double s = data.radiance_stderr[v * bands + b];
+      const double l =
+          static_cast<double>(data.radiance[v * bands + b]) - static_cast<double>(gatherer.emitted(v)[b]);
+      sums[b].errors += rings.area(v) * s * s;
+      sums[b].values += rings.area(v) * l * l;
+    }
+  return sums;
+}
+
+double area_of(const VertexRings& rings, std::size_t first, std::size_t last) {
+  double area = 0;
+  for (std::size_t v = first; v < last; ++v) area += rings.area(v);
+  return area;
+}
+
+}  // namespace
+
+double relative_error(const VertexGatherer& gatherer, const VertexRings& rings, const VertexData& data) {
+  double worst = 0;
+  for (const BandSums& band : band_sums(gatherer, rings, data, 0, rings.size()))
+    if (band.values > 0) worst = std::max(worst, std::sqrt(band.errors / band.values));
+  return worst;
+}
+
+VertexRefinement::VertexRefinement(const VertexGatherer& gatherer, const VertexRings& rings,
+                                   const VertexSettings& settings, const VertexProgressCallback& progress,
+                                   const std::atomic<bool>& interrupt, VertexData& data)
+    : gatherer_(gatherer),
+      rings_(rings),
+      settings_(settings),
+      progress_(progress),
+      interrupt_(interrupt),
+      data_(data),
+      chunks_((rings.size() + kChunk - 1) / kChunk) {}
+
+int VertexRefinement::most_points(const VertexSettings& settings) {
+  return settings.error_target > 0 ? kMostPoints : settings.points_per_replicate();
+}
+
+std::size_t VertexRefinement::first(std::size_t chunk) const {
+  return chunk * kChunk;
+}
+std::size_t VertexRefinement::last(std::size_t chunk) const {
+  return std::min((chunk + 1) * kChunk, rings_.size());
+}
+
+void VertexRefinement::run() {
+  if (settings_.error_target > 0)
+    run_to_target();
+  else
+    run_once();
+}
+
+void VertexRefinement::run_once() {
+  const PointBlock block{0, settings_.points_per_replicate()};
+  for_chunks([&](std::size_t c) {
+    std::vector<float> means((last(c) - first(c)) * gatherer_.values_per_vertex(), 0.0F);
+    gatherer_.gather(first(c), last(c), block, means.data(), data_);
+  });
+}
+
+void VertexRefinement::run_to_target() {
+  std::vector<float> means(rings_.size() * gatherer_.values_per_vertex(), 0.0F);
+  std::vector<Chunk> states(chunks_);
+  int points = 0;
+  while (points < kMostPoints && !interrupt_) {
+    const PointBlock block{points, std::max(kFirstPoints, points)};
+    for_chunks([&](std::size_t c) {
+      if (states[c].active)
+        gatherer_.gather(first(c), last(c), block, &means[first(c) * gatherer_.values_per_vertex()], data_);
+    });
+    points += block.count;
+    if (interrupt_ || !choose_active(states)) break;
+  }
+  data_.limited_by_zones =
+      !interrupt_ && relative_error(gatherer_, rings_, data_) > settings_.error_target &&
+      std::any_of(states.begin(), states.end(), [](const Chunk& c) { return c.stalls >= kMostStalls; });
+}
+
+// False if none is active any more.
+bool VertexRefinement::choose_active(std::vector<Chunk>& states) {
+  const double target2 = std::pow(kTargetMargin * settings_.error_target, 2);
+  const std::vector<BandSums> all = band_sums(gatherer_, rings_, data_, 0, rings_.size());
+  const double total_area = area_of(rings_, 0, rings_.size());
+  double worst = 0;
+  for (const BandSums& band : all)
+    if (band.values > 0) worst = std::max(worst, band.errors / (target2 * band.values));
+  bool any = false;
+  for (std::size_t c = 0; c < chunks_; ++c) {
+    Chunk& state = states[c];
+    if (!state.active) continue;
+    const double area_share = area_of(rings_, first(c), last(c)) / total_area;
+    const std::vector<BandSums> own = band_sums(gatherer_, rings_, data_, first(c), last(c));
+    // Squared error over the part of the allowed one that goes with this part of the area.
+    double excess = 0;
+    for (std::size_t b = 0; b < own.size(); ++b)
+      if (all[b].values > 0)
+        excess = std::max(excess, own[b].errors / (target2 * all[b].values * area_share));
+    state.stalls = excess > kStalledShare * state.excess_before ? state.stalls + 1 : 0;
+    state.excess_before = excess;
+    state.active = worst > 1 && excess > 1 && state.stalls < kMostStalls;
+    any = any || state.active;
+  }
+  share_done_ = worst > 1 ? 1 / worst : 1;
+  return any;
+}
+
+template <class Function>
+void VertexRefinement::for_chunks(Function&& function) {
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, chunks_, [&](std::size_t c) {
+    if (interrupt_) return;
+    function(c);
+    const std::lock_guard lock(progress_mutex_);
+    ++done;
+    // One pass is all of the work unless there is a target.
+    const double of_pass = static_cast<double>(done) / static_cast<double>(chunks_);
+    if (progress_) progress_(settings_.error_target > 0 ? share_done_ : of_pass);
+  });
+}
+
+}  // namespace reemit
