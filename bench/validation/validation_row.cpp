@@ -23,9 +23,17 @@ double ValidationRow::relative_error() const {
   return standard_error > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
+bool ValidationRow::is_noisy() const {
+  return freedom > 0 && standard_error > 3 * std::hypot(numerical_bound, expected_abs_err);
+}
+
 double ValidationRow::odds_beyond(double limit) const {
-  if (freedom < 1 || standard_error == 0) return 0;
+  if (!is_noisy()) return 0;
   return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), limit));
+}
+
+double student_density(double t, int freedom) {
+  return boost::math::pdf(boost::math::students_t(freedom), t);
 }
 
 ValidationRow make_row(const ReferenceCase& c, const ReferenceValue& v, const std::string& method,

@@ -28,14 +28,20 @@ struct ValidationRow {
   /// (measured - expected)/uncertainty; 0 when they are the same number, infinite when they differ and the
   /// uncertainty is 0.
   double deviation() const;
+  /// Is its deviation a matter of chance? Else the numerical bound or the error of the reference is a third
+  /// of the standard error or more, and deviations should stay below 1.
+  bool is_noisy() const;
   double relative_error() const;  ///< standard_error/|expected|; 0 where 0 is expected and measured.
-  /// Odds that a right program is off by `limit` or more either way: Student's t.
+  /// Odds that a right program is off by `limit` or more either way: Student's t; 0 without noise.
   double odds_beyond(double limit) const;
 };
 
 /// Mean of the estimates as a row. `relative_bound`: numerical_bound per |expected|.
 ValidationRow make_row(const ReferenceCase& c, const ReferenceValue& v, const std::string& method,
                        const Estimates& estimates, double relative_bound);
+
+/// Density of Student's t with `freedom` degrees of freedom.
+double student_density(double t, int freedom);
 
 /// How much work is put into each row.
 struct Effort {
