@@ -23,6 +23,12 @@ double packets_for(SolveMethod method, double rho, const Effort& effort) {
   return effort.work * std::max(kRays * (1 - rho), method == SolveMethod::kWalk ? kFewestWalks : 0.0);
 }
 
+/// Bound of kSolveBound for what comes after a reflection: the power left unshot is a share of the emitted
+/// power, of which rho/(1-rho) is reflected.
+double indirect_bound(double rho) {
+  return kSolveBound / rho;
+}
+
 /// Row of every value by the quantity's estimates.
 void add_rows(const ReferenceCase& c, const std::string& method, double bound,
               const std::function<Estimates(const std::string&)>& estimates,
@@ -92,7 +98,7 @@ void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vec
     block.push_back(p);
   }
   room.add("block", paint(room, "block"), block);
-  const MeshResult mesh = room.exact_zones(2);
+  const MeshResult mesh = room.exact_zones(4);
   const ReferenceValue& v = c.values.front();
   for (const SolveMethod method : kMethods) {
     const SolvedRoom solved(room.scene(), mesh, method, effort.work * kRays * 0.3, c.name);
@@ -131,7 +137,7 @@ void add_integrating_sphere(const ReferenceCase& c, const Effort& effort, std::v
     const Estimates total = solved.mean(all);
     const Estimates indirect = solved.indirect_mean(all);
     add_rows(
-        c, to_string(method), kSolveBound,
+        c, to_string(method), indirect_bound(rho),
         [&](const std::string& quantity) {
           if (quantity == "multiplier") return scaled(indirect, area / flux);
           if (quantity == "E_indirect") return indirect;
@@ -155,9 +161,11 @@ void add_energy(const ReferenceCase& c, const Effort& effort, std::vector<Valida
     const std::vector<SurfaceId> all = solved.all_surfaces();
     const Estimates total = solved.mean(all);
     const Estimates indirect = solved.indirect_mean(all);
-    add_rows(
-        c, to_string(method), kSolveBound,
-        [&](const std::string& quantity) { return quantity == "E_mean_total" ? total : indirect; }, rows);
+    for (const ReferenceValue& v : c.values) {
+      const bool of_all = v.quantity == "E_mean_total";
+      rows.push_back(make_row(c, v, to_string(method), of_all ? total : indirect,
+                              of_all ? kSolveBound : indirect_bound(rho)));
+    }
   }
 }
 
