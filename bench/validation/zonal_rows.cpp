@@ -5,6 +5,7 @@
 
 #include "bench/validation/code_room.h"
 #include "bench/validation/families.h"
+#include "bench/validation/matrix_rows.h"
 #include "bench/validation/solved_room.h"
 
 namespace reemit::validation {
@@ -171,7 +172,7 @@ void add_icosphere(const ReferenceCase& c, const Effort& effort, std::vector<Val
 }  // namespace
 
 std::vector<ValidationRow> evaluate_zonal(const std::vector<ReferenceCase>& cases, const Effort& effort) {
-  std::vector<ValidationRow> rows;
+  std::vector<ValidationRow> rows = evaluate_matrix(cases);
   add_boxes(cases_of(cases, {"zone_box"}), effort, rows);
   add_cube_triangles(cases_of(cases, {"zone_cube_triangles"}), effort, rows);
   for (const ReferenceCase& c : cases_of(cases, {"zone_icosphere"})) add_icosphere(c, effort, rows);
