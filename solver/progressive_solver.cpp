@@ -119,10 +119,11 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
     const auto start = std::chrono::steady_clock::now();
     run_batches(transport, emission, solution, progress, interrupt);
     if (gathers_small_zones(solution)) {
-      const double share = kSmallZoneShare / (1 - kSmallZoneShare);
-      gather_small_zones(scene, rays,
-                         static_cast<std::uint64_t>(share * static_cast<double>(solution.record.rays)),
-                         solution, interrupt);
+      SmallZoneLimits limits;
+      limits.solver_rays =
+          kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(solution.record.rays);
+      if (settings.time_limit_s > 0) limits.seconds = settings.time_limit_s - seconds_since(start);
+      gather_small_zones(scene, rays, limits, solution, interrupt);
     }
     if (!interrupt) solution.record.discretisation = discretisation_error(scene, rays, solution);
     solution.record.seconds = seconds_since(start);
