@@ -16,6 +16,7 @@ enum class RngPurpose : std::uint32_t {
   kPath,
   kProbe,
   kDither,
+  kFormFactor,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].
