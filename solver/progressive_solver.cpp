@@ -33,10 +33,7 @@ Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSetting
   keep_surfaces(scene, solution);
   solution.mesh_report = std::move(mesh.report);
   solution.mesh = std::move(mesh.mesh);
-  const std::size_t values = solution.mesh.zone_count() * scene.bands.count();
-  for (auto* sum : {&solution.sums.direct, &solution.sums.direct_squared, &solution.sums.indirect,
-                    &solution.sums.indirect_squared, &solution.sums.total_squared})
-    sum->assign(values, 0.0);
+  solution.sums.clear(solution.mesh.zone_count() * scene.bands.count());
   for (const std::string& name : scene.bands.names()) {
     BandAudit& band = solution.audit.bands.emplace_back();
     band.band = name;
@@ -68,8 +65,11 @@ void run_batches(const TransportScene& transport, const Emission& emission, Solu
       record.rays += books.rays;
     }
     record.seconds = seconds_since(start);
-    record.error = zone_error(transport.scene(), solution.mesh, solution.sums, false).rms;
-    const RunState state{solution.sums.batches, record.packets, record.error, record.seconds,
+    record.error = zone_rms_error(transport.scene(), solution.mesh, solution.sums);
+    record.error_bound = record.error;
+    if (rule.may_reach_target(solution.sums.batches, record.error))
+      record.error_bound = zone_error(transport.scene(), solution.mesh, solution.sums).bound;
+    const RunState state{solution.sums.batches, record.packets, record.error_bound, record.seconds,
                          interrupt.load()};
     if (progress) {
       const double fraction = rule.fraction_done(state);
@@ -106,7 +106,8 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
     run_batches(transport, emission, solution, progress, interrupt);
-    const ZoneError error = zone_error(scene, solution.mesh, solution.sums, true);
+    const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
+    solution.record.error_bound = error.bound;
     solution.record.error_95th_percentile = error.percentile_95;
     solution.record.unreached_zones = error.unreached;
   });

@@ -15,7 +15,7 @@ struct SolverSettings {
   double time_limit_s = 0;    ///< Wall time of the solve [s], >= 0.
   std::uint64_t packets = 0;  ///< Packets emitted by luminaires in all batches together.
   std::uint64_t batch_packets = 0;  ///< Packets emitted in one batch; 0 = from the number of zones.
-  int smallest_batch_count = 8;     ///< Batches before an error is believed [2, 65536].
+  int smallest_batch_count = 16;    ///< Batches before an error is believed [2, 65536].
   double stop_share = 1e-5;         ///< Shooting: a batch ends when unshot/emitted falls below this (0, 0.1].
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = all cores; more than there are cores means all.

@@ -22,7 +22,7 @@ void HemisphereGather::add_close(const Hit& y, const PathKey& key, float* weight
   for (int bounce = 0;; ++bounce) {
     const std::size_t t = hit.triangle.index();
     if (bounce == most_bounces_ || !is_close(t, hit.distance)) {
-      const float* radiance = field_->reflected(t, hit.u, hit.v, hit.front);
+      const float* radiance = field_->reflected(t, hit.u, hit.v, hit.front, key.part);
       for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
       return;
     }
@@ -88,7 +88,7 @@ void GatherBatch::flush() {
       gather_->add_close(hit, keys_[i], weight, sums_[i]);
       continue;
     }
-    const float* radiance = field.reflected(t, hits.u[i], hits.v[i], hits.front[i]);
+    const float* radiance = field.reflected(t, hits.u[i], hits.v[i], hits.front[i], keys_[i].part);
     for (std::size_t b = 0; b < bands_; ++b) sums_[i][b] += weight[b] * radiance[b];
   }
   count_ = 0;

@@ -1,5 +1,7 @@
 #include "solver/gather/radiance_field.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "scenes/model/error.h"
@@ -7,8 +9,9 @@
 
 namespace reemit {
 
-RadianceField::RadianceField(const Scene& scene, const Solution& solution, const RayScene& rays)
-    : bands_(scene.bands.count()), zero_(bands_, 0.0F) {
+RadianceField::RadianceField(const Scene& scene, const Solution& solution, const RayScene& rays,
+                             std::size_t parts)
+    : bands_(scene.bands.count()), parts_(parts), zero_(bands_, 0.0F) {
   if (!(scene.bands == solution.bands) || scene.surfaces.size() != solution.surface_names.size())
     throw InputError(scene.source, "the room is not the one that was solved",
                      "Solve it again: its surfaces or bands have changed since.");
@@ -50,22 +53,37 @@ void RadianceField::read_surfaces(const Scene& scene) {
 void RadianceField::read_zones(const Solution& solution) {
   const ZoneSums& sums = solution.sums;
   const std::size_t zones = solution.mesh.zone_count();
-  reflected_.assign(zones * bands_, 0.0F);
-  reflected_direct_.assign(zones * bands_, 0.0F);
+  values_ = zones * bands_;
+  const auto most_parts = static_cast<std::size_t>(std::max<std::int64_t>(1, sums.batches));
+  parts_ = std::min({std::bit_floor(parts_), std::bit_floor(most_parts), ZoneSums::kGroups});
+  reflected_.assign(parts_ * values_, 0.0F);
+  reflected_direct_.assign(values_, 0.0F);
   if (sums.batches <= 0) return;
-  if (sums.direct.size() != reflected_.size() || sums.indirect.size() != reflected_.size())
+  if (sums.direct.size() != values_ || sums.indirect.size() != values_ ||
+      sums.group_total.size() != ZoneSums::kGroups * values_)
     throw InputError(solution.room_path, "the solution does not hold one value per zone and band",
                      "Solve the room again: the file is damaged.");
   const auto batches = static_cast<double>(sums.batches);
+  std::vector<double> part_batches(parts_, 0.0);
+  for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
+    part_batches[g % parts_] += static_cast<double>(sums.group_batches(g));
   for (std::size_t z = 0; z < zones; ++z) {
     const std::size_t surface = solution.mesh.zone_surface(ZoneId(z)).index();
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = z * bands_ + b;
       const float reflectance = surface_reflectance_[surface * bands_ + b];
-      const double irradiance = (sums.direct[k] + sums.indirect[k]) / batches;
-      reflected_[k] = lambert_reflected_radiance(reflectance, static_cast<float>(irradiance));
       reflected_direct_[k] =
           lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / batches));
+      for (std::size_t p = 0; p < parts_; ++p) {
+        double total = 0;
+        if (parts_ == 1)
+          total = sums.direct[k] + sums.indirect[k];
+        else
+          for (std::size_t g = p; g < ZoneSums::kGroups; g += parts_)
+            total += sums.group_total[g * values_ + k];
+        const auto irradiance = static_cast<float>(total / part_batches[p]);
+        reflected_[p * values_ + k] = lambert_reflected_radiance(reflectance, irradiance);
+      }
     }
   }
 }

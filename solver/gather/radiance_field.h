@@ -12,19 +12,27 @@ namespace reemit {
 /// What gather rays read: the zone solution and the materials as flat float arrays, all values per band.
 class RadianceField {
  public:
-  /// Throws InputError when the room is not the one that was solved (bands or surfaces differ).
-  RadianceField(const Scene& scene, const Solution& solution, const RayScene& rays);
+  /// `parts`: independent parts of the zone solution that can be read one by one, a power of two, at most
+  /// ZoneSums::kGroups. A solution with fewer batches has fewer, down to one. Throws InputError when the room
+  /// is not the one that was solved (bands or surfaces differ).
+  RadianceField(const Scene& scene, const Solution& solution, const RayScene& rays, std::size_t parts = 1);
 
   std::size_t band_count() const { return bands_; }
+  /// Parts that there are: one (the whole solution) or independent estimates from disjoint sets of batches.
+  std::size_t parts() const { return parts_; }
 
   /// Reflected radiance rho (E_direct + E_indirect)/pi [W/(m2 sr)] of the zone at a point; self-emission is
   /// not in it. Zero on sides that have no zones.
-  const float* reflected(std::size_t triangle, float u, float v, bool front) const {
-    return zone_value(reflected_, triangle, u, v, front);
+  const float* reflected(std::size_t triangle, float u, float v, bool front, std::size_t part = 0) const {
+    return zone_value(&reflected_[part * values_], triangle, u, v, front);
   }
-  /// The part rho E_direct/pi of reflected() [W/(m2 sr)].
+  /// The same of a zone that is known by its number.
+  const float* reflected(ZoneId zone, std::size_t part) const {
+    return &reflected_[part * values_ + zone.index() * bands_];
+  }
+  /// The share rho E_direct/pi of reflected(), from all parts [W/(m2 sr)].
   const float* reflected_direct(std::size_t triangle, float u, float v, bool front) const {
-    return zone_value(reflected_direct_, triangle, u, v, front);
+    return zone_value(reflected_direct_.data(), triangle, u, v, front);
   }
   /// Self-emitted radiance [W/(m2 sr)] of one side of a triangle; zero where it does not emit.
   const float* emitted(std::size_t triangle, bool front) const {
@@ -47,18 +55,19 @@ class RadianceField {
     bool emits = false;
   };
 
-  const float* zone_value(const std::vector<float>& values, std::size_t triangle, float u, float v,
-                          bool front) const {
+  const float* zone_value(const float* values, std::size_t triangle, float u, float v, bool front) const {
     const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
     if (side.divisions == 0) return zero_.data();
-    return &values[(side.first_zone + zone_in_triangle(side.divisions, u, v)) * bands_];
+    return values + (side.first_zone + zone_in_triangle(side.divisions, u, v)) * bands_;
   }
   void read_surfaces(const Scene& scene);
   void read_zones(const Solution& solution);
 
   std::size_t bands_;
+  std::size_t parts_;
+  std::size_t values_ = 0;           // zones * bands
   std::vector<TriangleSide> sides_;  // front, back of each triangle
-  std::vector<float> reflected_;     // by zone
+  std::vector<float> reflected_;     // by part, then by zone
   std::vector<float> reflected_direct_;
   std::vector<float> surface_emitted_;
   std::vector<float> surface_reflectance_;

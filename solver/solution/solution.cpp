@@ -23,6 +23,13 @@ Eigen::Index to_index(std::size_t band) {
 
 }  // namespace
 
+void ZoneSums::clear(std::size_t values) {
+  batches = 0;
+  for (auto* sum : {&direct, &direct_squared, &indirect, &indirect_squared, &total_squared})
+    sum->assign(values, 0.0);
+  group_total.assign(kGroups * values, 0.0);
+}
+
 std::string to_string(StopReason reason) {
   switch (reason) {
     case StopReason::kErrorTarget:

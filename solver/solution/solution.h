@@ -17,10 +17,25 @@ namespace reemit {
 /// independent estimate, so means and standard errors follow from the sums alone, and more batches can be
 /// added later.
 struct ZoneSums {
+  /// Batch k belongs to group k mod kGroups. What reads the zone solution in as many independent replicates
+  /// as there are groups, each replicate its own group, gets an error bar that holds the noise of the zones
+  /// too.
+  static constexpr std::size_t kGroups = 16;
+
   std::int64_t batches = 0;
   std::vector<double> direct, direct_squared;      ///< First hit from a luminaire.
   std::vector<double> indirect, indirect_squared;  ///< Everything after a reflection.
   std::vector<double> total_squared;               ///< (direct + indirect)^2.
+  /// direct + indirect over the batches of one group: index group * values + zone * bands + band, with
+  /// values = zones * bands.
+  std::vector<double> group_total;
+
+  /// No batches, and all sums 0, for `values` = zones * bands.
+  void clear(std::size_t values);
+  std::int64_t group_batches(std::size_t group) const {
+    const auto groups = static_cast<std::int64_t>(kGroups);
+    return (batches + groups - 1 - static_cast<std::int64_t>(group)) / groups;
+  }
 };
 
 /// A mean and its standard error, both in the unit of the quantity.
@@ -38,7 +53,8 @@ struct SolveRecord {
   std::uint64_t packets = 0;  ///< Emitted by luminaires.
   std::uint64_t rays = 0;     ///< Traced in all.
   double seconds = 0;         ///< Wall time of the solve without meshing.
-  double error = 0;  ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
+  double error = 0;        ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
+  double error_bound = 0;  ///< The true rms error stays below this with odds of 99 %, worst band.
   double error_95th_percentile = 0;   ///< 95th percentile over zones of s/B, worst band; lit zones only.
   std::uint64_t unreached_zones = 0;  ///< Zones that no packet met.
 };

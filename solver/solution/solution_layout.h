@@ -44,6 +44,7 @@ void transfer_record(Archive& archive, Record& record) {
   archive.attribute("rays", record.rays);
   archive.attribute("seconds", record.seconds);
   archive.attribute("error", record.error);
+  archive.attribute("error_bound", record.error_bound);
   archive.attribute("error_95th_percentile", record.error_95th_percentile);
   archive.attribute("unreached_zones", record.unreached_zones);
 }

@@ -200,6 +200,9 @@ ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
     *values = group.read<double>(name, shape);
     require(all_finite(*values), std::string("/sums/") + name + " holds a number that is not finite");
   }
+  const auto groups = group.read<float>("group_total", {ZoneSums::kGroups, shape[0], bands});
+  sums.group_total.assign(groups.begin(), groups.end());
+  require(all_finite(sums.group_total), "/sums/group_total holds a number that is not finite");
   return sums;
 }
 

@@ -53,6 +53,8 @@ void check_consistent(const Solution& solution) {
   for (const auto* values :
        {&sums.direct, &sums.direct_squared, &sums.indirect, &sums.indirect_squared, &sums.total_squared})
     require(values->size() == solution.mesh.zone_count() * bands, "one sum per zone and band expected");
+  require(sums.group_total.size() == ZoneSums::kGroups * solution.mesh.zone_count() * bands,
+          "one sum per group, zone and band expected");
   require(solution.audit.bands.size() == bands, "one audit per band expected");
   for (const BandAudit& audit : solution.audit.bands)
     require(audit.absorbed.size() == surfaces && audit.absorbed_on_backs.size() == surfaces,
@@ -250,6 +252,9 @@ void write_sums(const Hdf5Group& root, const Solution& solution) {
   put_bands(group, "indirect_squared", sums.indirect_squared, bands, "W2/m4", "sum of its squares");
   put_bands(group, "total_squared", sums.total_squared, bands, "W2/m4",
             "sum of the squares of direct + indirect");
+  const std::vector<float> groups(sums.group_total.begin(), sums.group_total.end());
+  group.write<float>("group_total", groups, {ZoneSums::kGroups, sums.direct.size() / bands, bands}, "W/m2",
+                     "sum of direct + indirect over batches k, k + 16, k + 32 ... for k = 0 ... 15");
 }
 
 void write_audit(const Hdf5Group& root, const Solution& solution) {

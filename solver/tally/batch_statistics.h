@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/zone_mesh.h"
@@ -13,8 +14,12 @@ namespace reemit {
 /// Error of a zone solution as a fraction of its radiosity. Radiosity here is the reflected part rho E: a
 /// bright lamp known without error would otherwise hide the noise of the room that it lights.
 struct ZoneError {
-  double rms = 0;            ///< sqrt(sum A s^2 / sum A (rho E)^2), s = standard error of rho E, worst band.
-  double percentile_95 = 0;  ///< 95th percentile of s/(rho E) over the zones with E > 0, worst band.
+  double rms = 0;  ///< sqrt(sum A s^2 / sum A (rho E)^2), s = standard error of rho E, worst band.
+  /// What the true rms error of these very values stays below with odds of 99 %. rms is the mean of what it
+  /// can be; how far one run strays from that mean shows in how much the batch groups differ among each
+  /// other.
+  double bound = 0;
+  double percentile_95 = 0;     ///< 95th percentile of s/(rho E) over the zones with E > 0, worst band.
   std::uint64_t unreached = 0;  ///< Zones that no packet met; they count with s = 0 and cannot block a stop.
 };
 
@@ -25,7 +30,15 @@ void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<
 /// Adds one batch to the audit. Throws std::logic_error if the books of the batch do not balance.
 void add_batch(const BatchBooks& books, EnergyAudit& audit);
 
-/// Error so far; the rms is infinite before two batches.
-ZoneError zone_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums, bool with_percentile);
+/// Replaces the sums of value i = zone * bands + band by what gives the means, and the standard errors that
+/// follow from the spread, of independent estimates of its irradiance [W/m2]: one per group that has batches,
+/// that is min(kGroups, batches) of them. Pre: batches > 0.
+void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> direct,
+                      std::span<const double> indirect);
+
+/// Rms error so far; infinite before two batches.
+double zone_rms_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums);
+/// All that is known about the error; everything but `unreached` is infinite before two batches.
+ZoneError zone_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums);
 
 }  // namespace reemit

@@ -32,6 +32,11 @@ StopRule::StopRule(const SolverSettings& settings, std::size_t zones) : settings
       static_cast<std::uint32_t>(std::clamp<std::uint64_t>(per_batch, 1, std::uint64_t{1} << 31));
 }
 
+bool StopRule::may_reach_target(std::int64_t batches, double rms_error) const {
+  return settings_.error_target > 0 && batches >= settings_.smallest_batch_count &&
+         rms_error <= settings_.error_target;
+}
+
 std::optional<StopReason> StopRule::stop(const RunState& state) const {
   if (state.interrupted) return StopReason::kInterrupted;
   if (settings_.error_target > 0 && state.batches >= settings_.smallest_batch_count &&

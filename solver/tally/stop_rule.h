@@ -11,7 +11,7 @@ namespace reemit {
 struct RunState {
   std::int64_t batches = 0;
   std::uint64_t packets = 0;
-  double error = 0;  ///< Relative rms standard error; infinite when not known.
+  double error = 0;  ///< What the relative rms error stays below; infinite when not known.
   double seconds = 0;
   bool interrupted = false;
 };
@@ -23,6 +23,8 @@ class StopRule {
   StopRule(const SolverSettings& settings, std::size_t zones);
 
   std::uint32_t batch_packets() const { return batch_packets_; }
+  /// True if this rms standard error is so low that its bound (ZoneError::bound) may have reached the target.
+  bool may_reach_target(std::int64_t batches, double rms_error) const;
   /// The reason to stop now, or nothing. An error is believed only after settings.smallest_batch_count
   /// batches.
   std::optional<StopReason> stop(const RunState& state) const;

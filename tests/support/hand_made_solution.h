@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "solver/solution/solution.h"
 #include "tests/support/test_rooms.h"
 
@@ -13,6 +15,7 @@ inline Solution uniform_solution(const RoomBuilder& room, double direct, double 
   solution.mesh = room.mesh().mesh;
   const std::size_t values = solution.mesh.zone_count() * solution.bands.count();
   ZoneSums& sums = solution.sums;
+  sums.clear(values);
   sums.batches = 1;
   sums.direct.assign(values, direct);
   sums.direct_squared.assign(values, direct * direct);
@@ -20,6 +23,7 @@ inline Solution uniform_solution(const RoomBuilder& room, double direct, double 
   sums.indirect_squared.assign(values, indirect * indirect);
   const double total = direct + indirect;
   sums.total_squared.assign(values, total * total);
+  std::fill_n(sums.group_total.begin(), values, total);
   return solution;
 }
 

@@ -24,8 +24,8 @@ std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates) {
   return ((2 + std::max<std::size_t>(replicates, 3)) * bands + 6) * sizeof(float);
 }
 
-Film::Film(const BandSet& bands, int width, int height, std::size_t replicates)
-    : bands_(bands.count()), replicates_(replicates) {
+Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts)
+    : bands_(bands.count()), replicates_(replicates), parts_(parts) {
   image_.bands = bands;
   image_.width = width;
   image_.height = height;
@@ -64,22 +64,18 @@ void Film::add(std::size_t pixel, std::size_t replicate, const PixelBlock& block
   seen_[pixel] += static_cast<float>(block.seen);
 }
 
+ReplicateMean Film::replicate_mean(std::size_t pixel, std::size_t band) const {
+  return mean_of_replicates(replicates_, parts_, [&](std::size_t r) {
+    return static_cast<double>(means_[r][pixel * bands_ + band]);
+  });
+}
+
 double Film::radiance(std::size_t pixel, std::size_t band) const {
-  double sum = 0;
-  for (std::size_t r = 0; r < replicates_; ++r) sum += static_cast<double>(means_[r][pixel * bands_ + band]);
-  return sum / static_cast<double>(replicates_);
+  return replicate_mean(pixel, band).mean;
 }
 
 double Film::squared_error(std::size_t pixel, std::size_t band) const {
-  if (replicates_ < 2) return std::numeric_limits<double>::infinity();
-  const double mean = radiance(pixel, band);
-  double sum = 0;
-  for (std::size_t r = 0; r < replicates_; ++r) {
-    const double deviation = static_cast<double>(means_[r][pixel * bands_ + band]) - mean;
-    sum += deviation * deviation;
-  }
-  const auto n = static_cast<double>(replicates_);
-  return sum / (n * (n - 1));
+  return replicate_mean(pixel, band).squared_error;
 }
 
 StillImage Film::finish() {
@@ -89,9 +85,9 @@ StillImage Film::finish() {
     for (std::size_t b = 0; b < bands_; ++b) {
       // In place: replicates 0, 1 and 2 become the layers radiance, indirect and standard error.
       const std::size_t k = pixel * bands_ + b;
-      const double mean = radiance(pixel, b);
-      const double error = have_errors ? std::sqrt(squared_error(pixel, b)) : 0.0;
-      means_[0][k] = static_cast<float>(mean);
+      const ReplicateMean mean = replicate_mean(pixel, b);
+      const double error = have_errors ? std::sqrt(mean.squared_error) : 0.0;
+      means_[0][k] = static_cast<float>(mean.mean);
       means_[1][k] = std::max(0.0F, means_[0][k] - image_.direct[k]);
       means_[2][k] = static_cast<float>(error);
     }

@@ -6,6 +6,7 @@
 
 #include "scenes/model/bands.h"
 #include "scenes/model/vec.h"
+#include "solver/tally/replicates.h"
 #include "viewer_export/still/still_image.h"
 
 namespace reemit {
@@ -38,11 +39,12 @@ struct PixelBlock {
 /// the same number of samples, pixels may differ. Different pixels may be written from different threads.
 class Film {
  public:
-  static constexpr std::size_t kReplicates = 4;
+  static constexpr std::size_t kReplicates = 8;
 
-  /// `replicates`: 1 to kReplicates; with one there are no errors. Throws ResourceError when the layers do
-  /// not fit into memory.
-  Film(const BandSet& bands, int width, int height, std::size_t replicates);
+  /// `replicates`: 1 to kReplicates; with one there are no errors. `parts`: of the zone solution that the
+  /// replicates read in turn, as mean_of_replicates takes it. Throws ResourceError when the layers do not fit
+  /// into memory.
+  Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts = 1);
 
   /// Memory that a pixel takes while rendering [bytes].
   static std::size_t bytes_per_pixel(std::size_t bands, std::size_t replicates);
@@ -60,8 +62,11 @@ class Film {
   StillImage finish();
 
  private:
+  ReplicateMean replicate_mean(std::size_t pixel, std::size_t band) const;
+
   std::size_t bands_;
   std::size_t replicates_;
+  std::size_t parts_;
   StillImage image_;  // depth, normal: sums over samples that saw something
   std::array<std::vector<float>, kReplicates> means_;
   std::vector<float> seen_;

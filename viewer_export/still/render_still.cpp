@@ -212,10 +212,10 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
   const int width = settings.width != 0 ? settings.width : camera.width;
   const int height = settings.height != 0 ? settings.height : camera.height;
   const PinholeCamera pinhole(camera, width, height, rays);
-  const TileRenderer renderer(scene, solution, rays, pinhole, settings);
   const int most = settings.error_target > 0 ? settings.most_spp : settings.spp;
-  Film film(scene.bands, width, height,
-            std::min<std::size_t>(Film::kReplicates, static_cast<std::size_t>(most)));
+  const std::size_t replicates = std::min(Film::kReplicates, std::bit_floor(static_cast<std::size_t>(most)));
+  const TileRenderer renderer(scene, solution, rays, pinhole, settings, replicates);
+  Film film(scene.bands, width, height, replicates, renderer.parts());
   Rendering rendering(renderer, settings, film, progress, interrupt);
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);

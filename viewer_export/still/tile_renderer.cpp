@@ -14,6 +14,7 @@ struct TileRenderer::PixelSums {
   PointSampler sampler;
   std::uint64_t index;  // of the pixel in the picture
   std::uint32_t batch;  // of the random numbers
+  std::uint32_t part;   // of the zone solution
   float share;          // 1 / samples
   float* direct;
   float* indirect;
@@ -23,11 +24,11 @@ struct TileRenderer::PixelSums {
 };
 
 TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
-                           const PinholeCamera& camera, const StillSettings& settings)
+                           const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates)
     : rays_(&rays),
       camera_(&camera),
       settings_(&settings),
-      field_(scene, solution, rays),
+      field_(scene, solution, rays, settings.integrator == Integrator::kPath ? 1 : replicates),
       direct_(scene, rays),
       gather_(rays, field_, direct_, GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
       path_(rays, field_, direct_, settings.seed) {}
@@ -50,6 +51,7 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
         PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
                        pixel,
                        static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
+                       static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(field_.parts()),
                        1.0F / static_cast<float>(block.samples),
                        next,
                        next + bands,
@@ -97,7 +99,7 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
     add_light(point, sample, sums, batch);
     return;
   }
-  const float* all = field_.reflected(t, hit.u, hit.v, hit.front);
+  const float* all = field_.reflected(t, hit.u, hit.v, hit.front, sums.part);
   const float* direct = field_.reflected_direct(t, hit.u, hit.v, hit.front);
   for (std::size_t b = 0; b < bands; ++b) {
     sums.direct[b] += sums.share * direct[b];
@@ -123,7 +125,7 @@ void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums,
   for (int i = 0; i < gathers; ++i) {
     const std::array<float, 2> u = sums.sampler.hemisphere(sample, i, gathers);
     const auto ray = static_cast<std::uint32_t>((sample - sums.found.earlier) * gathers + i);
-    const PathKey key{sums.index, sums.batch, ray};
+    const PathKey key{sums.index, sums.batch, ray, sums.part};
     for (std::size_t b = 0; b < bands; ++b)
       weight[b] = reflectance[b] * sums.share / static_cast<float>(gathers);
     if (path)

@@ -25,11 +25,15 @@ struct SampleBlock {
 /// Renders tiles. Const members may be called from any thread for different tiles.
 class TileRenderer {
  public:
+  /// `replicates`: of each pixel, a power of two; each reads its own part of the zone solution.
   TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
-               const PinholeCamera& camera, const StillSettings& settings);
+               const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates);
 
   TileRenderer(const TileRenderer&) = delete;
   TileRenderer& operator=(const TileRenderer&) = delete;
+
+  /// Parts of the zone solution that the replicates read in turn.
+  std::size_t parts() const { return field_.parts(); }
 
   /// Adds samples first .. first+samples-1 of every replicate to each pixel of the tile.
   void render(const Tile& tile, const SampleBlock& block, Film& film) const;

@@ -17,6 +17,7 @@
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/reflect/lambert.h"
+#include "solver/tally/replicates.h"
 #include "viewer_export/vertex/vertex_ring.h"
 
 namespace reemit {
@@ -25,6 +26,9 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 /// Vertices of one task; fixed, so that packets of rays are the same for any number of threads.
 constexpr std::size_t kChunk = 64;
+/// Independent estimates of each vertex, each from its own part of the zone solution; their spread is the
+/// standard error.
+constexpr int kReplicates = static_cast<int>(ZoneSums::kGroups);
 
 void check(const VertexSettings& s) {
   const auto require = [](bool good, const char* name, const char* range) {
@@ -33,7 +37,6 @@ void check(const VertexSettings& s) {
   };
   require(s.gather_rays >= 1 && s.gather_rays <= 1 << 20, "number of gather rays", "1 to 1048576.");
   require(s.light_samples >= 1 && s.light_samples <= 1 << 16, "number of light samples", "1 to 65536.");
-  require(s.replicates >= 2 && s.replicates <= 64, "number of replicates", "2 to 64.");
   require(s.reach > 0 && s.reach <= 1, "reach", "a share of the zone above 0 and up to 1.");
   require(s.close_hit >= 0 && std::isfinite(s.close_hit), "close-hit distance", "0 or more zone sizes.");
   require(s.threads >= 0, "number of threads", "0 (all cores) or more.");
@@ -47,15 +50,14 @@ class VertexGatherer {
       : rays_(rays),
         rings_(rings),
         settings_(settings),
-        field_(scene, solution, rays),
+        field_(scene, solution, rays, std::size_t{kReplicates}),
         direct_(scene, rays),
         gather_(rays, field_, direct_,
                 GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
         bands_(scene.bands.count()) {
-    const auto points =
-        static_cast<unsigned>((settings.light_samples + settings.replicates - 1) / settings.replicates);
+    const auto points = static_cast<unsigned>((settings.light_samples + kReplicates - 1) / kReplicates);
     points_ = static_cast<int>(std::bit_ceil(points));
-    const int all_points = points_ * settings.replicates;
+    const int all_points = points_ * kReplicates;
     gathers_ = (settings.gather_rays + all_points - 1) / all_points;
   }
   VertexGatherer(const VertexGatherer&) = delete;
@@ -65,7 +67,7 @@ class VertexGatherer {
 
   /// Overwrites the values of vertices [first,last).
   void gather(std::size_t first, std::size_t last, VertexData& data) const {
-    const auto replicates = static_cast<std::size_t>(settings_.replicates);
+    const auto replicates = std::size_t{kReplicates};
     // Per vertex and replicate: direct irradiance, then mean reflected radiance over the hemisphere.
     std::vector<float> sums((last - first) * replicates * 2 * bands_, 0.0F);
     GatherBatch batch(gather_);
@@ -81,6 +83,7 @@ class VertexGatherer {
   void add_replicate(std::size_t v, int replicate, float* direct, float* indirect, GatherBatch& batch) const {
     const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, replicate,
                                std::countr_zero(static_cast<unsigned>(points_)));
+    const auto part = static_cast<std::uint32_t>(replicate) % static_cast<std::uint32_t>(field_.parts());
     const std::vector<float> light_weight(bands_, 1.0F / static_cast<float>(points_));
     const std::vector<float> ray_weight(bands_, 1.0F / static_cast<float>(points_ * gathers_));
     for (int i = 0; i < points_; ++i) {
@@ -89,7 +92,7 @@ class VertexGatherer {
       for (int j = 0; j < gathers_; ++j) {
         const std::array<float, 2> u = sampler.hemisphere(i, j, gathers_);
         const PathKey key{v, static_cast<std::uint32_t>(replicate),
-                          static_cast<std::uint32_t>(i * gathers_ + j)};
+                          static_cast<std::uint32_t>(i * gathers_ + j), part};
         batch.add(x, u[0], u[1], key, ray_weight.data(), indirect);
       }
     }
@@ -119,24 +122,20 @@ class VertexGatherer {
     const ZoneId zone = rings_.begin(v)->zone;
     const float* emitted = field_.emitted(mesh.zone_triangle(zone).index(), mesh.zone_is_front(zone));
     const float* reflectance = field_.reflectance(mesh.zone_triangle(zone).index(), mesh.zone_is_front(zone));
-    const int n = settings_.replicates;
+    constexpr std::size_t n = kReplicates;
     for (std::size_t b = 0; b < bands_; ++b) {
+      const auto value_of = [&](std::size_t r) {
+        const float* replicate = sums + r * 2 * bands_;
+        return static_cast<double>(replicate[b] + kPi * replicate[bands_ + b]);
+      };
+      const auto [mean, squared_error] = mean_of_replicates(n, field_.parts(), value_of);
       double direct = 0;
-      double mean = 0;
-      double squares = 0;
-      for (int r = 0; r < n; ++r) {
-        const float* replicate = sums + static_cast<std::size_t>(r) * 2 * bands_;
-        const double value = replicate[b] + kPi * replicate[bands_ + b];
-        const double deviation = value - mean;
-        mean += deviation / (r + 1);
-        squares += deviation * (value - mean);
-        direct += replicate[b] / n;
-      }
+      for (std::size_t r = 0; r < n; ++r) direct += static_cast<double>(sums[r * 2 * bands_ + b]) / n;
       const double brdf = lambert_brdf_per_sr(reflectance[b]);
       const std::size_t k = v * bands_ + b;
       data.irradiance[k] = static_cast<float>(mean);
       data.radiance[k] = emitted[b] + static_cast<float>(brdf * mean);
-      data.radiance_stderr[k] = static_cast<float>(brdf * std::sqrt(squares / (n * (n - 1.0))));
+      data.radiance_stderr[k] = static_cast<float>(brdf * std::sqrt(squared_error));
       data.direct_radiance[k] = static_cast<float>(brdf * direct);
     }
   }
@@ -152,7 +151,9 @@ class VertexGatherer {
   int gathers_ = 1;  // per point
 };
 
-/// Vertex values as area-weighted means of the zones around.
+/// Vertex values as area-weighted means of the zones around. With two parts of the zone solution or more
+/// their spread gives the error, which knows how the zones' errors go together; else zones count as
+/// independent.
 void average_zones(const Solution& solution, const VertexRings& rings, const RadianceField& field,
                    VertexData& data) {
   const ZoneMesh& mesh = solution.mesh;
@@ -174,10 +175,20 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       const std::size_t t = mesh.zone_triangle(zone).index();
       const bool front = mesh.zone_is_front(zone);
       const double brdf = lambert_brdf_per_sr(field.reflectance(t, front)[b]);
+      double error = brdf * std::sqrt(variance);
+      if (field.parts() > 1) {
+        const auto radiance_of = [&](std::size_t part) {
+          double radiance = 0;
+          for (const RingZone* r = rings.begin(v); r != rings.end(v); ++r)
+            radiance += r->area / area * static_cast<double>(field.reflected(r->zone, part)[b]);
+          return radiance;
+        };
+        error = std::sqrt(mean_of_replicates(field.parts(), field.parts(), radiance_of).squared_error);
+      }
       const std::size_t k = v * bands + b;
       data.irradiance[k] = static_cast<float>(all);
       data.radiance[k] = field.emitted(t, front)[b] + static_cast<float>(brdf * all);
-      data.radiance_stderr[k] = static_cast<float>(brdf * std::sqrt(variance));
+      data.radiance_stderr[k] = static_cast<float>(error);
       data.direct_radiance[k] = static_cast<float>(brdf * direct);
     }
 }
@@ -229,7 +240,6 @@ void describe(const Scene& scene, const Solution& solution, const VertexSettings
   if (settings.average_zones) return;
   info.settings.emplace_back("gather rays", std::to_string(settings.gather_rays));
   info.settings.emplace_back("light samples", std::to_string(settings.light_samples));
-  info.settings.emplace_back("replicates", std::to_string(settings.replicates));
   info.settings.emplace_back("gather seed", std::to_string(settings.seed));
 }
 

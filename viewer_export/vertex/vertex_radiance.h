@@ -19,9 +19,6 @@ struct VertexSettings {
   bool all_zones = false;
   int gather_rays = 512;    ///< Per vertex, rounded up [1, 1048576].
   int light_samples = 128;  ///< Shadow rays per vertex, rounded up [1, 65536].
-  /// Independent estimates of each vertex [2, 64]; their spread is the standard error, so few make it unsure
-  /// itself.
-  int replicates = 16;
   /// Reach of the sample points into the zones around a vertex, as a share of each zone (0, 1]. A vertex lies
   /// on the edges of other faces, so light is gathered inside the zones beside it. The mean place of the
   /// samples is the vertex itself in the middle of a surface, and reach/3 of a zone inside at its rim.

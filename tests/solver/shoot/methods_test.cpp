@@ -137,6 +137,7 @@ TEST(Methods, SameSeedSameBitsOnAnyNumberOfThreads) {
     EXPECT_EQ(one.sums.direct, many.sums.direct);
     EXPECT_EQ(one.sums.indirect, many.sums.indirect);
     EXPECT_EQ(one.sums.total_squared, many.sums.total_squared);
+    EXPECT_EQ(one.sums.group_total, many.sums.group_total);
     EXPECT_EQ(one.record.error, many.record.error);
     EXPECT_EQ(one.record.rays, many.record.rays);
     settings.seed = 7;

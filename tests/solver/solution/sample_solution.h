@@ -30,7 +30,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.settings.stop_share = 2e-5;
   s.settings.seed = 18'000'000'000'000'000'001U;
   s.settings.threads = 3;
-  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.21, 6};
+  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6};
   s.bands = bands;
 
   Scene scene;
@@ -85,6 +85,9 @@ inline Solution sample_solution(const BandSet& bands) {
   fill(s.sums.indirect, 1);
   fill(s.sums.indirect_squared, 40);
   fill(s.sums.total_squared, 100);
+  // Stored as float: numbers that it holds exactly.
+  for (std::size_t i = 0; i < ZoneSums::kGroups * s.sums.direct.size(); ++i)
+    s.sums.group_total.push_back(0.125 * static_cast<double>(i));
 
   s.audit.batches = 4;
   for (std::size_t b = 0; b < bands.count(); ++b) {

@@ -95,6 +95,7 @@ void expect_same_books(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.sums.indirect, b.sums.indirect);
   EXPECT_EQ(a.sums.indirect_squared, b.sums.indirect_squared);
   EXPECT_EQ(a.sums.total_squared, b.sums.total_squared);
+  EXPECT_EQ(a.sums.group_total, b.sums.group_total);
   EXPECT_EQ(a.audit.batches, b.audit.batches);
   ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
   for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {

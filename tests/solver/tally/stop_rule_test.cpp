@@ -13,9 +13,9 @@ TEST(StopRule, ErrorIsBelievedOnlyAfterEnoughBatches) {
   SolverSettings s;
   s.error_target = 0.01;
   const StopRule rule(s, 100);
-  EXPECT_FALSE(rule.stop({7, 1000, 0.001, 1, false}));
-  EXPECT_EQ(rule.stop({8, 1000, 0.01, 1, false}), StopReason::kErrorTarget);
-  EXPECT_FALSE(rule.stop({8, 1000, 0.0101, 1, false}));
+  EXPECT_FALSE(rule.stop({15, 1000, 0.001, 1, false}));
+  EXPECT_EQ(rule.stop({16, 1000, 0.01, 1, false}), StopReason::kErrorTarget);
+  EXPECT_FALSE(rule.stop({16, 1000, 0.0101, 1, false}));
   EXPECT_FALSE(rule.stop({100, 1000, kUnknown, 1, false}));
 }
 

@@ -180,9 +180,6 @@ TEST(GatherVertices, refuses_nonsense) {
   room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, wall, wall}, 1);
   const Solution solution = test::uniform_solution(room, 1, 0.7);
   VertexSettings settings;
-  settings.replicates = 1;
-  EXPECT_THROW(gather(room, solution, settings), InputError);
-  settings = {};
   settings.reach = 0;
   EXPECT_THROW(gather(room, solution, settings), InputError);
   settings = {};

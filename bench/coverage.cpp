@@ -1,0 +1,172 @@
+// How often the stated 95 % intervals of zones, vertices and pixels hold the truth, over many seeds, in a
+// room whose answer is known in closed form.
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <fmt/format.h>
+
+#include "solver/progressive_solver.h"
+#include "tests/support/test_rooms.h"
+#include "viewer_export/still/film.h"
+#include "viewer_export/still/render_still.h"
+#include "viewer_export/vertex/vertex_radiance.h"
+
+namespace {
+
+using namespace reemit;
+
+/// Radiosity of every surface of the room below [W/m2].
+constexpr double kRadiosity = 2.5;
+
+/// Furnace with a different reflectance on every surface, a block and a screen inside: a surface of
+/// reflectance rho emits (1 - rho) B0, so radiosity and irradiance are B0 everywhere, whatever the shape and
+/// the zones (Kirchhoff). Emission, direct and indirect light differ from place to place.
+test::RoomBuilder furnace() {
+  test::RoomBuilder room;
+  const auto material = [&room](double rho, bool two_sided = false) {
+    const MaterialId id = room.material(fmt::format("rho{}", rho), rho, (1 - rho) * kRadiosity, two_sided);
+    room.scene().materials[id.index()].emits_both_sides = two_sided;
+    return id;
+  };
+  room.box({0, 0, 0}, {2, 1.5, 1},
+           {material(0.2), material(0.9), material(0.5), material(0.7), material(0.3), material(0.8)}, 8);
+  room.quad(material(0.6, true), {Vec3{0.8, 0.4, 0.2}, {1.2, 0.4, 0.2}, {1.2, 1.0, 0.5}, {0.8, 1.0, 0.5}}, 5);
+  return room;
+}
+
+struct Coverage {
+  std::string what;
+  int degrees_of_freedom = 0;
+  std::int64_t trials = 0;
+  std::int64_t inside = 0;
+  std::int64_t inside_normal = 0;  // within 1.96 standard errors
+  double deviation2 = 0;
+  double error2 = 0;
+  double bias = 0;
+
+  void add(double value, double error, double truth) {
+    using boost::math::students_t;
+    const double t = boost::math::quantile(students_t(degrees_of_freedom), 0.975);
+    const double d = value - truth;
+    ++trials;
+    if (std::abs(d) <= t * error) ++inside;
+    if (std::abs(d) <= 1.96 * error) ++inside_normal;
+    deviation2 += d * d;
+    error2 += error * error;
+    bias += d;
+  }
+
+  void print() const {
+    const auto n = static_cast<double>(trials);
+    const double rms = std::sqrt(deviation2 / n);
+    fmt::print("| {} | {} | {} | {:.2f} % | {:.2f} % | {:.3f} | {:+.2g} % |\n", what, degrees_of_freedom,
+               trials, 100 * static_cast<double>(inside) / n, 100 * static_cast<double>(inside_normal) / n,
+               std::sqrt(error2 / n) / rms, 100 * bias / n / kRadiosity);
+    std::fflush(stdout);
+  }
+};
+
+struct Options {
+  int seeds = 50;
+  double error = 0.03;
+};
+
+void measure(const Options& options) {
+  const test::RoomBuilder room = furnace();
+  const ZoneMesh mesh = room.mesh().mesh;
+  const RayScene rays(mesh);
+  const std::atomic<bool> never{false};
+  Camera camera;
+  camera.name = "inside";
+  camera.eye = {1.9, 0.1, 0.9};
+  camera.look_at = {0.6, 0.9, 0.2};
+  camera.up = {0, 0, 1};
+  camera.width = 32;
+  camera.height = 24;
+
+  Coverage zones{"zones, shooting", 15};
+  Coverage walk{"zones, walk", 15};
+  constexpr int kVertexFreedom = static_cast<int>(ZoneSums::kGroups) - 1;
+  Coverage vertices{"vertices, gathered", kVertexFreedom};
+  Coverage averaged{"vertices, zone averages", kVertexFreedom};
+  constexpr int kPixelFreedom = static_cast<int>(Film::kReplicates) - 1;
+  Coverage coarse{"pixels, 16 samples", kPixelFreedom};
+  Coverage fine{"pixels, 64 samples", kPixelFreedom};
+  Coverage target{"pixels, --error 2%", kPixelFreedom};
+  Coverage path{"pixels, path tracing, 64 samples", kPixelFreedom};
+  for (int seed = 1; seed <= options.seeds; ++seed) {
+    SolverSettings settings;
+    settings.error_target = options.error;
+    settings.seed = static_cast<std::uint64_t>(seed);
+    Solution solution;
+    for (const SolveMethod method : {SolveMethod::kWalk, SolveMethod::kShooting}) {
+      settings.method = method;
+      solution = solve(room.scene(), room.mesh(), settings, {}, never);
+      Coverage& all = method == SolveMethod::kWalk ? walk : zones;
+      all.degrees_of_freedom = static_cast<int>(solution.sums.batches) - 1;
+      for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
+        const Estimate e = solution.irradiance(ZoneId(z), 0);
+        all.add(e.mean, e.stderr_of_mean, kRadiosity);
+      }
+    }
+    VertexSettings gather;
+    gather.seed = settings.seed;
+    for (const bool average : {false, true}) {
+      gather.average_zones = average;
+      const VertexData data = gather_vertices(room.scene(), solution, rays, gather, {}, never);
+      for (std::size_t v = 0; v < data.vertex_count(); ++v)
+        (average ? averaged : vertices)
+            .add(std::numbers::pi * static_cast<double>(data.radiance[v]),
+                 std::numbers::pi * static_cast<double>(data.radiance_stderr[v]), kRadiosity);
+    }
+    StillSettings still;
+    still.seed = settings.seed;
+    const auto render = [&](Coverage& coverage) {
+      const StillImage image = render_still(room.scene(), solution, rays, camera, still, {}, never);
+      for (std::size_t p = 0; p < image.pixel_count(); ++p)
+        coverage.add(std::numbers::pi * static_cast<double>(image.radiance[p]),
+                     std::numbers::pi * static_cast<double>(image.radiance_stderr[p]), kRadiosity);
+    };
+    render(coarse);
+    still.spp = 64;
+    render(fine);
+    still.integrator = Integrator::kPath;
+    render(path);
+    still.integrator = Integrator::kGather;
+    still.error_target = 0.02;
+    render(target);
+  }
+  fmt::print("Furnace of reflectances 0.2 to 0.9, {} zones, solved to {:g} %, {} seeds.\n\n",
+             mesh.zone_count(), 100 * options.error, options.seeds);
+  fmt::print(
+      "| values | degrees of freedom | trials | within the 95 % interval | within 1.96 standard errors |"
+      " stated / true rms | mean deviation |\n|---|---|---|---|---|---|---|\n");
+  for (const Coverage* c : {&zones, &walk, &vertices, &averaged, &coarse, &fine, &target, &path}) c->print();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Coverage of the 95 % intervals of zones, vertices and pixels in a furnace of known radiosity");
+  Options options;
+  app.add_option("--seeds", options.seeds, "Independent runs")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--error", options.error, "Target of the solve, as a fraction")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    measure(options);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  }
+  return 0;
+}
