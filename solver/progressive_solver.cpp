@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
+#include "solver/matrix/matrix_solve.h"
 #include "solver/shoot/closed_room_check.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/tally/batch_statistics.h"
@@ -85,6 +86,20 @@ void run_batches(const TransportScene& transport, const Emission& emission, Solu
   }
 }
 
+void run_matrix(const TransportScene& transport, const Emission& emission, Solution& solution,
+                const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto report = [&](double fraction) {
+    if (!progress) return;
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    const double seconds = seconds_since(start);
+    const double left = fraction > 0 ? seconds * (1 - fraction) / fraction : kUnknown;
+    progress({fraction, kUnknown, 0, seconds, left, 0, 0, 0});
+  };
+  solve_by_matrix(transport, emission, report, interrupt, solution);
+  solution.record.seconds = seconds_since(start);
+}
+
 }  // namespace
 
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
@@ -105,8 +120,12 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
-    run_batches(transport, emission, solution, progress, interrupt);
+    if (settings.method == SolveMethod::kMatrix)
+      run_matrix(transport, emission, solution, progress, interrupt);
+    else
+      run_batches(transport, emission, solution, progress, interrupt);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
+    solution.record.error = error.rms;
     solution.record.error_bound = error.bound;
     solution.record.error_95th_percentile = error.percentile_95;
     solution.record.unreached_zones = error.unreached;

@@ -52,8 +52,9 @@ void enforce_closure(const std::vector<double>& areas, const std::vector<bool>& 
       for (std::size_t k = 0; k < exchange.row_length(i); ++k) {
         const std::size_t j = i + 1 + k;
         if (!(weight[k] > 0) || !closed[j]) continue;
-        const double change = static_cast<double>(weight[k]) * (multiplier(static_cast<Eigen::Index>(i)) +
-                                                                multiplier(static_cast<Eigen::Index>(j)));
+        const double change =
+            static_cast<double>(weight[k]) * areas[i] * areas[j] *
+            (multiplier(static_cast<Eigen::Index>(i)) + multiplier(static_cast<Eigen::Index>(j)));
         row[k] = std::max(0.0, row[k] + change);
       }
     });

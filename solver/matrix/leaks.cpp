@@ -14,8 +14,6 @@
 namespace reemit {
 namespace {
 
-constexpr std::uint32_t kRaysPerLight = 16384;
-
 std::uint32_t nearest_axis(const Vec3f& direction) {
   int axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);

@@ -36,7 +36,8 @@ class ZoneLeaks {
 
 ZoneLeaks trace_leaks(const RayScene& rays, std::uint64_t seed);
 
-/// The same for rays of a luminaire without area, distributed as its power.
+inline constexpr std::uint32_t kRaysPerLight = 16384;
+/// The same for kRaysPerLight rays of a luminaire without area, distributed as its power.
 std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const RayScene& rays,
                                            std::uint64_t seed);
 

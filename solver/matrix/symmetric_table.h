@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -8,6 +9,8 @@
 #include <tbb/parallel_for.h>
 
 namespace reemit {
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// One number per unordered pair of different indices; the diagonal is 0. Rows hold the partners above the
 /// diagonal, so that row i is contiguous in memory: (i,i+1) .. (i,n-1).
@@ -30,8 +33,12 @@ class SymmetricTable {
 
   /// Matrix times vector. The sum of each element has a fixed order: the same bits on any number of threads.
   Eigen::VectorXd times(const Eigen::VectorXd& x) const;
+  /// The same for many vectors at once, one per column.
+  RowMatrix times_columns(const RowMatrix& x) const;
 
  private:
+  static constexpr std::size_t kParts = 16;
+
   std::size_t first_of(std::size_t i) const { return i * (2 * size_ - i - 1) / 2; }
 
   std::size_t size_;
@@ -40,7 +47,6 @@ class SymmetricTable {
 
 template <class T>
 Eigen::VectorXd SymmetricTable<T>::times(const Eigen::VectorXd& x) const {
-  constexpr std::size_t kParts = 16;
   const auto n = static_cast<Eigen::Index>(size_);
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(kParts));
   // Part p takes rows p, p + kParts, ...: all parts have about the same work.
@@ -55,6 +61,29 @@ Eigen::VectorXd SymmetricTable<T>::times(const Eigen::VectorXd& x) const {
     }
   });
   return sums.rowwise().sum();
+}
+
+template <class T>
+RowMatrix SymmetricTable<T>::times_columns(const RowMatrix& x) const {
+  const auto n = static_cast<Eigen::Index>(size_);
+  std::array<RowMatrix, kParts> sums;
+  tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t part) {
+    RowMatrix& sum = sums[part];
+    sum = RowMatrix::Zero(n, x.cols());
+    for (std::size_t i = part; i + 1 < size_; i += kParts) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const T* values = row(i);
+      for (std::size_t k = 0; k < row_length(i); ++k) {
+        if (values[k] == T{}) continue;
+        const auto value = static_cast<double>(values[k]);
+        const auto other = static_cast<Eigen::Index>(i + 1 + k);
+        sum.row(at) += value * x.row(other);
+        sum.row(other) += value * x.row(at);
+      }
+    }
+  });
+  for (std::size_t part = 1; part < kParts; ++part) sums[0] += sums[part];
+  return std::move(sums[0]);
 }
 
 }  // namespace reemit

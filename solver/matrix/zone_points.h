@@ -9,7 +9,7 @@
 namespace reemit {
 
 /// What the random numbers of the matrix method are for.
-enum class MatrixNumbers : std::uint32_t { kFirstRays, kShare, kLeaks, kLightOnZone, kLightLeaks };
+enum class MatrixNumbers : std::uint32_t { kFirstRays, kShare, kLeaks, kLightOnZone, kLightLeaks, kNoise };
 
 /// 64 random bits for scramble `part` of item `index` (a zone, or a pair as i * zones + j).
 inline std::uint64_t matrix_seed(std::uint64_t seed, MatrixNumbers what, std::uint64_t index,
