@@ -179,7 +179,9 @@ TEST(FormFactors, TwoSidesOfASheetAreZonesOfTheirOwn) {
     for (std::size_t j = 0; j < f.zones(); ++j) {
       const double x = meshed.mesh.zone_centroid(ZoneId(i)).x();
       const double y = meshed.mesh.zone_centroid(ZoneId(j)).x();
-      if (std::max(x, y) > 0.55 && std::min(x, y) < 0.45) EXPECT_EQ(f.exchange_area(i, j), 0);
+      if (std::max(x, y) > 0.55 && std::min(x, y) < 0.45) {
+        EXPECT_EQ(f.exchange_area(i, j), 0);
+      }
     }
   EXPECT_LT(f.report().after.rms_deviation, 1e-11);
   EXPECT_EQ(f.report().closed_zones, f.zones());

@@ -169,7 +169,9 @@ TEST(MatrixSolve, FurnaceWithABlockHasItsClosedForm) {
   // Enforced closure makes the furnace exact for all zones inside, whatever the sampled shares are.
   for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
     const double e = s.irradiance(ZoneId(z), 0).mean;
-    if (e > 0) EXPECT_NEAR(e, 10, 1e-8);
+    if (e > 0) {
+      EXPECT_NEAR(e, 10, 1e-8);
+    }
   }
 }
 
