@@ -2,13 +2,13 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <stdexcept>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "mesh/zone_mesh.h"
 #include "solver/matrix/form_factor_report.h"
+#include "solver/matrix/interrupted.h"
 #include "solver/matrix/leaks.h"
 #include "solver/matrix/symmetric_table.h"
 #include "solver/trace/ray_scene.h"
@@ -44,11 +44,6 @@ class FormFactors {
   SymmetricTable<float> variance_;
   ZoneLeaks leaks_;
   FormFactorReport report_;
-};
-
-/// An interrupt ended work that has no partial result.
-class Interrupted : public std::runtime_error {
-  using std::runtime_error::runtime_error;
 };
 
 struct FormFactorSettings {
