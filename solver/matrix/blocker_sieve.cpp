@@ -41,19 +41,44 @@ BlockerSieve::BlockerSieve(const ZoneMesh& mesh, double tolerance)
   });
 }
 
-bool BlockerSieve::may_be_blocked(std::size_t i, std::size_t j, const FacingPair& pair) const {
+Sight BlockerSieve::look(std::size_t i, std::size_t j, const FacingPair& pair) const {
+  Sight sight = Sight::kOpen;
   for (std::size_t w = 0; w < words_; ++w) {
     const std::size_t a = i * words_ + w;
     const std::size_t b = j * words_ + w;
     std::uint64_t straddled = (front_[a] | front_[b]) & (behind_[a] | behind_[b]);
-    for (; straddled != 0; straddled &= straddled - 1)
-      if (may_block(64 * w + static_cast<std::size_t>(std::countr_zero(straddled)), pair)) return true;
+    for (; straddled != 0; straddled &= straddled - 1) {
+      const TriangleId t(64 * w + static_cast<std::size_t>(std::countr_zero(straddled)));
+      if (!may_block(t, pair)) continue;
+      if (blocks_all(t, pair)) return Sight::kHidden;
+      sight = Sight::kUnknown;
+    }
   }
-  return false;
+  return sight;
 }
 
-bool BlockerSieve::may_block(std::size_t triangle, const FacingPair& pair) const {
-  const TriangleId t(triangle);
+bool BlockerSieve::blocks_all(TriangleId t, const FacingPair& pair) const {
+  const Vec3& normal = mesh_->triangle_normal(t);
+  const double side = normal.dot(pair.a.corner[0] - mesh_->corner(t, 0)) > 0 ? 1 : -1;
+  const auto height = [&](const Vec3& p) { return side * normal.dot(p - mesh_->corner(t, 0)); };
+  for (std::size_t p = 0; p < pair.a.count; ++p) {
+    const double height_a = height(pair.a.corner[p]);
+    if (!(height_a > tolerance_)) return false;
+    for (std::size_t q = 0; q < pair.b.count; ++q) {
+      const double height_b = height(pair.b.corner[q]);
+      if (!(height_b < -tolerance_)) return false;
+      const Vec3 crossing =
+          pair.a.corner[p] + height_a / (height_a - height_b) * (pair.b.corner[q] - pair.a.corner[p]);
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 edge = mesh_->corner(t, (k + 1) % 3) - mesh_->corner(t, k);
+        if (!(normal.cross(edge).dot(crossing - mesh_->corner(t, k)) >= 0)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool BlockerSieve::may_block(TriangleId t, const FacingPair& pair) const {
   bool before_a = false;
   bool before_b = false;
   Bounds blocker;

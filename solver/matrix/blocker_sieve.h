@@ -7,20 +7,28 @@
 
 namespace reemit {
 
-/// Proves for most pairs of zones that nothing can come between them. A base triangle can only block a pair
-/// that has points in front of its plane and behind it; of those few, it must also reach in front of both
-/// zones and into the box around them.
+/// What can be said without rays about the view between two zones.
+enum class Sight {
+  kOpen,  ///< No base triangle can block the line between any two points.
+  kUnknown,
+  kHidden,  ///< One base triangle blocks all of them.
+};
+
+/// Settles most pairs of zones without rays. A base triangle can only block a pair that has points in front
+/// of its plane and behind it; of those few, it must also reach in front of both zones and into the box
+/// around them. It blocks all of a pair if it lies between them and all lines between their corners pierce
+/// it: where other lines meet its plane lies in the convex hull of where these do.
 class BlockerSieve {
  public:
   /// `tolerance` [m]: points nearer to a plane count as on it.
   BlockerSieve(const ZoneMesh& mesh, double tolerance);
 
-  /// False only if no base triangle can block the line between any point of `pair.a`, a part of zone i, and
-  /// any point of `pair.b`, a part of zone j.
-  bool may_be_blocked(std::size_t i, std::size_t j, const FacingPair& pair) const;
+  /// Between `pair.a`, a part of zone i, and `pair.b`, a part of zone j.
+  Sight look(std::size_t i, std::size_t j, const FacingPair& pair) const;
 
  private:
-  bool may_block(std::size_t triangle, const FacingPair& pair) const;
+  bool may_block(TriangleId t, const FacingPair& pair) const;
+  bool blocks_all(TriangleId t, const FacingPair& pair) const;
 
   const ZoneMesh* mesh_;
   double tolerance_;

@@ -15,6 +15,7 @@ struct RowSums {
 struct FormFactorReport {
   std::uint64_t facing_pairs = 0;   ///< Unordered pairs of zones that see each other if nothing is between.
   std::uint64_t open_pairs = 0;     ///< Of these: no surface lies where it could come between; exact.
+  std::uint64_t walled_pairs = 0;   ///< One triangle blocks all of the view; exactly 0.
   std::uint64_t clear_pairs = 0;    ///< Of the others: no ray was blocked; taken as exact.
   std::uint64_t hidden_pairs = 0;   ///< Every ray was blocked; taken as 0.
   std::uint64_t sampled_pairs = 0;  ///< Partly visible: the visible share is sampled and has an error.

@@ -40,7 +40,7 @@ void refuse_too_many(std::size_t zones) {
 
 /// Counts of the pairs of one row.
 struct RowCounts {
-  std::uint64_t facing = 0, open = 0, clear = 0, hidden = 0, sampled = 0, rays = 0;
+  std::uint64_t facing = 0, open = 0, walled = 0, clear = 0, hidden = 0, sampled = 0, rays = 0;
 };
 
 }  // namespace
@@ -109,6 +109,7 @@ class FormFactorBuilder {
     for (const RowCounts& c : counts) {
       report.facing_pairs += c.facing;
       report.open_pairs += c.open;
+      report.walled_pairs += c.walled;
       report.clear_pairs += c.clear;
       report.hidden_pairs += c.hidden;
       report.sampled_pairs += c.sampled;
@@ -125,8 +126,14 @@ class FormFactorBuilder {
       if (!(unoccluded > 0)) continue;
       ++counts.facing;
       *exchange = unoccluded;
-      if (!sieve_.may_be_blocked(i, j, pair)) {
+      const Sight sight = sieve_.look(i, j, pair);
+      if (sight == Sight::kOpen) {
         ++counts.open;
+        continue;
+      }
+      if (sight == Sight::kHidden) {
+        ++counts.walled;
+        *exchange = 0;
         continue;
       }
       const double factor = unoccluded / std::min(result_.areas_[i], result_.areas_[j]);

@@ -15,9 +15,9 @@ namespace reemit {
 namespace {
 
 constexpr std::uint32_t kScrambles = 8;
-constexpr std::uint32_t kMostCheckRays = 256;
+constexpr std::uint32_t kMostCheckRays = 512;
 constexpr double kFirstRaysPerFactor = 1024;
-constexpr double kCheckRaysPerFactor = 4096;
+constexpr double kCheckRaysPerFactor = 16384;
 constexpr double kScrambleRaysPerFactor = 8192;
 /// How far of the way from a corner to the middle of a part the rays between corners stay: on the corner
 /// itself they would graze the surfaces that meet there.
@@ -203,7 +203,7 @@ VisibleShare PairVisibility::look(ZoneId i, ZoneId j, const FacingPair& pair, do
   const std::uint32_t first_rays = result.rays;
   if (agree()) {
     result = checked_share(*rays_, a, b, matrix_seed(seed_, MatrixNumbers::kShare, index, 0),
-                           ray_count(kCheckRaysPerFactor * factor, 16, kMostCheckRays));
+                           ray_count(kCheckRaysPerFactor * factor, 64, kMostCheckRays));
   } else {
     std::array<std::uint64_t, kScrambles> seeds;
     for (std::uint32_t s = 0; s < kScrambles; ++s)

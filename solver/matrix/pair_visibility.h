@@ -18,7 +18,7 @@ struct VisibleShare {
 /// no part of it, so that the choice does not bias it. They go between all corners (where one straight edge
 /// cuts the view, the side on which a line passes it is linear in either end, so some of these differ) and
 /// between 8 to 64 well-spread points of both zones. If they differ, the share comes from 8 independent
-/// scrambles of 32 to 128 rays; if they agree, from one of 16 to 256. More rays go to pairs with a large form
+/// scrambles of 32 to 128 rays; if they agree, from one of 64 to 512. More rays go to pairs with a large form
 /// factor. These rays leave uniform points of one zone in directions uniform in the solid angle of the other
 /// and are weighted by the cosine: the weights are bounded even where zones touch.
 class PairVisibility {

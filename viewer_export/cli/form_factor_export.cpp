@@ -31,9 +31,9 @@ std::vector<std::pair<std::string, std::string>> notes_of(const Solution& soluti
       {"meaning",
        "factor: share of the power that zone_from sends out uniformly which reaches zone_to directly"},
       {"zones", fmt::format("{}, numbered as in the solution file", report.zones)},
-      {"pairs",
-       fmt::format("{} facing: {} open, {} clear, {} hidden, {} sampled", report.facing_pairs,
-                   report.open_pairs, report.clear_pairs, report.hidden_pairs, report.sampled_pairs)},
+      {"pairs", fmt::format("{} facing: {} open, {} walled off, {} clear, {} hidden, {} sampled",
+                            report.facing_pairs, report.open_pairs, report.walled_pairs, report.clear_pairs,
+                            report.hidden_pairs, report.sampled_pairs)},
       {"row_sums", fmt::format("{} to {}", report.after.lowest, report.after.highest)},
       {"seed", std::to_string(seed)}};
   for (auto& [name, value] : notes) value = one_line(std::move(value));

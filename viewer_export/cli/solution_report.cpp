@@ -43,11 +43,11 @@ Json row_sums_json(const RowSums& sums) {
 
 std::string form_factor_text(const FormFactorReport& report) {
   return fmt::format(
-      "form factors: {} zones ({} in closed rooms), {} pairs that face each other: {} open, {} clear, {} "
-      "hidden, "
-      "{} sampled\nrow sums: {}; enforced: {}",
-      report.zones, report.closed_zones, report.facing_pairs, report.open_pairs, report.clear_pairs,
-      report.hidden_pairs, report.sampled_pairs, deviation_text(report.before), deviation_text(report.after));
+      "form factors: {} zones ({} in closed rooms), {} pairs that face each other: {} open, {} walled off, "
+      "{} clear, {} hidden, {} sampled\nrow sums: {}; enforced: {}",
+      report.zones, report.closed_zones, report.facing_pairs, report.open_pairs, report.walled_pairs,
+      report.clear_pairs, report.hidden_pairs, report.sampled_pairs, deviation_text(report.before),
+      deviation_text(report.after));
 }
 
 Json form_factor_json(const FormFactorReport& report) {
@@ -55,6 +55,7 @@ Json form_factor_json(const FormFactorReport& report) {
           {"closed_zones", report.closed_zones},
           {"facing_pairs", report.facing_pairs},
           {"open_pairs", report.open_pairs},
+          {"walled_pairs", report.walled_pairs},
           {"clear_pairs", report.clear_pairs},
           {"hidden_pairs", report.hidden_pairs},
           {"sampled_pairs", report.sampled_pairs},

@@ -132,6 +132,50 @@ TEST(MatrixSolve, ShootingAndWalkAgreeWithTheMatrixInAnOccludedRoom) {
   }
 }
 
+TEST(MatrixSolve, StatedErrorsCoverWhatOtherRaysGive) {
+  // Two independent sets of shadow rays. Errors may be stated too large: closure and stratification make the
+  // factors better than their rays alone.
+  const RoomBuilder room = room_with_screen(true);
+  const auto first = irradiances(run(room, SolveMethod::kMatrix));
+  const std::atomic<bool> interrupt = false;
+  SolverSettings settings;
+  settings.method = SolveMethod::kMatrix;
+  settings.seed = 78;
+  auto second = irradiances(solve(room.scene(), room.mesh(), settings, nullptr, interrupt));
+  EXPECT_GT(test::agreement(first, second, 16), test::kFalseAlarm);
+  double differences = 0;
+  double variances = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    differences += std::pow(first[i].mean - second[i].mean, 2);
+    variances += std::pow(first[i].stderr_of_mean, 2) + std::pow(second[i].stderr_of_mean, 2);
+  }
+  EXPECT_GT(differences, 0.1 * variances) << "errors are stated far too large";
+  for (auto& e : second) e.mean *= 1.02;
+  EXPECT_LT(test::agreement(first, second, 16), test::kFalseAlarm) << "a bias of 2 % went unseen";
+}
+
+TEST(MatrixSolve, LightThroughANarrowGapArrives) {
+  // A dark room behind a wall with a slit much narrower than a zone. First looks find most pairs hidden.
+  RoomBuilder room;
+  const MaterialId lamp = room.material("lamp", 0.5, 10.0);
+  const MaterialId grey = room.material("grey", 0.5);
+  const MaterialId wall = room.material("wall", 0.5, 0, true);
+  room.box(Vec3::Zero(), Vec3(2, 1, 1), {lamp, grey, grey, grey, grey, grey}, 3);
+  room.quad(wall, {Vec3(1, 0, 0), Vec3(1, 0.48, 0), Vec3(1, 0.48, 1), Vec3(1, 0, 1)}, 3);
+  room.quad(wall, {Vec3(1, 0.52, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 0.52, 1)}, 3);
+  const Solution matrix = run(room, SolveMethod::kMatrix);
+  const Solution shooting = run(room, SolveMethod::kShooting, 3'200'000);
+  double matrix_power = 0;
+  double shooting_power = 0;
+  for (std::size_t z = 0; z < matrix.mesh.zone_count(); ++z) {
+    if (matrix.mesh.zone_centroid(ZoneId(z)).x() < 1.01) continue;  // the far side of the dark room
+    matrix_power += matrix.mesh.zone_area(ZoneId(z)) * matrix.irradiance(ZoneId(z), 0).mean;
+    shooting_power += matrix.mesh.zone_area(ZoneId(z)) * shooting.irradiance(ZoneId(z), 0).mean;
+  }
+  // Zones of the box straddle the wall and carry light through it, the same for both methods.
+  EXPECT_NEAR(matrix_power / shooting_power, 1, 0.01);
+}
+
 TEST(MatrixSolve, ConjugateGradientsSolveWhatEliminationSolves) {
   const RoomBuilder room = room_with_screen(false, 2);
   const Solution s = run(room, SolveMethod::kMatrix);
