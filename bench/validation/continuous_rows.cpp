@@ -53,40 +53,41 @@ void add_face_with_light(CodeRoom& room, int face, const Vec3& size, MaterialId 
 CodeRoom box_room(const Bands& bands) {
   CodeRoom room(bands.size() == 3 ? BandSet::rgb() : BandSet::grey());
   const json& shape = *bands.front();
-  const Vec3 size = to_vec3(shape["dims"]);
+  const Vec3 size = to_vec3(shape.at("dims"));
   for (int face = 0; face < 6; ++face) {
     const std::string name = kBoxFaces[static_cast<std::size_t>(face)];
     const MaterialId material =
-        room.paint(per_band(bands, [&](const json& p) { return p["rho"][name].get<double>(); }),
-                   per_band(bands, [&](const json& p) { return p["E"].value(name, 0.0); }));
-    if (!shape.contains("light") || shape["light"]["face"] != name) {
+        room.paint(per_band(bands, [&](const json& p) { return p.at("rho").at(name).get<double>(); }),
+                   per_band(bands, [&](const json& p) { return p.at("E").value(name, 0.0); }));
+    if (!shape.contains("light") || shape.at("light").at("face") != name) {
       room.add(name, material, box_face(face, size));
       continue;
     }
     const MaterialId lamp =
-        room.paint(per_band(bands, [](const json& p) { return p["light"]["rho"].get<double>(); }),
-                   per_band(bands, [](const json& p) { return p["light"]["E"].get<double>(); }));
-    add_face_with_light(room, face, size, material, lamp, shape["light"]["rect_uv"]);
+        room.paint(per_band(bands, [](const json& p) { return p.at("light").at("rho").get<double>(); }),
+                   per_band(bands, [](const json& p) { return p.at("light").at("E").get<double>(); }));
+    add_face_with_light(room, face, size, material, lamp, shape.at("light").at("rect_uv"));
   }
   if (shape.contains("point_source"))
-    room.scene().lights.push_back(
-        PointLight{"lamp", to_vec3(shape["point_source"]["position"]), per_band(bands, [](const json& p) {
-                     return p["point_source"]["flux_lm"].get<double>() / (4 * kPi);
-                   })});
+    room.scene().lights.push_back(PointLight{
+        "lamp", to_vec3(shape.at("point_source").at("position")), per_band(bands, [](const json& p) {
+          return p.at("point_source").at("flux_lm").get<double>() / (4 * kPi);
+        })});
   return room;
 }
 
 CodeRoom plates_room(const json& p) {
   CodeRoom room;
-  room.add("1", room.paint(p["rho1"].get<double>(), p["E1"]), axis_rectangle(2, 0, 0, 1, 0, 1, true));
-  room.add("2", room.paint(p["rho2"].get<double>(), p["E2"]), axis_rectangle(2, p["h"], 0, 1, 0, 1, false));
+  room.add("1", room.paint(p.at("rho1").get<double>(), p.at("E1")), axis_rectangle(2, 0, 0, 1, 0, 1, true));
+  room.add("2", room.paint(p.at("rho2").get<double>(), p.at("E2")),
+           axis_rectangle(2, p.at("h"), 0, 1, 0, 1, false));
   return room;
 }
 
 CodeRoom l_shaped_room(const json& p) {
   CodeRoom room;
   for (const auto& [name, polygons] : l_room(2, 2, 1, 1))
-    room.add(name, room.paint(p["rho"].get<double>(), p["E"].value(name, 0.0)), polygons);
+    room.add(name, room.paint(p.at("rho").get<double>(), p.at("E").value(name, 0.0)), polygons);
   return room;
 }
 
@@ -129,7 +130,7 @@ std::vector<SurfaceId> surfaces_of_mean(const SolvedRoom& room, const ReferenceC
   if (c.kind == "plates_finite") return {room.surface(quantity.substr(1, 1))};
   const std::string name = quantity.substr(quantity.rfind(' ') + 1);
   std::vector<SurfaceId> result{room.surface(name)};
-  if (c.parameters.contains("light") && c.parameters["light"]["face"] == name)
+  if (c.parameters.contains("light") && c.parameters.at("light").at("face") == name)
     result.push_back(room.surface("light"));
   return result;
 }
@@ -140,7 +141,7 @@ void set_plate_point(const ReferenceCase& c, ReferenceValue& v) {
   std::smatch match;
   if (!std::regex_match(v.quantity, match, kPoint)) return;
   const bool upper = match[1] == "2";
-  v.point = Vec3(std::stod(match[2]), std::stod(match[3]), upper ? c.parameters["h"].get<double>() : 0.0);
+  v.point = Vec3(std::stod(match[2]), std::stod(match[3]), upper ? c.parameters.at("h").get<double>() : 0.0);
   v.normal = Vec3(0, 0, upper ? -1 : 1);
 }
 

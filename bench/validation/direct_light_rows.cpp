@@ -52,17 +52,18 @@ Polygon turned_towards(const Polygon& p, const Vec3& point) {
 }
 
 std::vector<Polygon> luminaire(const json& l, const Vec3& receiver) {
-  const std::string type = l["type"];
+  const std::string type = l.at("type");
   if (type == "rect")
-    return {turned_towards(parallelogram(to_vec3(l["corner"]), to_vec3(l["edge_u"]), to_vec3(l["edge_v"])),
-                           receiver)};
+    return {turned_towards(
+        parallelogram(to_vec3(l.at("corner")), to_vec3(l.at("edge_u")), to_vec3(l.at("edge_v"))), receiver)};
   if (type == "triangle")
-    return {turned_towards({to_vec3(l["vertices"][0]), to_vec3(l["vertices"][1]), to_vec3(l["vertices"][2])},
-                           receiver)};
-  if (type == "disk") return disk(to_vec3(l["center"]), to_vec3(l["normal"]), l["radius"], kSides);
-  if (type == "sphere") return sphere(to_vec3(l["center"]), l["radius"], 5, false);
+    return {turned_towards(
+        {to_vec3(l.at("vertices")[0]), to_vec3(l.at("vertices")[1]), to_vec3(l.at("vertices")[2])},
+        receiver)};
+  if (type == "disk") return disk(to_vec3(l.at("center")), to_vec3(l.at("normal")), l.at("radius"), kSides);
+  if (type == "sphere") return sphere(to_vec3(l.at("center")), l.at("radius"), 5, false);
   if (type == "cylinder")
-    return cylinder_side(to_vec3(l["base_center"]), to_vec3(l["axis"]), l["radius"], kSides, false);
+    return cylinder_side(to_vec3(l.at("base_center")), to_vec3(l.at("axis")), l.at("radius"), kSides, false);
   throw std::invalid_argument("unknown luminaire " + type);
 }
 
@@ -94,11 +95,11 @@ ValidationRow lit_point(const ReferenceCase& c, const ReferenceValue& v, CodeRoo
 
 ValidationRow from_luminaire(const ReferenceCase& c, const Effort& effort) {
   const json& p = c.parameters;
-  const Vec3 point = to_vec3(p["receiver"]["point"]);
+  const Vec3 point = to_vec3(p.at("receiver").at("point"));
   CodeRoom room;
-  room.add("light", room.paint(0, kPi * p["radiance"].get<double>()), luminaire(p["luminaire"], point));
+  room.add("light", room.paint(0, kPi * p.at("radiance").get<double>()), luminaire(p.at("luminaire"), point));
   const bool flat = c.kind == "irr_polygon";
-  return lit_point(c, c.values.front(), room, point, to_vec3(p["receiver"]["normal"]), 1,
+  return lit_point(c, c.values.front(), room, point, to_vec3(p.at("receiver").at("normal")), 1,
                    flat ? kPointBound : kRoundBound, effort);
 }
 
@@ -108,21 +109,21 @@ Polygon level(const json& rect, double z) {
 
 ValidationRow occluded(const ReferenceCase& c, const Effort& effort) {
   const json& p = c.parameters;
-  const Vec3 point = to_vec3(p["receiver"]["point"]);
+  const Vec3 point = to_vec3(p.at("receiver").at("point"));
   CodeRoom room;
-  room.add("light", room.paint(0, kPi * p["radiance"].get<double>()),
-           turned_towards(level(p["light_rect"], p["light_z"]), point));
+  room.add("light", room.paint(0, kPi * p.at("radiance").get<double>()),
+           turned_towards(level(p.at("light_rect"), p.at("light_z")), point));
   const MaterialId black = room.paint(0);
-  for (const json& b : p["blockers"]) room.add("blocker", black, level(b["rect"], b["z"]));
-  return lit_point(c, c.values.front(), room, point, to_vec3(p["receiver"]["normal"]), 1, kPointBound,
+  for (const json& b : p.at("blockers")) room.add("blocker", black, level(b.at("rect"), b.at("z")));
+  return lit_point(c, c.values.front(), room, point, to_vec3(p.at("receiver").at("normal")), 1, kPointBound,
                    effort);
 }
 
 ValidationRow sky(const ReferenceCase& c, const Effort& effort) {
   const json& p = c.parameters;
-  const Vec3 point(p["point"][0], p["point"][1], 0);
+  const Vec3 point(p.at("point")[0], p.at("point")[1], 0);
   CodeRoom room;
-  room.add("opening", room.paint(0, 1), turned_towards(level(p["opening"], p["h"]), point));
+  room.add("opening", room.paint(0, 1), turned_towards(level(p.at("opening"), p.at("h")), point));
   return lit_point(c, c.values.front(), room, point, Vec3::UnitZ(), 1, kPointBound, effort);
 }
 
@@ -132,13 +133,13 @@ void add_point_source(const ReferenceCase& c, const Effort& effort, std::vector<
   // Without a ceiling: the lamp would lie in it.
   for (const int face : {0, 1, 2, 3, 4})
     room.add(kBoxFaces[face], room.paint(0.5), box_face(face, {4, 4, 3}));
-  room.scene().lights.push_back(
-      PointLight{"lamp", to_vec3(p["source"]), Spectrum::Constant(1, p["flux"].get<double>() / (4 * kPi))});
+  room.scene().lights.push_back(PointLight{"lamp", to_vec3(p.at("source")),
+                                           Spectrum::Constant(1, p.at("flux").get<double>() / (4 * kPi))});
   const MeshResult mesh = room.exact_zones();
   const RayScene rays(mesh.mesh);
   for (std::size_t i = 0; i < c.values.size(); ++i) {
-    const json& r = p["receivers"][i];
-    const SurfacePoint x = point_on(rays, to_vec3(r["point"]), to_vec3(r["normal"]));
+    const json& r = p.at("receivers")[i];
+    const SurfacePoint x = point_on(rays, to_vec3(r.at("point")), to_vec3(r.at("normal")));
     rows.push_back(make_row(c, c.values[i], "direct light",
                             estimate(room.scene(), rays, x, c.values[i].id, effort), kPointBound));
   }
@@ -155,8 +156,9 @@ void add_cornell_blocks(const std::vector<ReferenceCase>& cases, const Effort& e
   for (const ReferenceCase& c : cases) {
     if (c.kind != "irr_cornell_blocks") continue;
     constexpr double kMetresPerMillimetre = 1e-3;
-    const json& r = c.parameters["receiver"];
-    const SurfacePoint x = point_on(rays, kMetresPerMillimetre * to_vec3(r["point"]), to_vec3(r["normal"]));
+    const json& r = c.parameters.at("receiver");
+    const SurfacePoint x =
+        point_on(rays, kMetresPerMillimetre * to_vec3(r.at("point")), to_vec3(r.at("normal")));
     const ReferenceValue& v = c.values.front();
     rows.push_back(make_row(c, v, "direct light", estimate(scene, rays, x, v.id, effort), kPointBound));
   }

@@ -51,8 +51,8 @@ CodeRoom l_shape(double scale, const std::function<MaterialId(CodeRoom&, const s
 
 /// Everything emits E and reflects rho in an L-shaped room: E/(1-rho) everywhere.
 void add_furnace(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
-  const double rho = c.parameters["rho"];
-  const double emission = c.parameters["emission"];
+  const double rho = c.parameters.at("rho");
+  const double emission = c.parameters.at("emission");
   const CodeRoom room = l_shape(1, [&](CodeRoom& r, const std::string&) { return r.paint(rho, emission); });
   const MeshResult mesh = room.exact_zones();
   const auto as_quantity = [&](const Estimates& h) {
@@ -80,7 +80,7 @@ void add_furnace(const ReferenceCase& c, const Effort& effort, std::vector<Valid
 
 /// Reflectances differ by surface and band, emission (1-rho) B0, with a block in the way: B0 everywhere.
 void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
-  const double b0 = c.parameters["B0"];
+  const double b0 = c.parameters.at("B0");
   int count = 0;
   const auto paint = [&](CodeRoom& room, const std::string&) {
     Spectrum rho(3);
@@ -121,9 +121,9 @@ void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vec
 /// One facet of a sphere of triangles emits; the mean over the sphere follows from its area, which is that of
 /// the round sphere.
 void add_integrating_sphere(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
-  const double rho = c.parameters["rho"];
-  const double flux = c.parameters["flux"];
-  std::vector<Polygon> triangles = sphere({0, 0, 0}, c.parameters["radius"], 3, true);
+  const double rho = c.parameters.at("rho");
+  const double flux = c.parameters.at("flux");
+  std::vector<Polygon> triangles = sphere({0, 0, 0}, c.parameters.at("radius"), 3, true);
   const Polygon lamp = triangles.back();
   triangles.pop_back();
   CodeRoom room;
@@ -149,9 +149,9 @@ void add_integrating_sphere(const ReferenceCase& c, const Effort& effort, std::v
 
 /// An L-shaped room of the stated area, one wall emits.
 void add_energy(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
-  const double rho = c.parameters["rho"];
-  const double flux = c.parameters["flux"];
-  const double scale = std::sqrt(c.parameters["area"].get<double>() / 14);
+  const double rho = c.parameters.at("rho");
+  const double flux = c.parameters.at("flux");
+  const double scale = std::sqrt(c.parameters.at("area").get<double>() / 14);
   const CodeRoom room = l_shape(scale, [&](CodeRoom& r, const std::string& name) {
     return r.paint(rho, name == "W2" ? flux / (scale * scale) : 0);
   });
@@ -174,11 +174,11 @@ void add_energy(const ReferenceCase& c, const Effort& effort, std::vector<Valida
 void add_concentric_spheres(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
   constexpr double kBound = 1e-5;
   const auto& p = c.parameters;
-  const std::array<double, 2> rho{p["rho1"], p["rho2"]};
-  const std::array<double, 2> emission{p["E1"], p["E2"]};
+  const std::array<double, 2> rho{p.at("rho1"), p.at("rho2")};
+  const std::array<double, 2> emission{p.at("E1"), p.at("E2")};
   CodeRoom room;
-  room.add("1", room.paint(rho[0], emission[0]), sphere({0, 0, 0}, p["R1"], 3, false));
-  room.add("2", room.paint(rho[1], emission[1]), sphere({0, 0, 0}, p["R2"], 3, true));
+  room.add("1", room.paint(rho[0], emission[0]), sphere({0, 0, 0}, p.at("R1"), 3, false));
+  room.add("2", room.paint(rho[1], emission[1]), sphere({0, 0, 0}, p.at("R2"), 3, true));
   const auto rows_of = [&](const std::string& method, const std::array<Estimates, 2>& h, double bound) {
     add_rows(
         c, method, bound,

@@ -87,22 +87,22 @@ Polygon level_rectangle(const json& rect, double z, bool up) {
 Shapes shapes_of(const ReferenceCase& c) {
   const json& p = c.parameters;
   if (c.kind == "vf_parallel_rects")
-    return {{"1", {level_rectangle(p["rect1"], 0, true)}},
-            {"2", {level_rectangle(p["rect2"], p["z"], false)}}};
+    return {{"1", {level_rectangle(p.at("rect1"), 0, true)}},
+            {"2", {level_rectangle(p.at("rect2"), p.at("z"), false)}}};
   if (c.kind == "vf_perp_rects") {
     // Rectangle 1 lies in z = 0 with [distance from the edge, place along it], rectangle 2 in x = 0.
-    const json& r = p["rect2"];
-    return {{"1", {level_rectangle(p["rect1"], 0, true)}},
+    const json& r = p.at("rect2");
+    return {{"1", {level_rectangle(p.at("rect1"), 0, true)}},
             {"2", {axis_rectangle(0, 0, r[2], r[3], r[0], r[1], true)}}};
   }
   if (c.kind == "vf_coaxial_disks")
-    return {{"1", disk({0, 0, 0}, Vec3::UnitZ(), p["r1"], kSides)},
-            {"2", disk({0, 0, p["h"]}, -Vec3::UnitZ(), p["r2"], kSides)}};
+    return {{"1", disk({0, 0, 0}, Vec3::UnitZ(), p.at("r1"), kSides)},
+            {"2", disk({0, 0, p.at("h")}, -Vec3::UnitZ(), p.at("r2"), kSides)}};
   if (c.kind == "vf_sphere_disk")
-    return {{"sphere", sphere({0, 0, 0}, p["r_sphere"], kSphereSubdivisions, false)},
-            {"disk", disk({0, 0, p["h"]}, -Vec3::UnitZ(), p["r_disk"], kSides)}};
-  const double r = p["r"];
-  const double h = p["h"];
+    return {{"sphere", sphere({0, 0, 0}, p.at("r_sphere"), kSphereSubdivisions, false)},
+            {"disk", disk({0, 0, p.at("h")}, -Vec3::UnitZ(), p.at("r_disk"), kSides)}};
+  const double r = p.at("r");
+  const double h = p.at("h");
   return {{"base", cylinder_cap({0, 0, 0}, Vec3::UnitZ(), r, kSides)},
           {"top", cylinder_cap({0, 0, h}, -Vec3::UnitZ(), r, kSides)},
           {"lateral", cylinder_side({0, 0, 0}, {0, 0, h}, r, kSides, true)}};
@@ -124,19 +124,19 @@ void add_l_room_factors(const std::vector<ReferenceCase>& cases, const Effort& e
     if (c.kind != "vf_obstructed") continue;
     const json& p = c.parameters;
     if (p.contains("L1")) {
-      add_factor_rows(c, l_room(p["L1"], p["L6"], p["H"], 1), {{&c.values.front(), "W1", "W6"}}, 1e-6, effort,
-                      rows);
+      add_factor_rows(c, l_room(p.at("L1"), p.at("L6"), p.at("H"), 1), {{&c.values.front(), "W1", "W6"}},
+                      1e-6, effort, rows);
       continue;
     }
     whole = &c;
-    values.push_back({&c.values.front(), p["from"], p["to"]});
+    values.push_back({&c.values.front(), p.at("from"), p.at("to")});
   }
   if (whole != nullptr) add_factor_rows(*whole, l_room(2, 2, 1, 1), values, 1e-6, effort, rows);
 }
 
 void add_flux_split(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
-  const Vec3 size = to_vec3(c.parameters["dims"]);
-  Shapes shapes{{"opening", {level_rectangle(c.parameters["opening"], size.z(), false)}}};
+  const Vec3 size = to_vec3(c.parameters.at("dims"));
+  Shapes shapes{{"opening", {level_rectangle(c.parameters.at("opening"), size.z(), false)}}};
   for (const int face : {0, 1, 2, 3, 4}) shapes.push_back({kBoxFaces[face], {box_face(face, size)}});
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
     const Count count(shapes, "opening", packets_for(0.16, effort), method, c.name);
@@ -156,9 +156,9 @@ void add_flux_split(const ReferenceCase& c, const Effort& effort, std::vector<Va
 
 void add_mean_irradiance(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
   const json& p = c.parameters;
-  const Shapes shapes{{"light", {level_rectangle(p["light_rect"], p["z"], false)}},
-                      {"floor", {level_rectangle(p["receiver_rect"], 0, true)}}};
-  const double exitance = kPi * p["radiance"].get<double>();
+  const Shapes shapes{{"light", {level_rectangle(p.at("light_rect"), p.at("z"), false)}},
+                      {"floor", {level_rectangle(p.at("receiver_rect"), 0, true)}}};
+  const double exitance = kPi * p.at("radiance").get<double>();
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
     const Count count(shapes, "light", packets_for(0.3, effort), method, c.name);
     rows.push_back(

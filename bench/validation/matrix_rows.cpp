@@ -43,38 +43,46 @@ CodeRoom box(const Vec3& size, int n) {
   return room;
 }
 
+/// Of cases with square zones; 0 for those whose eight surfaces are the zones.
+int zones_per_metre(const ReferenceCase& c) {
+  return c.parameters.value("zones_per_metre", 0);
+}
+
 Geometry make_geometry(const ReferenceCase& c, const std::string& key) {
   const json& p = c.parameters;
   using Merge = MergedZones::Merge;
-  if (c.kind == "zone_box") return with_factors(box(to_vec3(p["dims"]), 1), Merge::kPolygons, key);
-  if (c.kind == "zone_cube_NxN") return with_factors(box({1, 1, 1}, p["N"]), Merge::kPolygons, key);
+  if (c.kind == "zone_box") return with_factors(box(to_vec3(p.at("dims")), 1), Merge::kPolygons, key);
+  if (c.kind == "zone_cube_NxN") return with_factors(box({1, 1, 1}, p.at("N")), Merge::kPolygons, key);
   if (c.kind == "zone_cube_triangles") return with_factors(box({1, 1, 1}, 1), Merge::kTriangles, key);
   CodeRoom room;
   const MaterialId any = room.paint(0.5);
   if (c.kind == "zone_icosphere") {
-    std::vector<Polygon> triangles = unit_icosphere(p["subdivision"]);
+    std::vector<Polygon> triangles = unit_icosphere(p.at("subdivision"));
     for (Polygon& t : triangles) t = flipped(t);
     room.add("lamp", any, triangles.front());
     room.add("rest", any, std::vector<Polygon>(triangles.begin() + 1, triangles.end()));
     return with_factors(std::move(room), Merge::kTriangles, key);
   }
   if (c.kind == "zone_cylinder") {
-    const double r = p["r"];
-    const double h = p["h"];
+    const double r = p.at("r");
+    const double h = p.at("h");
     room.add("base", any, cylinder_cap({0, 0, 0}, Vec3::UnitZ(), r, kSides));
     room.add("top", any, cylinder_cap({0, 0, h}, -Vec3::UnitZ(), r, kSides));
     room.add("lateral", any, cylinder_side({0, 0, 0}, {0, 0, h}, r, kSides, true));
     return with_factors(std::move(room), Merge::kSurfaces, key);
   }
-  for (const auto& [name, polygons] : l_room(2, 2, 1, p["zones_per_metre"])) room.add(name, any, polygons);
-  return with_factors(std::move(room), Merge::kPolygons, key);
+  for (const auto& [name, polygons] : l_room(2, 2, 1, std::max(1, zones_per_metre(c))))
+    room.add(name, any, polygons);
+  const bool whole_surfaces = zones_per_metre(c) == 0;
+  return with_factors(std::move(room), whole_surfaces ? Merge::kSurfaces : Merge::kPolygons, key);
 }
 
 /// What of the parameters decides the geometry.
 std::string key_of(const ReferenceCase& c) {
   std::string key = c.kind;
-  for (const char* name : {"dims", "N", "subdivision", "zones_per_metre"})
-    if (c.parameters.contains(name)) key += " " + c.parameters[name].dump();
+  for (const char* name : {"dims", "N", "subdivision"})
+    if (c.parameters.contains(name)) key += " " + c.parameters.at(name).dump();
+  if (c.kind == "lroom_zone") key += " " + std::to_string(zones_per_metre(c));
   return key;
 }
 
@@ -104,13 +112,13 @@ void add_rows(const ReferenceCase& c, Geometry& g, std::vector<ValidationRow>& r
   json exitance = p.value("E", json::object());
   if (c.kind == "zone_icosphere") exitance = {{"lamp", 1.0}};
   if (c.kind == "zone_cube_triangles") exitance = {{"z0", 1.0}};
-  const Eigen::VectorXd rho = by_surface(g.room, p["rho"]);
+  const Eigen::VectorXd rho = by_surface(g.room, p.at("rho"));
   const Eigen::VectorXd emitted = by_surface(g.room, exitance);
   g.zones->solve(rho, emitted);
   const double bound = c.kind == "zone_cylinder" ? kRoundBound : kExactBound;
   for (const ReferenceValue& v : c.values) {
     if (c.kind == "zone_cube_triangles") {
-      rows.push_back(make_row(c, v, g.zones->zone(triangle_at(g.room, p["vertices"])), bound));
+      rows.push_back(make_row(c, v, g.zones->zone(triangle_at(g.room, p.at("vertices"))), bound));
       continue;
     }
     if (c.kind == "zone_icosphere") {
@@ -121,12 +129,12 @@ void add_rows(const ReferenceCase& c, Geometry& g, std::vector<ValidationRow>& r
                               bound));
       continue;
     }
-    // "H_x0", "B_x0", "H_mean on face z0", "mean H of face W1 in the zonal solution"
+    // "H_x0", "B_x0", "H_mean on face z0", "H zone W1", "mean H of face W1 in the zonal solution"
     for (std::size_t s = 0; s < g.room.scene().surfaces.size(); ++s) {
       const std::string& name = g.room.scene().surfaces[s].name;
       const std::string& q = v.quantity;
       const bool own = q == "H_" + name || q == "B_" + name || q.ends_with("face " + name) ||
-                       q.find("face " + name + " ") != std::string::npos;
+                       q == "H zone " + name || q.find("face " + name + " ") != std::string::npos;
       if (!own) continue;
       ZonalValue value = g.zones->surface(s);
       if (q[0] == 'B') {

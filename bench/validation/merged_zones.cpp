@@ -59,22 +59,16 @@ ZonalValue MergedZones::weighted(const Eigen::VectorXd& weights) const {
   ZonalValue value;
   value.mean = weights.dot(irradiance_);
   if (sampled_.empty()) return value;
-  // A change of G by d changes H by M^-1 d B; the adjoint says what that does to the mean. Each variance has
-  // 7 degrees of freedom, their sum has those of Satterthwaite.
+  // A change of G by d changes H by M^-1 d B; the adjoint says what that does to the mean.
   const Eigen::VectorXd adjoint = system_.transpose().partialPivLu().solve(weights);
-  constexpr double kFreedomOfOne = 7;
   double variance = 0;
-  double squares = 0;
   for (const Sampled& s : sampled_) {
     const auto a = static_cast<Eigen::Index>(s.a);
     const auto b = static_cast<Eigen::Index>(s.b);
     const double slope = adjoint[a] * radiosity_[b] + adjoint[b] * radiosity_[a];
-    const double part = slope * slope * s.variance;
-    variance += part;
-    squares += part * part / kFreedomOfOne;
+    variance += slope * slope * s.variance;
   }
   value.standard_error = std::sqrt(variance);
-  value.freedom = squares > 0 ? static_cast<int>(std::min(variance * variance / squares, 1e6)) : 0;
   return value;
 }
 
@@ -110,7 +104,6 @@ ValidationRow make_row(const ReferenceCase& c, const ReferenceValue& v, const Zo
   row.numerical_bound = relative_bound * std::fabs(v.value);
   row.measured = value.mean;
   row.standard_error = value.standard_error;
-  row.freedom = value.freedom;
   return row;
 }
 

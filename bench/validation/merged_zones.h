@@ -14,8 +14,9 @@ namespace reemit::validation {
 /// A mean irradiance of the zonal system with what is not known about it.
 struct ZonalValue {
   double mean = 0;            ///< [W/m2]
-  double standard_error = 0;  ///< From sampled visibility; 0 in rooms without blockers.
-  int freedom = 0;
+  /// From sampled visibility; 0 in rooms without blockers. Larger than true, because factors do not credit the
+  /// stratification of their rays nor the closure of rows.
+  double standard_error = 0;
 };
 
 /// The zonal system of zones that are made of triangles: rectangles, or whole surfaces. Exchange areas of
@@ -52,7 +53,8 @@ class MergedZones {
   Eigen::VectorXd irradiance_, radiosity_;
 };
 
-/// A row of a value of the zonal system. `relative_bound`: of factors and elimination.
+/// A row of a value of the zonal system. Its standard error is too large to follow Student's t, so it has no
+/// degrees of freedom. `relative_bound`: of factors and elimination.
 ValidationRow make_row(const ReferenceCase& c, const ReferenceValue& v, const ZonalValue& value,
                        double relative_bound);
 
