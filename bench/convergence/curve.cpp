@@ -80,7 +80,7 @@ std::optional<double> convergence_rate(const std::vector<CurvePoint>& curve) {
 }
 
 std::optional<double> without_reference(double measured, double reference) {
-  if (!(measured > 0) || 3 * reference > measured) return std::nullopt;
+  if (!(measured > 0) || 2 * reference > measured) return std::nullopt;
   return std::sqrt(measured * measured - reference * reference);
 }
 

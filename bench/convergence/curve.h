@@ -50,8 +50,9 @@ double remaining_error(const std::vector<CurvePoint>& curve);
 /// work.
 std::optional<double> convergence_rate(const std::vector<CurvePoint>& curve);
 
-/// Error with the noise of the reference taken out in squares; nothing where the reference's error exceeds a
-/// third of the measured one, of which it would then make up more than a twentieth.
+/// Error with the noise of the reference taken out in squares; nothing where the reference's error exceeds
+/// half of the measured one: it then makes up more than a quarter of the square, and is itself known only so
+/// well.
 std::optional<double> without_reference(double measured, double reference);
 
 }  // namespace reemit::bench

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -31,7 +33,7 @@ struct Effort {
 constexpr std::array<std::uint64_t, 4> kAveragePackets{1U << 18, 1U << 20, 1U << 22, 1U << 24};
 /// A gather averages the zones' noise: few packets do, and the rays of the gather decide.
 constexpr std::array<Effort, 4> kGatherEfforts{
-    {{1U << 17, 16, 16}, {1U << 18, 64, 32}, {1U << 19, 256, 64}, {1U << 20, 1024, 256}}};
+    {{1U << 17, 16, 16}, {1U << 18, 64, 32}, {1U << 19, 192, 64}, {1U << 20, 512, 128}}};
 
 /// The reference: more of everything, nearer to the vertex.
 constexpr std::uint64_t kReferencePackets = 1U << 23;
@@ -39,72 +41,66 @@ constexpr int kReferenceGatherRays = 16384;
 constexpr int kReferenceLightSamples = 4096;
 constexpr double kReferenceReach = 0.02;
 
-struct VertexChoice {
-  std::size_t count = 0;            // of all vertices of the mesh
-  std::vector<std::size_t> chosen;  // those that are compared
-};
+/// Where the light of a vertex is that of the reference: vertices are split between sides and surfaces, so
+/// the place alone does not tell.
+using VertexKey = std::array<double, 7>;
 
-std::vector<float> chosen_values(const std::vector<float>& all, const VertexChoice& vertices,
-                                 std::size_t bands) {
-  std::vector<float> values;
-  for (const std::size_t v : vertices.chosen)
-    for (std::size_t b = 0; b < bands; ++b) values.push_back(all[v * bands + b]);
-  return values;
+VertexKey key_of(const Vec3& position, const Vec3& normal, SurfaceId surface) {
+  const auto rounded = [](double x) { return std::round(x * 1e6); };
+  return {position.x(),
+          position.y(),
+          position.z(),
+          rounded(normal.x()),
+          rounded(normal.y()),
+          rounded(normal.z()),
+          static_cast<double>(surface.index())};
 }
 
 /// Long gather at the chosen vertices.
 Reference gather_reference(const Room& room, const Solution& solution, const RayScene& rays,
-                           const VertexRings& rings, const VertexChoice& vertices, const Options& options) {
+                           const VertexRings& rings, const std::vector<std::size_t>& chosen,
+                           const Options& options) {
   VertexSettings settings;
-  settings.average_zones = true;
-  VertexData data = gather_vertices(room.scene, solution, rays, settings, {}, std::atomic<bool>{false});
-  settings.average_zones = false;
   settings.seed = kReferenceSeed;
   settings.reach = kReferenceReach;
   settings.gather_rays = kReferenceGatherRays / (options.quick ? 4 : 1);
   settings.light_samples = kReferenceLightSamples / (options.quick ? 4 : 1);
   const int points = settings.points_per_replicate();
   const VertexGatherer gatherer(room.scene, solution, rays, rings, settings, points);
+  const std::size_t bands = room.scene.bands.count();
+  VertexData data;
+  for (auto* values : {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance})
+    values->assign(rings.size() * bands, 0.0F);
   tbb::task_arena arena(options.threads);
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, vertices.chosen.size(), [&](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t i) {
       std::vector<float> means(gatherer.values_per_vertex(), 0.0F);
-      const std::size_t v = vertices.chosen[i];
-      gatherer.gather(v, v + 1, {0, points}, means.data(), data);
+      gatherer.gather(chosen[i], chosen[i] + 1, {0, points}, means.data(), data);
     });
   });
-  const std::size_t bands = room.scene.bands.count();
-  return {bands, chosen_values(data.radiance, vertices, bands),
-          chosen_values(data.radiance_stderr, vertices, bands)};
+  Reference reference{bands, {}, {}};
+  for (const std::size_t v : chosen)
+    for (std::size_t k = v * bands; k < (v + 1) * bands; ++k) {
+      reference.value.push_back(data.radiance[k]);
+      reference.stderr_of_value.push_back(data.radiance_stderr[k]);
+    }
+  return reference;
 }
 
 class VertexCurves {
  public:
   VertexCurves(const Room& room, const Options& options, const ReferenceCache& cache, Table& table)
-      : room_(room), options_(options), table_(table), mesh_(build_mesh(room.scene, mesh_settings(room))) {
-    SolverSettings settings;
-    settings.threads = options.threads;
-    settings.seed = kReferenceSeed;
-    settings.packets = kReferencePackets / (options.quick ? 4 : 1);
-    const Solution solution = solve(room.scene, mesh_, settings, {}, never_);
-    const RayScene rays(solution.mesh);
-    const VertexRings rings(room.scene, solution, false);
-    vertices_.count = rings.size();
-    for (std::size_t v = 0; v < rings.size(); v += static_cast<std::size_t>(room.vertex_stride)) {
-      vertices_.chosen.push_back(v);
-      norm_.weight.push_back(rings.area(v));
-    }
-    const std::string name = fmt::format("vertices-{}-{}-{}-{}", content_hash(room.scene), rings.size(),
-                                         vertices_.chosen.size(), settings.packets);
-    reference_ =
-        cache.get(name, [&] { return gather_reference(room, solution, rays, rings, vertices_, options); });
-    emitted_ = emitted_radiance(rings, solution);
-    for (std::size_t k = 0; k < emitted_.size(); ++k) reference_.value[k] -= emitted_[k];
+      : room_(room),
+        options_(options),
+        cache_(cache),
+        table_(table),
+        mesh_(build_mesh(room.scene, mesh_settings(room))) {
+    choose_vertices();
     reference_error_ = own_error(reference_, norm_);
     table.notes.push_back(fmt::format(
         "{}, vertices: {} vertices of {} zones, {} of them compared; reference: {} gather rays and {} shadow "
         "rays per vertex, {:.2g} % rms",
-        room.name, rings.size(), mesh_.mesh.zone_count(), vertices_.chosen.size(),
+        room.name, vertex_count_, mesh_.mesh.zone_count(), keys_.size(),
         kReferenceGatherRays / (options.quick ? 4 : 1), kReferenceLightSamples / (options.quick ? 4 : 1),
         100 * reference_error_.rms));
   }
@@ -124,13 +120,49 @@ class VertexCurves {
     return settings;
   }
 
-  std::vector<float> emitted_radiance(const VertexRings& rings, const Solution& solution) const {
-    std::vector<float> emitted;
-    for (const std::size_t v : vertices_.chosen)
+  void choose_vertices() {
+    // A short solve tells which backs are lit.
+    SolverSettings settings;
+    settings.threads = options_.threads;
+    settings.seed = kReferenceSeed;
+    settings.packets = 1U << 17;
+    Solution solution = solve(room_.scene, mesh_, settings, {}, never_);
+    const RayScene rays(solution.mesh);
+    const VertexRings rings(room_.scene, solution, false);
+    vertex_count_ = rings.size();
+    std::vector<std::size_t> chosen;
+    for (std::size_t v = 0; v < rings.size(); v += static_cast<std::size_t>(room_.vertex_stride)) {
+      const ZoneId zone = rings.begin(v)->zone;
+      chosen.push_back(v);
+      norm_.weight.push_back(rings.area(v));
+      keys_.push_back(key_of(rings.positions()[v], rings.normals()[v], mesh_.mesh.zone_surface(zone)));
       for (std::size_t b = 0; b < room_.scene.bands.count(); ++b)
-        emitted.push_back(
-            static_cast<float>(solution.emitted_radiosity(rings.begin(v)->zone, b) / std::numbers::pi));
-    return emitted;
+        emitted_.push_back(static_cast<float>(solution.emitted_radiosity(zone, b) / std::numbers::pi));
+    }
+    settings.packets = kReferencePackets / (options_.quick ? 4 : 1);
+    const std::string name = fmt::format("vertices-{}-{}-{}-{}", content_hash(room_.scene), rings.size(),
+                                         chosen.size(), settings.packets);
+    reference_ = cache_.get(name, [&] {
+      const Solution longer = solve(room_.scene, mesh_, settings, {}, never_);
+      return gather_reference(room_, longer, rays, rings, chosen, options_);
+    });
+    for (std::size_t k = 0; k < emitted_.size(); ++k) reference_.value[k] -= emitted_[k];
+  }
+
+  /// Reflected radiance at the chosen vertices; nothing if one of them was not exported.
+  std::optional<std::vector<float>> chosen_values(const VertexData& data) const {
+    std::map<VertexKey, std::size_t> index;
+    for (std::size_t v = 0; v < data.vertex_count(); ++v)
+      index.emplace(key_of(data.positions[v], data.normals[v], data.surfaces[v]), v);
+    const std::size_t bands = data.bands.count();
+    std::vector<float> values;
+    for (const VertexKey& key : keys_) {
+      const auto found = index.find(key);
+      if (found == index.end()) return std::nullopt;
+      for (std::size_t b = 0; b < bands; ++b)
+        values.push_back(data.radiance[found->second * bands + b] - emitted_[values.size()]);
+    }
+    return values;
   }
 
   void measure(const std::string& method, int seed, std::size_t level, const Effort& effort) {
@@ -155,25 +187,27 @@ class VertexCurves {
       data = gather_vertices(room_.scene, solution, rays, vertices, {}, never_);
       rays_traced = static_cast<double>(solution.record.rays);
     });
-    if (data.vertex_count() != vertices_.count) {
-      fmt::print(stderr, "{}, {}: left out, packets have not lit the same surfaces as in the reference\n",
+    const std::optional<std::vector<float>> values = chosen_values(data);
+    if (!values) {
+      fmt::print(stderr,
+                 "{}, {}: left out, packets have not lit the surfaces that they lit in the reference\n",
                  room_.name, method);
       return;
     }
     rays_traced += static_cast<double>(data.vertex_count()) * (effort.gather_rays + effort.light_samples);
-    std::vector<float> values = chosen_values(data.radiance, vertices_, room_.scene.bands.count());
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] -= emitted_[k];
     report({room_.name, "vertices", method, solver.seed, static_cast<int>(level), seconds, rays_traced,
-            "rays", deviation(values, reference_, norm_), reference_error_},
+            "rays", deviation(*values, reference_, norm_), reference_error_},
            table_);
   }
 
   const std::atomic<bool> never_{false};
   const Room& room_;
   const Options& options_;
+  const ReferenceCache& cache_;
   Table& table_;
   MeshResult mesh_;
-  VertexChoice vertices_;
+  std::size_t vertex_count_ = 0;
+  std::vector<VertexKey> keys_;  // of the vertices that are compared
   ErrorNorm norm_;
   Reference reference_;
   std::vector<float> emitted_;  // self-emitted radiance of the chosen vertices [W/(m2 sr)]

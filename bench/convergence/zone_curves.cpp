@@ -13,7 +13,7 @@ namespace reemit::bench {
 namespace {
 
 /// Packets from luminaires, one level each; the reference gets a multiple of the most.
-constexpr std::array<std::uint64_t, 5> kPackets{1U << 14, 1U << 16, 1U << 18, 1U << 20, 1U << 22};
+constexpr std::array<std::uint64_t, 5> kPackets{1U << 15, 1U << 17, 1U << 19, 1U << 21, 1U << 23};
 constexpr std::uint64_t kReferenceFactor = 16;
 
 /// Reflected radiosity rho E of every zone and band [W/m2] and its standard error.
