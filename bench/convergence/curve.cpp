@@ -23,7 +23,7 @@ Spread spread_of(std::vector<double> values) {
 }
 
 double remaining_error(const std::vector<CurvePoint>& curve) {
-  // Least squares of (left^2 + c/t)/e^2 = 1 over the points.
+  // Least squares of (left^2 + c/work)/e^2 = 1 over the points.
   double aa = 0;
   double ab = 0;
   double bb = 0;
@@ -31,7 +31,7 @@ double remaining_error(const std::vector<CurvePoint>& curve) {
   double b1 = 0;
   for (const CurvePoint& p : curve) {
     const double a = 1 / (p.error * p.error);
-    const double b = a / p.seconds;
+    const double b = a / p.work;
     aa += a * a;
     ab += a * b;
     bb += b * b;

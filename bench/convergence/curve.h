@@ -37,10 +37,10 @@ struct TimeToError {
 };
 
 /// Time at which a curve falls to an error, from the first crossing, straight in log-log between points.
-/// Beyond the last point it is taken that error^2 = left^2 + c/time: noise that halves with four times the
-/// time, and a part that stays; both follow from the points by least squares of the relative deviation of
-/// error^2, and c is then chosen to meet the last point. Points in order of time. Throws
-/// std::invalid_argument without points.
+/// Beyond the last point it is taken that error^2 = left^2 + c/work, noise that halves with four times the
+/// work and a part that stays, and that time grows with work. left follows from the points by least squares
+/// of the relative deviation of error^2; c is then chosen to meet the last point. Points in order of time.
+/// Throws std::invalid_argument without points.
 TimeToError time_to_error(const std::vector<CurvePoint>& curve, double error);
 
 /// The part of the error that stays, as described above; 0 where the points show none.

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,9 +11,14 @@
 namespace reemit::bench {
 namespace {
 
-struct PipeCloser {
-  void operator()(std::FILE* pipe) const { pclose(pipe); }
-};
+/// Commands for a gnuplot of their own. Throws std::runtime_error when it does not start or ends with an
+/// error.
+void run_gnuplot(const std::string& commands) {
+  std::FILE* pipe = popen("gnuplot", "w");
+  if (pipe == nullptr) throw std::runtime_error("gnuplot does not start");
+  std::fputs(commands.c_str(), pipe);
+  if (pclose(pipe) != 0) throw std::runtime_error("gnuplot ended with an error");
+}
 
 /// Methods keep their colour and marker from room to room: the number of a style in plot.gp.
 int style_of(const std::string& method) {
@@ -28,8 +32,6 @@ int style_of(const std::string& method) {
 
 void plot_room(const std::vector<Curve>& curves, const std::string& y_label,
                const std::filesystem::path& folder) {
-  const std::unique_ptr<std::FILE, PipeCloser> gnuplot(popen("gnuplot", "w"));
-  if (!gnuplot) throw std::runtime_error("gnuplot does not start");
   std::string titles;
   std::string styles;
   std::string data;
@@ -43,10 +45,10 @@ void plot_room(const std::vector<Curve>& curves, const std::string& y_label,
   }
   const std::filesystem::path file =
       folder / "images" / plot_name(curves.front().quantity, curves.front().room);
-  fmt::print(gnuplot.get(),
-             "$data << EOD\n{}EOD\ntitles = \"{}\"\nstyles = \"{}\"\nheading = \"{}\"\ny_label = \"{}\"\n"
-             "output_file = \"{}\"\nload \"{}/bench/convergence/plot.gp\"\n",
-             data, titles, styles, curves.front().room, y_label, file.string(), REEMIT_SOURCE_DIR);
+  run_gnuplot(fmt::format(
+      "$data << EOD\n{}EOD\ntitles = \"{}\"\nstyles = \"{}\"\nheading = \"{}\"\ny_label = \"{}\"\n"
+      "output_file = \"{}\"\nload \"{}/bench/convergence/plot.gp\"\n",
+      data, titles, styles, curves.front().room, y_label, file.string(), REEMIT_SOURCE_DIR));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Effort {
 
 constexpr std::array<Effort, 4> kGatherEfforts{
     {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 256}}};
-constexpr std::array<Effort, 4> kZoneEfforts{{{1U << 14, 8}, {1U << 16, 8}, {1U << 18, 16}, {1U << 20, 16}}};
+constexpr std::array<Effort, 4> kZoneEfforts{{{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}};
 /// Camera rays of a replicate in one block of the reference.
 constexpr int kReferenceBlock = 16;
 
@@ -148,10 +148,13 @@ class StillCurves {
       const RayScene rays(solution.mesh);
       image = render_still(room_.scene, solution, rays, room_.camera, still, {}, never_);
     });
+    // What a picture of the zones costs, and how good it is, depends on their packets.
+    const bool of_zones = integrator == Integrator::kZones;
     report({room_.name, "still", to_string(integrator), solver.seed, static_cast<int>(level),
-            render_seconds + (needs_solution ? solve_seconds : 0.0), static_cast<double>(effort.samples),
-            "samples per pixel", deviation(chosen_values(image, image.radiance, tiles_), reference_, norm_),
-            reference_error_},
+            render_seconds + (needs_solution ? solve_seconds : 0.0),
+            of_zones ? static_cast<double>(solution.record.rays) : static_cast<double>(effort.samples),
+            of_zones ? "rays of the solve" : "samples per pixel",
+            deviation(chosen_values(image, image.radiance, tiles_), reference_, norm_), reference_error_},
            table_);
   }
 
