@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "solver/progressive_solver.h"
-#include "tests/support/test_rooms.h"
+#include "tests/support/variable_furnace.h"
 #include "viewer_export/still/film.h"
 #include "viewer_export/still/render_still.h"
 #include "viewer_export/vertex/vertex_radiance.h"
@@ -22,24 +22,7 @@ namespace {
 
 using namespace reemit;
 
-/// Radiosity of every surface of the room below [W/m2].
-constexpr double kRadiosity = 2.5;
-
-/// Furnace with a different reflectance on every surface, a block and a screen inside: a surface of
-/// reflectance rho emits (1 - rho) B0, so radiosity and irradiance are B0 everywhere, whatever the shape and
-/// the zones (Kirchhoff). Emission, direct and indirect light differ from place to place.
-test::RoomBuilder furnace() {
-  test::RoomBuilder room;
-  const auto material = [&room](double rho, bool two_sided = false) {
-    const MaterialId id = room.material(fmt::format("rho{}", rho), rho, (1 - rho) * kRadiosity, two_sided);
-    room.scene().materials[id.index()].emits_both_sides = two_sided;
-    return id;
-  };
-  room.box({0, 0, 0}, {2, 1.5, 1},
-           {material(0.2), material(0.9), material(0.5), material(0.7), material(0.3), material(0.8)}, 8);
-  room.quad(material(0.6, true), {Vec3{0.8, 0.4, 0.2}, {1.2, 0.4, 0.2}, {1.2, 1.0, 0.5}, {0.8, 1.0, 0.5}}, 5);
-  return room;
-}
+constexpr double kRadiosity = test::VariableFurnace::kRadiosity;
 
 struct Coverage {
   std::string what;
@@ -79,17 +62,12 @@ struct Options {
 };
 
 void measure(const Options& options) {
-  const test::RoomBuilder room = furnace();
+  const test::VariableFurnace furnace(8);
+  const test::RoomBuilder& room = furnace.room();
   const ZoneMesh mesh = room.mesh().mesh;
   const RayScene rays(mesh);
   const std::atomic<bool> never{false};
-  Camera camera;
-  camera.name = "inside";
-  camera.eye = {1.9, 0.1, 0.9};
-  camera.look_at = {0.6, 0.9, 0.2};
-  camera.up = {0, 0, 1};
-  camera.width = 32;
-  camera.height = 24;
+  const Camera camera = test::VariableFurnace::camera();
 
   Coverage zones{"zones, shooting", 15};
   Coverage walk{"zones, walk", 15};

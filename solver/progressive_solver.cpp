@@ -12,6 +12,7 @@
 #include "scenes/model/error.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/small_zones.h"
+#include "solver/matrix/matrix_solve.h"
 #include "solver/shoot/closed_room_check.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/tally/batch_statistics.h"
@@ -96,6 +97,20 @@ void run_batches(const TransportScene& transport, const Emission& emission, Solu
   }
 }
 
+void run_matrix(const TransportScene& transport, const Emission& emission, Solution& solution,
+                const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto report = [&](double fraction) {
+    if (!progress) return;
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    const double seconds = seconds_since(start);
+    const double left = fraction > 0 ? seconds * (1 - fraction) / fraction : kUnknown;
+    progress({fraction, kUnknown, 0, seconds, left, 0, 0, 0});
+  };
+  solve_by_matrix(transport, emission, report, interrupt, solution);
+  solution.record.seconds = seconds_since(start);
+}
+
 }  // namespace
 
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
@@ -117,12 +132,17 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
     const auto start = std::chrono::steady_clock::now();
-    run_batches(transport, emission, solution, progress, interrupt);
-    if (gathers_small_zones(solution)) {
-      const double share = kSmallZoneShare / (1 - kSmallZoneShare);
-      gather_small_zones(scene, rays,
-                         static_cast<std::uint64_t>(share * static_cast<double>(solution.record.rays)),
-                         solution, interrupt);
+    if (settings.method == SolveMethod::kMatrix) {
+      run_matrix(transport, emission, solution, progress, interrupt);
+    } else {
+      run_batches(transport, emission, solution, progress, interrupt);
+      if (gathers_small_zones(solution)) {
+        SmallZoneLimits limits;
+        limits.solver_rays =
+            kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(solution.record.rays);
+        if (settings.time_limit_s > 0) limits.seconds = settings.time_limit_s - seconds_since(start);
+        gather_small_zones(scene, rays, limits, solution, interrupt);
+      }
     }
     if (!interrupt) solution.record.discretisation = discretisation_error(scene, rays, solution);
     solution.record.seconds = seconds_since(start);

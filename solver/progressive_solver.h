@@ -25,7 +25,8 @@ using ProgressCallback = std::function<void(const SolveProgress&)>;
 /// returns what stands. At least one batch is always finished. Values depend on room, mesh and settings
 /// (without threads) only, bit for bit, when the run stops by error or packets. Fills everything in Solution
 /// except room_path, read_options and mesh_settings. Throws InputError when a closed room reflects everything
-/// in some band: it has no solution.
+/// in some band: it has no solution. The matrix method has no stopping rules and nothing to return when it is
+/// interrupted: it throws Interrupted, and what compute_form_factors throws.
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
                const ProgressCallback& progress, const std::atomic<bool>& interrupt);
 

@@ -3,7 +3,15 @@
 namespace reemit {
 
 std::string to_string(SolveMethod method) {
-  return method == SolveMethod::kShooting ? "shooting" : "walk";
+  switch (method) {
+    case SolveMethod::kShooting:
+      return "shooting";
+    case SolveMethod::kWalk:
+      return "walk";
+    case SolveMethod::kMatrix:
+      return "matrix";
+  }
+  return "unknown";
 }
 
 std::string to_string(SamplingKind sampling) {

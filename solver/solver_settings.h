@@ -4,10 +4,11 @@
 
 namespace reemit {
 
-enum class SolveMethod { kShooting, kWalk };
+enum class SolveMethod { kShooting, kWalk, kMatrix };
 enum class SamplingKind { kRandom, kSobol };
 
-/// Settings of the zone solution. A limit of 0 means that this rule does not stop the run.
+/// Settings of the zone solution. A limit of 0 means that this rule does not stop the run; the
+/// matrix method has no stopping rules.
 struct SolverSettings {
   SolveMethod method = SolveMethod::kShooting;
   SamplingKind sampling = SamplingKind::kSobol;  ///< Of points and directions of each flight.
@@ -23,7 +24,7 @@ struct SolverSettings {
   int threads = 0;  ///< 0 = all cores; more than there are cores means all.
 };
 
-std::string to_string(SolveMethod method);     ///< "shooting" or "walk".
+std::string to_string(SolveMethod method);     ///< "shooting", "walk" or "matrix".
 std::string to_string(SamplingKind sampling);  ///< "random" or "sobol".
 
 }  // namespace reemit

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,8 @@ class DirectLight {
 
   std::size_t band_count() const { return table_.band_count(); }
   bool empty() const { return table_.empty(); }
+  /// Luminaires that one sample weighs against each other.
+  std::size_t luminaires_weighed() const { return std::min(table_.size(), LuminaireChoice::kMost); }
 
   /// One sample: adds weight[b] E_b to sum[b], E_b an unbiased estimate of the irradiance [W/m2]. Exactly
   /// nothing is added where no luminaire is visible.

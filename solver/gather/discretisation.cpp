@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kHalves = 2;
 constexpr std::size_t kProbes = 1024;
-constexpr ReplicateEffort kEffort{64, 2};
+constexpr ReplicateEffort kEffort{16, 4};
 constexpr std::size_t kChunk = 64;
 
 /// A zone to look at, and the area it stands for [m2].

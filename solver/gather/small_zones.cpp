@@ -23,7 +23,13 @@ constexpr double kFewerPackets = 9;
 constexpr double kWorthwhile = 2;
 /// Gather rays per shadow ray.
 constexpr int kGathersPerPoint = 2;
-constexpr double kRaysPerPoint = static_cast<double>(kReplicates) * (1 + kGathersPerPoint);
+constexpr std::uint64_t kRaysPerPoint = kReplicates * (1 + kGathersPerPoint);
+/// What a point costs in all replicates, in rays of packets: a shadow ray as much as six, weighing one
+/// luminaire for it as much as one and a half, a gather ray as much as two.
+double cost_per_point(std::size_t luminaires_weighed) {
+  return static_cast<double>(kReplicates) *
+         (6 + 1.5 * static_cast<double>(luminaires_weighed) + 2 * kGathersPerPoint);
+}
 /// Zones of one task; fixed, so that packets of rays are the same for any number of threads.
 constexpr std::size_t kChunk = 64;
 
@@ -44,11 +50,10 @@ std::vector<ZoneId> small_zones(const ZoneMesh& mesh) {
   return zones;
 }
 
-/// Points per replicate, a power of two, that this many rays for one zone allow.
-int points_for(double rays) {
+/// Largest power of two up to this, at least one.
+int whole_points(double points) {
   constexpr double kMostPoints = 1 << 16;
-  return static_cast<int>(
-      std::bit_floor(static_cast<unsigned>(std::clamp(rays / kRaysPerPoint, 1.0, kMostPoints))));
+  return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(points, 1.0, kMostPoints))));
 }
 
 /// The irradiance of one zone in one band, one value per replicate.
@@ -71,6 +76,9 @@ class Gatherer {
         gather_(rays, field_, direct_, GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
+
+  /// Luminaires that the choice of one for a shadow ray looks at.
+  std::size_t luminaires_weighed() const { return direct_.luminaires_weighed(); }
 
   /// Calls use(i, band, ZoneReplicates) for the zones i of the list from any thread; returns how many zones
   /// it was called for.
@@ -154,19 +162,19 @@ std::size_t small_zone_count(const ZoneMesh& mesh) {
   return mesh.zone_count() == 0 ? 0 : small_zones(mesh).size();
 }
 
-void gather_small_zones(const Scene& scene, const RayScene& rays, std::uint64_t most_rays, Solution& solution,
-                        const std::atomic<bool>& interrupt) {
+void gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
+                        Solution& solution, const std::atomic<bool>& interrupt) {
   if (solution.sums.batches < static_cast<std::int64_t>(kReplicates)) return;
   const ZoneMesh& mesh = solution.mesh;
   std::vector<ZoneId> zones = small_zones(mesh);
-  // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
-  const auto budget = static_cast<double>(most_rays);
-  zones.resize(std::min(zones.size(), static_cast<std::size_t>(budget / (3 * kRaysPerPoint))));
   if (zones.empty()) return;
   const Gatherer gatherer(scene, rays, solution, interrupt);
+  const double affordable = limits.solver_rays / cost_per_point(gatherer.luminaires_weighed());
+  // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
+  zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable / 3)));
   const std::size_t bands = scene.bands.count();
-  const auto points_rays = [](int points) { return static_cast<std::uint64_t>(points * kRaysPerPoint); };
 
+  const auto start = std::chrono::steady_clock::now();
   std::vector<PilotResult> pilots(zones.size());
   const std::size_t piloted = gatherer.gather(
       zones, 1, RngPurpose::kSmallZonePilot, [&](std::size_t i, std::size_t, const ZoneReplicates& x) {
@@ -175,27 +183,33 @@ void gather_small_zones(const Scene& scene, const RayScene& rays, std::uint64_t 
         pilots[i].irradiance += mean.mean;
         pilots[i].variance += mean.squared_error;
       });
-  solution.record.rays += piloted * points_rays(1);
+  const auto packet_rays = static_cast<double>(solution.record.rays);
+  const double watts_per_ray = power_per_ray(solution);
+  solution.record.rays += piloted * kRaysPerPoint;
   if (piloted < zones.size()) return;
 
-  const double left = budget - static_cast<double>(piloted * points_rays(1));
-  const double watts_per_ray = power_per_ray(solution);
-  const double gain = points_for(left / static_cast<double>(zones.size()));
+  double points_left = affordable - static_cast<double>(piloted);
+  if (limits.seconds) {
+    // The pilot has shown how long a point takes.
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    points_left = std::min(points_left, (*limits.seconds / spent - 1) * static_cast<double>(piloted));
+  }
+  const double gain = whole_points(points_left / static_cast<double>(zones.size()));
   std::vector<ZoneId> chosen;
   for (std::size_t i = 0; i < zones.size(); ++i)
     if (is_worthwhile(pilots[i], gain, mesh.zone_area(zones[i]), watts_per_ray)) chosen.push_back(zones[i]);
+  chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(std::max(0.0, points_left))));
   if (chosen.empty()) return;
 
   // As many rays as the mean zone meets packets leave about its error.
-  const double enough = std::max(
-      kRaysPerPoint, static_cast<double>(solution.record.rays) / static_cast<double>(mesh.zone_count()));
-  const int points = points_for(std::min(enough, left / static_cast<double>(chosen.size())));
+  const double enough = packet_rays / static_cast<double>(mesh.zone_count() * kRaysPerPoint);
+  const int points = whole_points(std::min(enough, points_left / static_cast<double>(chosen.size())));
   const std::size_t gathered = gatherer.gather(
       chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, std::size_t b, const ZoneReplicates& x) {
         store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect);
       });
   solution.record.gathered_zones = gathered;
-  solution.record.rays += gathered * points_rays(points);
+  solution.record.rays += gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);
 }
 
 }  // namespace reemit

@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
 #include "scenes/model/scene.h"
 #include "solver/solution/solution.h"
@@ -12,15 +13,21 @@ namespace reemit {
 /// the mean zone area, which at equal light means more than three times the error.
 std::size_t small_zone_count(const ZoneMesh& mesh);
 
+/// How much work gathering on small zones may be.
+struct SmallZoneLimits {
+  double solver_rays = 0;         ///< As much as this many rays of packets cost.
+  std::optional<double> seconds;  ///< Wall time [s].
+};
+
 /// Gives zones too small to meet enough packets their irradiance by gathering from the rest of the zone
 /// solution, as [GI98] (Monte Carlo notes) proposes. The estimate is that of the zonal system,
 /// E_i = sum_j F_ij B_j: rays from uniform points of the zone read the zones they hit as they stand, one
 /// replicate per batch group, so that the standard error holds the noise of the zones read. A short pilot
 /// gather of every small zone decides whether gathering it will beat its packets; the pilot's random numbers
-/// are its own, and what packets found has no say, so the choice biases nothing. `most_rays` bounds the work.
+/// are its own, and what packets found has no say, so the choice biases nothing. `limits` bound the work.
 /// Adds to record.rays and sets record.gathered_zones. Does nothing with fewer than ZoneSums::kGroups
 /// batches. When `interrupt` becomes true the zones not yet done keep what packets found.
-void gather_small_zones(const Scene& scene, const RayScene& rays, std::uint64_t most_rays, Solution& solution,
-                        const std::atomic<bool>& interrupt);
+void gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
+                        Solution& solution, const std::atomic<bool>& interrupt);
 
 }  // namespace reemit

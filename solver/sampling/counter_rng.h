@@ -19,6 +19,7 @@ enum class RngPurpose : std::uint32_t {
   kSmallZone,
   kSmallZonePilot,
   kDiscretisation,
+  kFormFactor,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

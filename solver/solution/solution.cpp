@@ -44,6 +44,8 @@ std::string to_string(StopReason reason) {
       return "batch limit reached";
     case StopReason::kNoLuminaire:
       return "no luminaire in the room";
+    case StopReason::kSystemSolved:
+      return "linear system solved";
   }
   return "unknown";
 }

@@ -9,6 +9,7 @@
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/bands.h"
 #include "scenes/model/scene.h"
+#include "solver/matrix/form_factor_report.h"
 #include "solver/solver_settings.h"
 #include "solver/tally/energy_audit.h"
 
@@ -45,7 +46,15 @@ struct Estimate {
   double stderr_of_mean = 0;
 };
 
-enum class StopReason { kErrorTarget, kTimeLimit, kPacketCount, kInterrupted, kNoLuminaire, kBatchLimit };
+enum class StopReason {
+  kErrorTarget,
+  kTimeLimit,
+  kPacketCount,
+  kInterrupted,
+  kNoLuminaire,
+  kBatchLimit,
+  kSystemSolved,  ///< By the matrix method, which has no stopping rule.
+};
 std::string to_string(StopReason reason);  ///< In words, as printed and stored.
 
 /// How far a solve got.
@@ -83,6 +92,7 @@ struct Solution {
   ZoneMesh mesh{BaseMesh{}};
   ZoneSums sums;
   EnergyAudit audit;
+  std::optional<FormFactorReport> form_factors;  ///< Of the matrix method; not kept in the file.
 
   // Batch means: mean = sum/n, standard error = sqrt((sum of squares - sum^2/n) / (n(n-1))). One batch alone
   // says nothing about its error: the standard error is then +infinity, never 0. Exceptions that are known to

@@ -72,10 +72,11 @@ inline std::string to_string(BandKind kind) {
 
 inline constexpr EmissiveUnits kAllEmissiveUnits[] = {EmissiveUnits::kCandela, EmissiveUnits::kWatt};
 inline constexpr BandKind kAllBandKinds[] = {BandKind::kGrey, BandKind::kRgb, BandKind::kSpectral};
-inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, SolveMethod::kWalk};
+inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, SolveMethod::kWalk,
+                                                   SolveMethod::kMatrix};
 inline constexpr SamplingKind kAllSamplingKinds[] = {SamplingKind::kRandom, SamplingKind::kSobol};
-inline constexpr StopReason kAllStopReasons[] = {StopReason::kErrorTarget, StopReason::kTimeLimit,
-                                                 StopReason::kPacketCount, StopReason::kBatchLimit,
-                                                 StopReason::kInterrupted, StopReason::kNoLuminaire};
+inline constexpr StopReason kAllStopReasons[] = {
+    StopReason::kErrorTarget, StopReason::kTimeLimit,   StopReason::kPacketCount, StopReason::kBatchLimit,
+    StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};
 
 }  // namespace reemit

@@ -16,7 +16,9 @@ struct BandAudit {
   std::vector<std::int64_t> absorbed_on_backs;  ///< By SurfaceId, on the backs of one-sided faces.
   /// Left the room; by the axis nearest to the direction: +x, -x, +y, -y, +z, -z.
   std::array<std::int64_t, 6> escaped{};
-  std::int64_t unshot = 0;  ///< Reflected but not sent on when a batch ended (shooting).
+  /// Reflected but not sent on when a batch ended (shooting); what rounding and sampling leave, of either
+  /// sign (matrix).
+  std::int64_t unshot = 0;
   std::int64_t roulette_gain = 0;
   std::int64_t roulette_loss = 0;
 

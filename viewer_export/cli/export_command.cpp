@@ -11,6 +11,7 @@
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/form_factor_export.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/option_values.h"
@@ -28,6 +29,7 @@ struct ExportOptions {
   std::optional<std::filesystem::path> room;
   std::filesystem::path output;
   VertexSettings vertex;
+  bool form_factors = false;
   ToneMapSettings tone_map;
   OutputStyle style;
 };
@@ -46,6 +48,9 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
 }
 
 ExitCode run_export(const ExportOptions& options) {
+  if (options.form_factors)
+    return export_form_factors(
+        {options.solution, options.output, options.vertex.seed, options.vertex.threads, options.style});
   export_format_of(options.output);  // refuses an unknown one before the work
   check_output_file(options.output, options.solution);
   const Solution solution = load_solution(options.solution);
@@ -85,37 +90,46 @@ std::string output_help() {
 void add_export_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App& command = *program.add_subcommand(
-      "export", "Write radiance [W/(m2 sr)] and irradiance [W/m2] per band at every vertex");
+      "export",
+      "Write radiance [W/(m2 sr)] and irradiance [W/m2] per band at every vertex, or the form factors");
   command.footer(
       "Examples:\n"
       "  reemit export room.h5 -o room.ply\n"
       "  reemit export room.h5 -o room.csv --samples 1024\n"
-      "  reemit export room.h5 -o quick.glb --values zones");
+      "  reemit export room.h5 -o quick.glb --values zones\n"
+      "  reemit export room.h5 -o factors.csv --form-factors");
   command.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
   command.add_option("-o,--output", options->output, output_help())->required()->type_name("FILE");
   add_room_option(command, options->room);
 
   command.option_defaults()->group("Values");
-  add_choice_option<bool>(command, "--values", options->vertex.average_zones,
-                          {{"gather", false}, {"zones", true}},
-                          "gather: direct light and final gather at each vertex; zones: the mean of the\n"
-                          "zones around it, quick and as coarse as the zones");
+  auto* form_factors =
+      command.add_flag("--form-factors", options->form_factors,
+                       "Write the form factors between all zones instead, computed anew; formats:" +
+                           form_factor_formats_help());
+  form_factors->excludes(add_choice_option<bool>(
+      command, "--values", options->vertex.average_zones, {{"gather", false}, {"zones", true}},
+      "gather: direct light and final gather at each vertex; zones: the mean of the\n"
+      "zones around it, quick and as coarse as the zones"));
   auto* error =
       add_parsed_option(command, "--error", options->vertex.error_target, parse_share, "SHARE",
                         "Refine until the relative error (area-weighted rms over vertices, worst band) is\n"
                         "below: 1%");
-  add_integer_option(command, "--samples", options->vertex.gather_rays, 1, 1048576,
-                     "Gather rays per vertex, rounded up")
-      ->excludes(error);
-  add_integer_option(command, "--light-samples", options->vertex.light_samples, 1, 65536,
-                     "Shadow rays per vertex, rounded up")
-      ->excludes(error);
-  command.add_flag("--all-zones", options->vertex.all_zones,
-                   "Keep the backs of surfaces that no light reached and that do not emit");
+  error->excludes(form_factors);
+  form_factors->excludes(add_integer_option(command, "--samples", options->vertex.gather_rays, 1, 1048576,
+                                            "Gather rays per vertex, rounded up")
+                             ->excludes(error));
+  form_factors->excludes(add_integer_option(command, "--light-samples", options->vertex.light_samples, 1,
+                                            65536, "Shadow rays per vertex, rounded up")
+                             ->excludes(error));
+  form_factors->excludes(
+      command.add_flag("--all-zones", options->vertex.all_zones,
+                       "Keep the backs of surfaces that no light reached and that do not emit"));
   add_seed_and_threads(command, options->vertex.seed, options->vertex.threads);
-  add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
-                    "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
-                    "(default: from the values)");
+  form_factors->excludes(
+      add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
+                        "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
+                        "(default: from the values)"));
 
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);

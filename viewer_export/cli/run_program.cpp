@@ -10,6 +10,7 @@
 
 #include "scenes/io/json_cursor.h"
 #include "scenes/model/error.h"
+#include "solver/matrix/interrupted.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/output_path.h"
 
@@ -29,7 +30,8 @@ constexpr const char* kFooter =
     "  reemit export room.h5 -o room.ply\n"
     "  reemit audit room.h5\n"
     "'reemit COMMAND --help' explains a command.\n"
-    "Exit codes: 0 done, 1 a check failed, 2 bad usage, input or output, 3 out of memory.";
+    "Exit codes: 0 done, 1 a check failed, 2 bad usage, input or output, 3 out of memory,\n"
+    "130 interrupted before there was a result.";
 
 std::vector<std::string> known_words(const CLI::App& command) {
   std::vector<std::string> words;
@@ -102,6 +104,8 @@ ExitCode run_program(int argc, const char* const* argv) {
     add_audit_command(program, action);
     add_info_command(program, action);
     return parse_and_run(program, action, argc, argv);
+  } catch (const Interrupted& end) {
+    return fail(fmt::format("{}; nothing was written", end.what()), ExitCode::kInterrupted);
   } catch (const ResourceError& problem) {
     return fail(problem.what(), ExitCode::kNoResources);
   } catch (const std::bad_alloc&) {

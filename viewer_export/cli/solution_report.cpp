@@ -33,21 +33,56 @@ Json record_json(const Solution& solution) {
           {"room_hash", solution.room_hash}};
 }
 
+std::string deviation_text(const RowSums& sums) {
+  return fmt::format("{:.6f} to {:.6f} (rms deviation from 1 in closed rooms {:.1e})", sums.lowest,
+                     sums.highest, sums.rms_deviation);
+}
+
+Json row_sums_json(const RowSums& sums) {
+  return {{"lowest", sums.lowest}, {"highest", sums.highest}, {"rms_deviation", sums.rms_deviation}};
+}
+
 }  // namespace
+
+std::string form_factor_text(const FormFactorReport& report) {
+  return fmt::format(
+      "form factors: {} zones ({} in closed rooms), {} pairs that face each other: {} open, {} walled off, "
+      "{} clear, {} hidden, {} sampled\nrow sums: {}; enforced: {}",
+      report.zones, report.closed_zones, report.facing_pairs, report.open_pairs, report.walled_pairs,
+      report.clear_pairs, report.hidden_pairs, report.sampled_pairs, deviation_text(report.before),
+      deviation_text(report.after));
+}
+
+Json form_factor_json(const FormFactorReport& report) {
+  return {{"zones", report.zones},
+          {"closed_zones", report.closed_zones},
+          {"facing_pairs", report.facing_pairs},
+          {"open_pairs", report.open_pairs},
+          {"walled_pairs", report.walled_pairs},
+          {"clear_pairs", report.clear_pairs},
+          {"hidden_pairs", report.hidden_pairs},
+          {"sampled_pairs", report.sampled_pairs},
+          {"rays", report.rays},
+          {"row_sums_before", row_sums_json(report.before)},
+          {"row_sums", row_sums_json(report.after)}};
+}
 
 std::string solve_line(const Solution& solution) {
   const SolveRecord& record = solution.record;
-  std::string line =
-      fmt::format("stopped: {}; {} packets, {} rays, {:.2f} s, error {}", to_string(record.stopped),
-                  record.packets, record.rays, record.seconds, percent_text(record.error));
+  const std::string effort = solution.form_factors ? fmt::format("{} zones", solution.mesh.zone_count())
+                                                   : fmt::format("{} packets", record.packets);
+  std::string line = fmt::format("stopped: {}; {}, {} rays, {:.2f} s, error {}", to_string(record.stopped),
+                                 effort, record.rays, record.seconds, percent_text(record.error));
   if (record.discretisation)
     line += fmt::format("; points differ from their zones by {}", percent_text(*record.discretisation));
+  if (solution.form_factors) line += "\n" + form_factor_text(*solution.form_factors);
   return line;
 }
 
 Json solve_json(const Solution& solution, const std::filesystem::path& file) {
   Json json = record_json(solution);
   json["solution"] = file.string();
+  if (solution.form_factors) json["form_factors"] = form_factor_json(*solution.form_factors);
   return json;
 }
 

@@ -8,7 +8,13 @@
 
 namespace reemit::cli {
 
-/// The line `solve` ends with: why it stopped, packets, rays, seconds, error.
+/// How form factors came about, for people, without a last newline.
+std::string form_factor_text(const FormFactorReport& report);
+/// The same for `solve --json` and `export --json`.
+nlohmann::ordered_json form_factor_json(const FormFactorReport& report);
+
+/// The line `solve` ends with: why it stopped, packets, rays, seconds, error; for the matrix method more
+/// about the form factors.
 std::string solve_line(const Solution& solution);
 /// The same as the document of `solve --json` (docs/command_line.md).
 nlohmann::ordered_json solve_json(const Solution& solution, const std::filesystem::path& file);

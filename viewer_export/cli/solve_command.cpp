@@ -9,6 +9,7 @@
 
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
+#include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
@@ -25,6 +26,8 @@ namespace reemit::cli {
 namespace {
 
 constexpr double kDefaultErrorTarget = 0.02;
+/// Zones aimed at without --zone-area: the time of the matrix grows with their square.
+constexpr int kMatrixZoneCount = 2000;
 
 struct SolveOptions {
   std::filesystem::path room;
@@ -39,7 +42,21 @@ bool has_stopping_rule(const SolverSettings& settings) {
   return settings.error_target > 0 || settings.time_limit_s > 0 || settings.packets > 0;
 }
 
-ProgressCallback progress_callback(Progress& progress) {
+/// The matrix has an end of its own.
+void refuse_stopping_rules(const SolverSettings& settings) {
+  const char* given = settings.error_target > 0   ? "--error"
+                      : settings.time_limit_s > 0 ? "--time"
+                                                  : "--packets";
+  throw InputError(given,
+                   "is a stopping rule, and --method matrix has none: it ends when the system is solved",
+                   "Leave it out.");
+}
+
+ProgressCallback progress_callback(Progress& progress, SolveMethod method) {
+  if (method == SolveMethod::kMatrix)
+    return [&progress](const SolveProgress& now) {
+      progress.update(now.fraction, "form factors", now.seconds_left);
+    };
   return [&progress](const SolveProgress& now) {
     progress.update(
         now.fraction,
@@ -49,14 +66,18 @@ ProgressCallback progress_callback(Progress& progress) {
 }
 
 ExitCode run_solve(const SolveOptions& options) {
+  const bool matrix = options.solver.method == SolveMethod::kMatrix;
+  if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
   check_output_file(options.output, options.room);
   const Scene scene = read_scene(options.room, options.read);
   if (!options.style.quiet) print_warnings(scene.warnings);
-  MeshResult meshed = build_mesh(scene, options.mesh);
+  MeshSettings mesh_settings = options.mesh;
+  if (matrix) mesh_settings.default_zone_count = kMatrixZoneCount;
+  MeshResult meshed = build_mesh(scene, mesh_settings);
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
 
   SolverSettings settings = options.solver;
-  if (!has_stopping_rule(settings)) {
+  if (!matrix && !has_stopping_rule(settings)) {
     settings.error_target = kDefaultErrorTarget;
     if (!options.style.quiet) {
       print_note(fmt::format("no stopping rule given; solving to --error {:g}%", 100 * kDefaultErrorTarget));
@@ -64,12 +85,12 @@ ExitCode run_solve(const SolveOptions& options) {
   }
   const InterruptGuard interrupt;
   Progress progress("solving", progress_style(options.style.quiet, options.style.verbose));
-  Solution solution =
-      solve(scene, std::move(meshed), settings, progress_callback(progress), interrupt.requested());
+  Solution solution = solve(scene, std::move(meshed), settings, progress_callback(progress, settings.method),
+                            interrupt.requested());
   progress.finish();
   solution.room_path = std::filesystem::absolute(options.room).lexically_normal().string();
   solution.read_options = options.read;
-  solution.mesh_settings = options.mesh;
+  solution.mesh_settings = mesh_settings;
   write_output([&] { save_solution(solution, options.output); });
 
   if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {
@@ -92,7 +113,8 @@ void add_solve_command(CLI::App& program, Action& action) {
   solve.footer(
       "The run ends when the first stopping rule holds; without any it is --error 2%. Ctrl-C ends it "
       "cleanly\n"
-      "and keeps the solution so far; a second Ctrl-C ends it at once.\n"
+      "and keeps the solution so far (--method matrix has none before its end); a second Ctrl-C ends it\n"
+      "at once.\n"
       "Examples:\n"
       "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
       "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7");
@@ -113,9 +135,12 @@ void add_solve_command(CLI::App& program, Action& action) {
                     "Stop after this many packets from luminaires: 250000 or 1e6");
 
   solve.option_defaults()->group("Method");
-  add_choice_option<SolveMethod>(solve, "--method", options->solver.method,
-                                 {{"shooting", SolveMethod::kShooting}, {"walk", SolveMethod::kWalk}},
-                                 "Estimator: shooting (absorb and re-emit) or walk (Russian roulette)");
+  add_choice_option<SolveMethod>(
+      solve, "--method", options->solver.method,
+      {{"shooting", SolveMethod::kShooting}, {"walk", SolveMethod::kWalk}, {"matrix", SolveMethod::kMatrix}},
+      "shooting (absorb and re-emit) or walk (Russian roulette); matrix: exact form\n"
+      "factors and a linear system, a reference for up to 16384 zones, without\n"
+      "stopping rules");
   add_choice_option<SamplingKind>(solve, "--sampling", options->solver.sampling,
                                   {{"sobol", SamplingKind::kSobol}, {"random", SamplingKind::kRandom}},
                                   "Points and directions of packets: low-discrepancy or random");
@@ -123,7 +148,8 @@ void add_solve_command(CLI::App& program, Action& action) {
 
   solve.option_defaults()->group("Room");
   add_parsed_option(solve, "--zone-area", options->mesh.zone_area, parse_positive, "M2",
-                    "Largest zone area [m2] (default: so that there are about 8000 zones)");
+                    "Largest zone area [m2] (default: so that there are about 8000 zones, 2000 for\n"
+                    "--method matrix)");
   solve.add_flag("--two-sided", options->read.force_two_sided,
                  "Let every face reflect on both sides (rooms with mixed winding)");
   add_choice_option<EmissiveUnits>(

@@ -1,0 +1,65 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "mesh/zone_mesh.h"
+#include "solver/matrix/form_factor_report.h"
+#include "solver/matrix/interrupted.h"
+#include "solver/matrix/leaks.h"
+#include "solver/matrix/symmetric_table.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// Form factors between all zones of a mesh. What is stored is the exchange area A_i F_ij = A_j F_ji [m2],
+/// once per pair: reciprocity holds by construction.
+class FormFactors {
+ public:
+  /// More zones than this make a table that no desktop holds.
+  static constexpr std::size_t kMostZones = 16384;
+
+  std::size_t zones() const { return areas_.size(); }
+  double zone_area(std::size_t i) const { return areas_[i]; }                              ///< [m2]
+  double exchange_area(std::size_t i, std::size_t j) const { return exchange_.at(i, j); }  ///< [m2]
+  /// Share of the power that zone i sends out uniformly which arrives at zone j directly.
+  double factor(std::size_t i, std::size_t j) const { return exchange_area(i, j) / areas_[i]; }
+  /// Its standard error: 0 for exact pairs, and for those that all rays found clear or hidden.
+  double factor_error(std::size_t i, std::size_t j) const;
+  Eigen::VectorXd row_sums() const;
+
+  const SymmetricTable<double>& exchange() const { return exchange_; }
+  /// Variance of A_i F_ij divided by A_i A_j: free of units, so that float holds it in rooms of any size.
+  const SymmetricTable<float>& relative_variance() const { return variance_; }
+  const ZoneLeaks& leaks() const { return leaks_; }
+  const FormFactorReport& report() const { return report_; }
+
+ private:
+  friend class FormFactorBuilder;
+  std::vector<double> areas_;
+  SymmetricTable<double> exchange_;
+  SymmetricTable<float> variance_;
+  ZoneLeaks leaks_;
+  FormFactorReport report_;
+};
+
+struct FormFactorSettings {
+  std::uint64_t seed = 1;
+  bool enforce_closure = true;
+};
+
+/// Computes the form factors of all pairs: exact where nothing comes between, else the exact unoccluded
+/// factor times a visible share found by shadow rays (docs/matrix_method.md). In closed rooms the sampled
+/// pairs are then corrected such that rows sum to 1. The same bits on any number of threads; runs in the task
+/// arena of the caller. `progress`, if any, gets the share done [0,1], from one thread at a time.
+/// Throws InputError for more zones than kMostZones, ResourceError when the table does not fit into memory,
+/// Interrupted when `interrupt` becomes true.
+FormFactors compute_form_factors(const ZoneMesh& mesh, const RayScene& rays,
+                                 const FormFactorSettings& settings,
+                                 const std::function<void(double)>& progress,
+                                 const std::atomic<bool>& interrupt);
+
+}  // namespace reemit

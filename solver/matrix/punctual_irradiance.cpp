@@ -1,0 +1,58 @@
+#include "solver/matrix/punctual_irradiance.h"
+
+#include <tbb/parallel_for.h>
+
+#include "solver/emit/punctual_emitter.h"
+#include "solver/matrix/zone_points.h"
+#include "solver/sampling/sobol.h"
+#include "solver/sampling/warp.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::uint32_t kPointsPerScramble =
+    PunctualIrradiance::kRaysPerZone / PunctualIrradiance::kReplicates;
+
+bool lit(const RayScene& rays, const PunctualEmitter& emitter, const Vec3f& origin) {
+  return emitter.kind == PunctualEmitter::Kind::kDirectional ? rays.escapes(origin, -emitter.direction)
+                                                             : rays.visible(origin, emitter.position);
+}
+
+}  // namespace
+
+PunctualIrradiance punctual_irradiance(const PunctualLight& light, const TransportScene& transport,
+                                       std::uint64_t seed, double power_per_unit) {
+  const ZoneMesh& mesh = transport.mesh();
+  const RayScene& rays = transport.rays();
+  const PunctualEmitter emitter = make_punctual_emitter(light, rays);
+  const auto metres = static_cast<float>(rays.metres_per_unit());
+  PunctualIrradiance result;
+  const auto zones = static_cast<Eigen::Index>(mesh.zone_count());
+  result.of_zone = RowMatrix::Zero(zones, PunctualIrradiance::kReplicates);
+  tbb::parallel_for(Eigen::Index{0}, zones, [&](Eigen::Index z) {
+    const auto zone = static_cast<std::size_t>(z);
+    const ZonePoints points(mesh, rays, ZoneId(zone));
+    for (std::uint32_t r = 0; r < PunctualIrradiance::kReplicates; ++r) {
+      const SobolSequence numbers(matrix_seed(seed, MatrixNumbers::kLightOnZone, zone, r));
+      double sum = 0;
+      for (std::uint32_t k = 0; k < kPointsPerScramble; ++k) {
+        const auto [u, v] = sample_triangle(numbers.sample(k, 0), numbers.sample(k, 1));
+        const Vec3f origin = points.origin(u, v);
+        const float unoccluded = emitter.unoccluded_irradiance(origin, points.normal(), metres);
+        if (unoccluded > 0 && lit(rays, emitter, origin)) sum += static_cast<double>(unoccluded);
+      }
+      result.of_zone(z, r) = sum / kPointsPerScramble;
+    }
+  });
+  Eigen::VectorXd areas(zones);
+  for (Eigen::Index z = 0; z < zones; ++z) areas(z) = mesh.zone_area(ZoneId(static_cast<std::size_t>(z)));
+  Eigen::RowVectorXd arriving = areas.transpose() * result.of_zone;
+  if (power_per_unit > 0 && (arriving.array() > 0).all()) {
+    result.of_zone.array().rowwise() *= power_per_unit / arriving.array();
+    arriving.setConstant(power_per_unit);
+  }
+  result.arriving = arriving.mean();
+  return result;
+}
+
+}  // namespace reemit

@@ -1,0 +1,217 @@
+// Form factors of whole rooms: closure, reciprocity, occlusion, threads, refusals.
+#include "solver/matrix/form_factors.h"
+
+#include <atomic>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include "scenes/model/error.h"
+#include "tests/support/test_rooms.h"
+
+namespace reemit {
+namespace {
+
+using test::RoomBuilder;
+
+FormFactors factors_of(const RoomBuilder& room, bool enforce = true, int threads = 2) {
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const std::atomic<bool> interrupt = false;
+  FormFactors result;
+  tbb::task_arena(threads).execute([&] {
+    result =
+        compute_form_factors(meshed.mesh, rays, {.seed = 11, .enforce_closure = enforce}, nullptr, interrupt);
+  });
+  return result;
+}
+
+RoomBuilder cube(std::uint32_t divisions) {
+  RoomBuilder room;
+  const MaterialId m = room.material("all", 0.5, 1.0);
+  room.box(Vec3::Zero(), Vec3(1, 1, 1), {m, m, m, m, m, m}, divisions);
+  return room;
+}
+
+/// A closed box with a block that hangs in it.
+RoomBuilder box_with_block(std::uint32_t divisions) {
+  RoomBuilder room = cube(divisions);
+  const MaterialId m = room.material("block", 0.5);
+  const auto p = [](int x, int y, int z) { return Vec3(0.3 + 0.35 * x, 0.25 + 0.4 * y, 0.35 + 0.3 * z); };
+  const std::array<std::array<Vec3, 4>, 6> faces{{{p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)},
+                                                  {p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)},
+                                                  {p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)},
+                                                  {p(0, 1, 0), p(0, 1, 1), p(1, 1, 1), p(1, 1, 0)},
+                                                  {p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)},
+                                                  {p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}}};
+  for (const auto& face : faces) room.quad(m, face, 2);
+  return room;
+}
+
+TEST(FormFactors, ConvexRoomIsExactWithoutShadowRays) {
+  for (const std::uint32_t divisions : {1U, 3U}) {
+    const FormFactors f = factors_of(cube(divisions));
+    const FormFactorReport& report = f.report();
+    EXPECT_EQ(report.open_pairs, report.facing_pairs);
+    EXPECT_EQ(report.rays, f.zones() * ZoneLeaks::kRaysPerZone);
+    EXPECT_EQ(report.closed_zones, f.zones());
+    EXPECT_NEAR(report.before.lowest, 1, 1e-11);
+    EXPECT_NEAR(report.before.highest, 1, 1e-11);
+    EXPECT_LT(report.before.rms_deviation, 1e-11);
+    EXPECT_EQ(report.after.lowest, report.before.lowest) << "nothing is sampled, so nothing may change";
+  }
+}
+
+/// Form factor between two surfaces of one zone set each, from zone factors.
+double surface_factor(const FormFactors& f, const ZoneMesh& mesh, std::size_t from, std::size_t to,
+                      double& error) {
+  double exchange = 0;
+  double area = 0;
+  double variance = 0;
+  for (std::size_t i = 0; i < f.zones(); ++i) {
+    if (mesh.zone_surface(ZoneId(i)).index() != from) continue;
+    area += f.zone_area(i);
+    for (std::size_t j = 0; j < f.zones(); ++j) {
+      if (mesh.zone_surface(ZoneId(j)).index() != to) continue;
+      exchange += f.exchange_area(i, j);
+      variance += std::pow(f.factor_error(i, j) * f.zone_area(i), 2);
+    }
+  }
+  error = std::sqrt(variance) / area;
+  return exchange / area;
+}
+
+/// L-shaped room: outer sides 3, arms of width 1, height 1.
+RoomBuilder l_room(std::uint32_t divisions) {
+  RoomBuilder room;
+  const MaterialId m = room.material("all", 0.5, 1.0);
+  const auto wall = [&](double x0, double y0, double x1, double y1) {
+    room.quad(m, {Vec3(x0, y0, 0), Vec3(x0, y0, 1), Vec3(x1, y1, 1), Vec3(x1, y1, 0)}, divisions);
+  };
+  wall(0, 0, 3, 0);  // S1
+  wall(3, 0, 3, 1);
+  wall(3, 1, 1, 1);
+  wall(1, 1, 1, 3);
+  wall(1, 3, 0, 3);
+  wall(0, 3, 0, 0);  // S6
+  const auto level = [&](double x0, double y0, double x1, double y1) {
+    room.quad(m, {Vec3(x0, y0, 0), Vec3(x1, y0, 0), Vec3(x1, y1, 0), Vec3(x0, y1, 0)}, divisions);
+    room.quad(m, {Vec3(x0, y0, 1), Vec3(x0, y1, 1), Vec3(x1, y1, 1), Vec3(x1, y0, 1)}, divisions);
+  };
+  level(0, 0, 1, 1);
+  level(1, 0, 3, 1);
+  level(0, 1, 1, 3);
+  return room;
+}
+
+TEST(FormFactors, LRoomHasItsObstructedFactor) {
+  // Reference case lroom.F16.PB: 0.1131634213 (published layout, 1-D x 1-D Gauss with the exact shadow
+  // limit). The limit is 5 standard errors plus 2e-5 for what first rays overlook: odds below 1 in 10^6.
+  const RoomBuilder room = l_room(4);
+  const MeshResult meshed = room.mesh();
+  for (const bool enforce : {false, true}) {
+    const FormFactors f = factors_of(room, enforce);
+    double error = 0;
+    const double factor = surface_factor(f, meshed.mesh, 0, 5, error);
+    EXPECT_NEAR(factor, 0.1131634213028795, 5 * error + 2e-5) << enforce;
+    EXPECT_LT(error, 2e-4);
+    EXPECT_GT(std::fabs(1.02 * factor - 0.1131634213028795), 5 * error + 2e-5) << "2 % must be seen";
+  }
+}
+
+TEST(FormFactors, ClosureIsEnforcedAndExactPairsStay) {
+  const FormFactors before = factors_of(box_with_block(4), false);
+  const FormFactors after = factors_of(box_with_block(4), true);
+  const FormFactorReport& report = after.report();
+  EXPECT_EQ(report.closed_zones, after.zones());
+  EXPECT_GT(report.sampled_pairs, 0U);
+  EXPECT_GT(report.open_pairs, 0U);
+  EXPECT_LT(report.before.rms_deviation, 0.01) << "sampling and the rule of the first rays";
+  EXPECT_GT(report.before.rms_deviation, 1e-6);
+  EXPECT_LT(report.after.rms_deviation, 1e-12);
+  EXPECT_EQ(before.report().before.rms_deviation, report.before.rms_deviation);
+  double changed = 0;
+  std::size_t sampled = 0;
+  for (std::size_t i = 0; i < after.zones(); ++i)
+    for (std::size_t j = 0; j < after.zones(); ++j) {
+      EXPECT_GE(after.exchange_area(i, j), 0);
+      if (after.factor_error(i, j) > 0) {
+        changed += std::pow((after.factor(i, j) - before.factor(i, j)) / after.factor_error(i, j), 2);
+        ++sampled;
+      } else {
+        EXPECT_EQ(after.exchange_area(i, j), before.exchange_area(i, j)) << i << " " << j;
+      }
+    }
+  EXPECT_LT(changed / static_cast<double>(sampled), 2) << "changes of the order of the standard errors";
+}
+
+TEST(FormFactors, ReciprocityHoldsToTheBit) {
+  const FormFactors f = factors_of(box_with_block(3));
+  for (std::size_t i = 0; i < f.zones(); ++i)
+    for (std::size_t j = 0; j < f.zones(); ++j) EXPECT_EQ(f.exchange_area(i, j), f.exchange_area(j, i));
+}
+
+TEST(FormFactors, OpenBoxLacksWhatItsOpeningTakes) {
+  RoomBuilder room;
+  const MaterialId m = room.material("all", 0.5, 1.0);
+  room.box(Vec3::Zero(), Vec3(1, 1, 1), {m, m, m, m, m, MaterialId()}, 2);
+  const FormFactors f = factors_of(room);
+  const MeshResult meshed = room.mesh();
+  const Eigen::VectorXd sums = f.row_sums();
+  double escaping = 0;
+  for (std::size_t i = 0; i < f.zones(); ++i)
+    if (meshed.mesh.zone_surface(ZoneId(i)).index() == 4)  // the floor
+      escaping += f.zone_area(i) * (1 - sums(static_cast<Eigen::Index>(i)));
+  EXPECT_NEAR(escaping, 0.19982489569838738, 1e-11);
+  EXPECT_EQ(f.report().closed_zones, 0U);
+  EXPECT_EQ(f.report().rays, f.zones() * ZoneLeaks::kRaysPerZone) << "a convex room needs no shadow rays";
+}
+
+TEST(FormFactors, TwoSidesOfASheetAreZonesOfTheirOwn) {
+  RoomBuilder room = cube(2);
+  const MaterialId sheet = room.material("sheet", 0.5, 0, true);
+  room.quad(sheet, {Vec3(0.5, 0, 0), Vec3(0.5, 1, 0), Vec3(0.5, 1, 1), Vec3(0.5, 0, 1)},
+            2);  // parts the room
+  const FormFactors f = factors_of(room);
+  const MeshResult meshed = room.mesh();
+  for (std::size_t i = 0; i < f.zones(); ++i)
+    for (std::size_t j = 0; j < f.zones(); ++j) {
+      const double x = meshed.mesh.zone_centroid(ZoneId(i)).x();
+      const double y = meshed.mesh.zone_centroid(ZoneId(j)).x();
+      if (std::max(x, y) > 0.55 && std::min(x, y) < 0.45) {
+        EXPECT_EQ(f.exchange_area(i, j), 0);
+      }
+    }
+  EXPECT_LT(f.report().after.rms_deviation, 1e-11);
+  EXPECT_EQ(f.report().closed_zones, f.zones());
+}
+
+TEST(FormFactors, SameBitsOnAnyNumberOfThreads) {
+  const FormFactors one = factors_of(box_with_block(3), true, 1);
+  const FormFactors two = factors_of(box_with_block(3), true, 2);
+  for (std::size_t i = 0; i < one.zones(); ++i)
+    for (std::size_t j = i + 1; j < one.zones(); ++j) {
+      EXPECT_EQ(one.exchange_area(i, j), two.exchange_area(i, j));
+      EXPECT_EQ(one.factor_error(i, j), two.factor_error(i, j));
+    }
+}
+
+TEST(FormFactors, TooManyZonesAreRefusedWithAdvice) {
+  try {
+    factors_of(cube(40));
+    FAIL() << "19200 zones were accepted";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("--zone-area"), std::string::npos) << e.what();
+  }
+}
+
+TEST(FormFactors, InterruptLeavesNothing) {
+  const MeshResult meshed = cube(4).mesh();
+  const RayScene rays(meshed.mesh);
+  const std::atomic<bool> interrupt = true;
+  EXPECT_THROW(compute_form_factors(meshed.mesh, rays, {}, nullptr, interrupt), Interrupted);
+}
+
+}  // namespace
+}  // namespace reemit

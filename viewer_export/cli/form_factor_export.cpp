@@ -1,0 +1,88 @@
+#include "viewer_export/cli/form_factor_export.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+
+#include "solver/solution/solution_file.h"
+#include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/output_path.h"
+#include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/solution_report.h"
+#include "viewer_export/formats/export_info.h"
+#include "viewer_export/formats/form_factor_writer.h"
+
+#include "reemit/version.h"
+
+namespace reemit::cli {
+namespace {
+
+std::vector<std::pair<std::string, std::string>> notes_of(const Solution& solution,
+                                                          const FormFactorReport& report,
+                                                          std::uint64_t seed) {
+  std::vector<std::pair<std::string, std::string>> notes{
+      {"program", fmt::format("reemit {}", kProgramVersion)},
+      {"room", solution.room_path},
+      {"room_hash", solution.room_hash},
+      {"meaning",
+       "factor: share of the power that zone_from sends out uniformly which reaches zone_to directly"},
+      {"zones", fmt::format("{}, numbered as in the solution file", report.zones)},
+      {"pairs", fmt::format("{} facing: {} open, {} walled off, {} clear, {} hidden, {} sampled",
+                            report.facing_pairs, report.open_pairs, report.walled_pairs, report.clear_pairs,
+                            report.hidden_pairs, report.sampled_pairs)},
+      {"row_sums", fmt::format("{} to {}", report.after.lowest, report.after.highest)},
+      {"seed", std::to_string(seed)}};
+  for (auto& [name, value] : notes) value = one_line(std::move(value));
+  return notes;
+}
+
+}  // namespace
+
+ExitCode export_form_factors(const FormFactorExport& options) {
+  form_factor_format_of(options.output);  // refuses an unknown one before the work
+  check_output_file(options.output, options.solution);
+  const Solution solution = load_solution(options.solution);
+  const RayScene rays(solution.mesh);
+
+  const auto start = std::chrono::steady_clock::now();
+  const InterruptGuard interrupt;
+  Progress progress("form factors", progress_style(options.style.quiet, options.style.verbose));
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
+  const FormFactors factors = arena.execute([&] {
+    return compute_form_factors(
+        solution.mesh, rays, {.seed = options.seed, .enforce_closure = true},
+        [&progress](double done) { progress.update(done); }, interrupt.requested());
+  });
+  progress.finish();
+  const FormFactorReport& report = factors.report();
+  write_output([&] {
+    write_form_factors(
+        {factors, solution.mesh, solution.surface_names, notes_of(solution, report, options.seed)},
+        options.output);
+  });
+
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (options.style.json) {
+    nlohmann::ordered_json json = form_factor_json(report);
+    json["file"] = options.output.string();
+    json["seconds"] = seconds;
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("{}: {:.2f} s\n{}\n", options.output.string(), seconds, form_factor_text(report));
+  }
+  return ExitCode::kDone;
+}
+
+std::string form_factor_formats_help() {
+  std::string help;
+  for (const FormFactorFormat& format : form_factor_formats())
+    help += fmt::format("\n{}  {}", format.extension, format.description);
+  return help;
+}
+
+}  // namespace reemit::cli
