@@ -7,6 +7,8 @@
 namespace reemit::bench {
 namespace {
 
+constexpr double kBelievedShare = 0.5;
+
 double log_log_time(const CurvePoint& before, const CurvePoint& after, double error) {
   const double share = std::log(before.error / error) / std::log(before.error / after.error);
   return before.seconds * std::pow(after.seconds / before.seconds, share);
@@ -41,10 +43,11 @@ double remaining_error(const std::vector<CurvePoint>& curve) {
   const double determinant = aa * bb - ab * ab;
   if (curve.size() < 2 || determinant <= 1e-12 * aa * bb) return 0;
   const double left2 = (a1 * bb - b1 * ab) / determinant;
-  // No more can stay than was left at the best point.
+  const double left = std::sqrt(std::max(0.0, left2));
+  // No more can stay than was left at the best point; a little may be the chance of a few runs.
   const auto best = std::min_element(curve.begin(), curve.end(),
                                      [](const auto& a, const auto& b) { return a.error < b.error; });
-  return std::min(std::sqrt(std::max(0.0, left2)), best->error);
+  return left > kBelievedShare * best->error ? std::min(left, best->error) : 0;
 }
 
 TimeToError time_to_error(const std::vector<CurvePoint>& curve, double error) {

@@ -43,7 +43,8 @@ struct TimeToError {
 /// Throws std::invalid_argument without points.
 TimeToError time_to_error(const std::vector<CurvePoint>& curve, double error);
 
-/// The part of the error that stays, as described above; 0 where the points show none.
+/// The part of the error that stays, as described above; 0 where it is less than half of the least error:
+/// that little cannot be told from chance.
 double remaining_error(const std::vector<CurvePoint>& curve);
 
 /// Slope of log(error) over log(work) by least squares; nothing with fewer than two different amounts of

@@ -22,9 +22,9 @@ std::string time_cell(const TimeToError& time) {
     case Reach::kMeasured:
       return seconds;
     case Reach::kAtMost:
-      return "≤ " + seconds;
+      return fmt::format("≤ {}", seconds);
     case Reach::kExtrapolated:
-      return "*" + seconds + "*";
+      return fmt::format("*{}*", seconds);
     case Reach::kNever:
       break;
   }
@@ -46,8 +46,7 @@ std::string time_table(const std::vector<Curve>& curves) {
     const Level& last = c.levels.back();
     const double left = remaining_error(points);
     text += fmt::format(" {:.2g} s | {} ({} .. {}) | {} |\n", last.seconds.median, percent(last.error.median),
-                        percent(last.error.least), percent(last.error.most),
-                        left > 0.5 * last.error.median ? percent(left) : "");
+                        percent(last.error.least), percent(last.error.most), left > 0 ? percent(left) : "");
   }
   return text;
 }
@@ -100,7 +99,7 @@ std::string factor_table(const std::vector<Curve>& vertices, const std::vector<C
 
 std::string note_list(const Table& table) {
   std::string text;
-  for (const std::string& note : table.notes) text += "- " + note + "\n";
+  for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   return text;
 }
 

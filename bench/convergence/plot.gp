@@ -22,7 +22,7 @@ stats $data using (log($6)) nooutput name "B"
 guide(x) = exp(Y_max) * sqrt(exp(X_min) / x)
 
 set logscale xy
-set xlabel "wall time [s]" offset 0,0.5
+set xlabel "wall time [s]" offset 0,0.8
 set ylabel y_label
 set title heading noenhanced
 set xtics (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200)

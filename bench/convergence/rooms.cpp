@@ -56,7 +56,7 @@ std::vector<Room> find_rooms(const Options& options, Table& table) {
     box.camera = first_camera(box.scene);
     box.picture_size = 256;
     box.tile_stride = 8;
-    box.reference_samples = 8192;
+    box.reference_samples = 4096;
     box.path_samples = {16, 64, 256};
     box.vertex_stride = 13;
     box.vertex_zone_area = 3.1e-5;

@@ -26,7 +26,7 @@ struct Effort {
 };
 
 constexpr std::array<Effort, 4> kGatherEfforts{
-    {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 256}}};
+    {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 128}}};
 constexpr std::array<Effort, 4> kZoneEfforts{{{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}};
 /// Camera rays of a replicate in one block of the reference.
 constexpr int kReferenceBlock = 16;

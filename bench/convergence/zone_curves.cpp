@@ -14,7 +14,7 @@ namespace {
 
 /// Packets from luminaires, one level each; the reference gets a multiple of the most.
 constexpr std::array<std::uint64_t, 5> kPackets{1U << 15, 1U << 17, 1U << 19, 1U << 21, 1U << 23};
-constexpr std::uint64_t kReferenceFactor = 16;
+constexpr std::uint64_t kReferenceFactor = 8;
 
 /// Reflected radiosity rho E of every zone and band [W/m2] and its standard error.
 Reference reflected_radiosity(const Solution& solution) {

@@ -54,12 +54,14 @@ TEST(TimeToError, ExtrapolatesNoiseWithSlopeOneHalf) {
 }
 
 TEST(TimeToError, ExtrapolatesPastAPartThatStays) {
-  const auto curve = curve_of(0.1, 0.01, {1, 4, 16});
+  const auto curve = curve_of(0.1, 0.01, {1, 4, 16, 64});
   EXPECT_NEAR(remaining_error(curve), 0.01, 1e-6);
-  const TimeToError found = time_to_error(curve, 0.02);
+  const TimeToError found = time_to_error(curve, 0.0125);
   EXPECT_EQ(found.reach, Reach::kExtrapolated);
-  EXPECT_NEAR(found.seconds, 0.01 / (0.0004 - 0.0001), 0.01);
+  EXPECT_NEAR(found.seconds, 0.01 / (0.0125 * 0.0125 - 0.0001), 0.1);
   EXPECT_EQ(time_to_error(curve, 0.009).reach, Reach::kNever);
+  // What stays is a small part of these errors: it could be chance.
+  EXPECT_EQ(remaining_error(curve_of(0.1, 0.01, {1, 4, 16})), 0);
 }
 
 TEST(TimeToError, ACurveSteeperThanOneHalfIsExtrapolatedWithOneHalf) {
