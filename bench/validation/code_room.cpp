@@ -1,0 +1,69 @@
+#include "bench/validation/code_room.h"
+
+#include <numbers>
+
+namespace reemit::validation {
+
+CodeRoom::CodeRoom(BandSet bands) {
+  scene_.name = "validation room";
+  scene_.source = scene_.name;
+  scene_.bands = std::move(bands);
+}
+
+MaterialId CodeRoom::paint(const Spectrum& reflectance, const Spectrum& exitance) {
+  Material& m = scene_.materials.emplace_back();
+  m.name = "paint " + std::to_string(scene_.materials.size());
+  m.reflectance = reflectance;
+  m.emitted_radiance = exitance / std::numbers::pi;
+  m.two_sided = false;
+  return MaterialId(scene_.materials.size() - 1);
+}
+
+MaterialId CodeRoom::paint(double reflectance, double exitance) {
+  const auto bands = static_cast<Eigen::Index>(scene_.bands.count());
+  return paint(Spectrum(Spectrum::Constant(bands, reflectance)),
+               Spectrum(Spectrum::Constant(bands, exitance)));
+}
+
+SurfaceId CodeRoom::add(const std::string& name, MaterialId material, const std::vector<Polygon>& polygons) {
+  Surface& s = scene_.surfaces.emplace_back();
+  s.name = name;
+  s.material = material;
+  for (const Polygon& p : polygons) {
+    Face& face = s.faces.emplace_back();
+    for (const Vec3& corner : p) {
+      face.outer.push_back(static_cast<std::uint32_t>(s.positions.size()));
+      s.positions.push_back(corner);
+    }
+  }
+  return SurfaceId(scene_.surfaces.size() - 1);
+}
+
+MeshResult CodeRoom::exact_zones(std::uint32_t divisions) const {
+  BaseMesh base;
+  for (std::size_t s = 0; s < scene_.surfaces.size(); ++s) {
+    const Surface& surface = scene_.surfaces[s];
+    const auto first = static_cast<std::uint32_t>(base.vertices.size());
+    base.vertices.insert(base.vertices.end(), surface.positions.begin(), surface.positions.end());
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+      const std::vector<std::uint32_t>& outer = surface.faces[f].outer;
+      for (std::size_t i = 2; i < outer.size(); ++i) {
+        BaseTriangle& t = base.triangles.emplace_back();
+        t.vertex = {first + outer[0], first + outer[i - 1], first + outer[i]};
+        t.surface = SurfaceId(s);
+        t.face = static_cast<std::uint32_t>(f);
+        t.divisions = divisions;
+        t.two_sided = scene_.material_of(surface).two_sided;
+      }
+    }
+  }
+  return {ZoneMesh(std::move(base)), MeshReport{}};
+}
+
+MeshResult CodeRoom::meshed(double zone_area) const {
+  MeshSettings settings;
+  settings.zone_area = zone_area;
+  return build_mesh(scene_, settings);
+}
+
+}  // namespace reemit::validation

@@ -1,0 +1,39 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "bench/validation/shapes.h"
+#include "mesh/build_mesh.h"
+#include "scenes/model/scene.h"
+
+namespace reemit::validation {
+
+/// A room made in code: one surface per named set of polygons, one-sided.
+class CodeRoom {
+ public:
+  explicit CodeRoom(BandSet bands = BandSet::grey());
+
+  /// Reflectance [1] and exitance pi L [W/m2], one number per band, or the same in all.
+  MaterialId paint(const Spectrum& reflectance, const Spectrum& exitance);
+  MaterialId paint(double reflectance, double exitance = 0);
+
+  /// Adds a surface of convex polygons.
+  SurfaceId add(const std::string& name, MaterialId material, const std::vector<Polygon>& polygons);
+  SurfaceId add(const std::string& name, MaterialId material, const Polygon& polygon) {
+    return add(name, material, std::vector<Polygon>{polygon});
+  }
+
+  Scene& scene() { return scene_; }
+  const Scene& scene() const { return scene_; }
+
+  /// Every polygon as a fan of triangles around its first corner, each of divisions x divisions zones: no
+  /// repair, no splitting, so that zones are exactly what a reference means.
+  MeshResult exact_zones(std::uint32_t divisions = 1) const;
+  /// As the program meshes a room, with zones of at most `zone_area` [m2].
+  MeshResult meshed(double zone_area) const;
+
+ private:
+  Scene scene_;
+};
+
+}  // namespace reemit::validation

@@ -1,0 +1,60 @@
+#include "bench/validation/cube_convergence.h"
+
+#include <stdexcept>
+
+#include "bench/validation/code_room.h"
+#include "bench/validation/point_gather.h"
+#include "bench/validation/solved_room.h"
+
+namespace reemit::validation {
+namespace {
+
+constexpr double kRays = 1.5e7;
+constexpr GatherEffort kOverFace{2048, 16384};
+
+const ReferenceCase& find_case(const std::vector<ReferenceCase>& cases, const std::string& name) {
+  for (const ReferenceCase& c : cases)
+    if (c.name == name) return c;
+  throw std::out_of_range("no reference case " + name);
+}
+
+const ReferenceValue& find_value(const ReferenceCase& c, const std::string& quantity) {
+  for (const ReferenceValue& v : c.values)
+    if (v.quantity == quantity) return v;
+  throw std::out_of_range("no " + quantity + " in " + c.name);
+}
+
+}  // namespace
+
+std::vector<CubeStep> measure_cube_convergence(const std::vector<ReferenceCase>& cases,
+                                               const Effort& effort) {
+  std::vector<CubeStep> steps;
+  for (const std::string rho_name : {"0.5", "0.8"}) {
+    const ReferenceCase& continuous = find_case(cases, "cube1.rho" + rho_name);
+    const double rho = std::stod(rho_name);
+    CodeRoom room;
+    for (int face = 0; face < 6; ++face)
+      room.add(kBoxFaces[static_cast<std::size_t>(face)], room.paint(rho, face == 4 ? 1 : 0),
+               box_face(face, {1, 1, 1}));
+    for (const int n : {1, 2, 4, 8, 16}) {
+      const std::string name = "cubezones.rho" + rho_name + ".N" + std::to_string(n);
+      const SolvedRoom solved(room.scene(), room.exact_zones(static_cast<std::uint32_t>(n)),
+                              SolveMethod::kShooting, effort.work * kRays * (1 - rho), name);
+      const PointGather plain(solved, seed_of(name), 0);
+      const PointGather gather(solved, seed_of(name));
+      for (const std::string face : {"z0", "z1", "x0"}) {
+        const std::string quantity = "H_mean on face " + face;
+        const ReferenceValue& truth = find_value(continuous, quantity);
+        const std::vector<SurfaceId> surface{solved.surface(face)};
+        steps.push_back(
+            {rho, face, n, truth.value, find_value(find_case(cases, name), quantity).value,
+             make_row(continuous, truth, "zones", solved.mean(surface), kSolveBound),
+             make_row(continuous, truth, "plain gather", plain.mean(surface, kOverFace), kPointBound),
+             make_row(continuous, truth, "gather", gather.mean(surface, kOverFace), kPointBound)});
+      }
+    }
+  }
+  return steps;
+}
+
+}  // namespace reemit::validation

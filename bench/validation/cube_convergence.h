@@ -1,0 +1,25 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "bench/validation/validation_row.h"
+
+namespace reemit::validation {
+
+/// Mean irradiance of one face of the cube whose face z0 emits, by zones of one size.
+struct CubeStep {
+  double rho = 0;
+  std::string face;
+  int divisions = 0;           ///< Each face has 2 divisions^2 triangular zones.
+  double continuous = 0;       ///< Of the continuous equation.
+  double square_zones = 0;     ///< Exact zonal system of divisions x divisions squares per face.
+  ValidationRow zones;         ///< Shooting, mean of the zones; expected is `continuous`.
+  ValidationRow plain_gather;  ///< Gather that reads every zone it hits.
+  ValidationRow gather;        ///< Gather as the program has it: close hits are carried on.
+};
+
+/// What zones and gathers make of the cube with reflectance 0.5 and 0.8. Needs the cases cube1.* and
+/// cubezones.*.
+std::vector<CubeStep> measure_cube_convergence(const std::vector<ReferenceCase>& cases, const Effort& effort);
+
+}  // namespace reemit::validation

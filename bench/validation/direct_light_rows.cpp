@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "bench/validation/code_room.h"
+#include "bench/validation/families.h"
+#include "bench/validation/point_gather.h"
+#include "scenes/io/scene_reader.h"
+
+namespace reemit::validation {
+namespace {
+
+using nlohmann::json;
+constexpr double kPi = std::numbers::pi;
+/// Standard error aimed at. Far smaller ones would meet the resolution of single precision.
+constexpr double kTarget = 2e-3;
+constexpr int kFewestSamples = 16;
+constexpr int kMostSamples = 1 << 18;
+/// Round luminaires keep their area (disk, sphere) or lateral area (cylinder); so what a receiver sees of
+/// them is off by less than this.
+constexpr double kRoundBound = 1e-4;
+constexpr int kSides = 1024;
+
+/// Rows need the standard error aimed at: a pilot run with numbers of its own says how many samples that
+/// takes, so that the choice does not depend on the numbers that are then averaged.
+Estimates estimate(const Scene& scene, const RayScene& rays, const SurfacePoint& x, const std::string& id,
+                   const Effort& effort) {
+  const std::uint64_t seed = seed_of(id);
+  constexpr int kPilot = 64;
+  const Estimates pilot = direct_irradiance(scene, rays, x, kPilot, ~seed);
+  const ValidationRow about = make_row({}, {}, {}, pilot, 0);
+  double samples = kPilot;
+  if (about.measured > 0) {
+    const double ratio = about.standard_error / about.measured / kTarget;
+    samples = kPilot * ratio * ratio * effort.work;
+  }
+  int count = kFewestSamples;
+  while (count < samples && count < kMostSamples) count *= 2;
+  return direct_irradiance(scene, rays, x, count, seed);
+}
+
+Vec3 middle_of(const Polygon& p) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& corner : p) sum += corner;
+  return sum / static_cast<double>(p.size());
+}
+
+Polygon turned_towards(const Polygon& p, const Vec3& point) {
+  const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
+  return normal.dot(point - p[0]) < 0 ? flipped(p) : p;
+}
+
+std::vector<Polygon> luminaire(const json& l, const Vec3& receiver) {
+  const std::string type = l.at("type");
+  if (type == "rect")
+    return {turned_towards(
+        parallelogram(to_vec3(l.at("corner")), to_vec3(l.at("edge_u")), to_vec3(l.at("edge_v"))), receiver)};
+  if (type == "triangle")
+    return {turned_towards(
+        {to_vec3(l.at("vertices")[0]), to_vec3(l.at("vertices")[1]), to_vec3(l.at("vertices")[2])},
+        receiver)};
+  if (type == "disk") return disk(to_vec3(l.at("center")), to_vec3(l.at("normal")), l.at("radius"), kSides);
+  if (type == "sphere") return sphere(to_vec3(l.at("center")), l.at("radius"), 5, false);
+  if (type == "cylinder")
+    return cylinder_side(to_vec3(l.at("base_center")), to_vec3(l.at("axis")), l.at("radius"), kSides, false);
+  throw std::invalid_argument("unknown luminaire " + type);
+}
+
+/// A black triangle around a point that a luminaire lights.
+class Receiver {
+ public:
+  Receiver(CodeRoom& room, const Vec3& point, const Vec3& normal, double size) {
+    const Vec3 n = normal.normalized();
+    const Vec3 u = n.unitOrthogonal();
+    const Vec3 v = n.cross(u);
+    // The centroid is the point.
+    room.add("receiver", room.paint(0),
+             Polygon{point + size * u, point + size * (-0.5 * u + v), point + size * (-0.5 * u - v)});
+  }
+};
+
+ValidationRow lit_point(const ReferenceCase& c, const ReferenceValue& v, CodeRoom& room, const Vec3& point,
+                        const Vec3& normal, double per_irradiance, double bound, const Effort& effort) {
+  const double distance = (middle_of(room.scene().surfaces.front().positions) - point).norm();
+  const Receiver receiver(room, point, normal, 1e-3 * distance);
+  const MeshResult mesh = room.exact_zones();
+  const RayScene rays(mesh.mesh);
+  constexpr float kThird = 1.0F / 3;
+  const SurfacePoint x =
+      surface_point(rays, TriangleId(mesh.mesh.triangle_count() - 1), kThird, kThird, true);
+  return make_row(c, v, "direct light", scaled(estimate(room.scene(), rays, x, v.id, effort), per_irradiance),
+                  bound);
+}
+
+ValidationRow from_luminaire(const ReferenceCase& c, const Effort& effort) {
+  const json& p = c.parameters;
+  const Vec3 point = to_vec3(p.at("receiver").at("point"));
+  CodeRoom room;
+  room.add("light", room.paint(0, kPi * p.at("radiance").get<double>()), luminaire(p.at("luminaire"), point));
+  const bool flat = c.kind == "irr_polygon";
+  return lit_point(c, c.values.front(), room, point, to_vec3(p.at("receiver").at("normal")), 1,
+                   flat ? kPointBound : kRoundBound, effort);
+}
+
+Polygon level(const json& rect, double z) {
+  return axis_rectangle(2, z, rect[0], rect[1], rect[2], rect[3], true);
+}
+
+ValidationRow occluded(const ReferenceCase& c, const Effort& effort) {
+  const json& p = c.parameters;
+  const Vec3 point = to_vec3(p.at("receiver").at("point"));
+  CodeRoom room;
+  room.add("light", room.paint(0, kPi * p.at("radiance").get<double>()),
+           turned_towards(level(p.at("light_rect"), p.at("light_z")), point));
+  const MaterialId black = room.paint(0);
+  for (const json& b : p.at("blockers")) room.add("blocker", black, level(b.at("rect"), b.at("z")));
+  return lit_point(c, c.values.front(), room, point, to_vec3(p.at("receiver").at("normal")), 1, kPointBound,
+                   effort);
+}
+
+ValidationRow sky(const ReferenceCase& c, const Effort& effort) {
+  const json& p = c.parameters;
+  const Vec3 point(p.at("point")[0], p.at("point")[1], 0);
+  CodeRoom room;
+  room.add("opening", room.paint(0, 1), turned_towards(level(p.at("opening"), p.at("h")), point));
+  return lit_point(c, c.values.front(), room, point, Vec3::UnitZ(), 1, kPointBound, effort);
+}
+
+void add_point_source(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
+  const json& p = c.parameters;
+  CodeRoom room;
+  // Without a ceiling: the lamp would lie in it.
+  for (const int face : {0, 1, 2, 3, 4})
+    room.add(kBoxFaces[face], room.paint(0.5), box_face(face, {4, 4, 3}));
+  room.scene().lights.push_back(PointLight{"lamp", to_vec3(p.at("source")),
+                                           Spectrum::Constant(1, p.at("flux").get<double>() / (4 * kPi))});
+  const MeshResult mesh = room.exact_zones();
+  const RayScene rays(mesh.mesh);
+  for (std::size_t i = 0; i < c.values.size(); ++i) {
+    const json& r = p.at("receivers")[i];
+    const SurfacePoint x = point_on(rays, to_vec3(r.at("point")), to_vec3(r.at("normal")));
+    rows.push_back(make_row(c, c.values[i], "direct light",
+                            estimate(room.scene(), rays, x, c.values[i].id, effort), kPointBound));
+  }
+}
+
+/// Direct light in the Cornell box of the library, with its blocks.
+void add_cornell_blocks(const std::vector<ReferenceCase>& cases, const Effort& effort,
+                        std::vector<ValidationRow>& rows) {
+  Scene scene = read_scene(REEMIT_SOURCE_DIR "/scenes/library/cornell_box.json");
+  for (Material& m : scene.materials)
+    if (m.emits()) m.emitted_radiance.setConstant(1);
+  const MeshResult mesh = build_mesh(scene);
+  const RayScene rays(mesh.mesh);
+  for (const ReferenceCase& c : cases) {
+    if (c.kind != "irr_cornell_blocks") continue;
+    constexpr double kMetresPerMillimetre = 1e-3;
+    const json& r = c.parameters.at("receiver");
+    const SurfacePoint x =
+        point_on(rays, kMetresPerMillimetre * to_vec3(r.at("point")), to_vec3(r.at("normal")));
+    const ReferenceValue& v = c.values.front();
+    rows.push_back(make_row(c, v, "direct light", estimate(scene, rays, x, v.id, effort), kPointBound));
+  }
+}
+
+}  // namespace
+
+std::vector<ValidationRow> evaluate_direct_light(const std::vector<ReferenceCase>& cases,
+                                                 const Effort& effort) {
+  std::vector<ValidationRow> rows;
+  for (const ReferenceCase& c : cases) {
+    if (c.kind == "irr_cornell_blocks") continue;
+    if (c.kind == "irr_rect_occluded")
+      rows.push_back(occluded(c, effort));
+    else if (c.kind == "sky_opening")
+      rows.push_back(sky(c, effort));
+    else if (c.kind == "point_source")
+      add_point_source(c, effort, rows);
+    else
+      rows.push_back(from_luminaire(c, effort));
+  }
+  add_cornell_blocks(cases, effort, rows);
+  return rows;
+}
+
+}  // namespace reemit::validation

@@ -1,0 +1,57 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/validation/solved_room.h"
+#include "solver/gather/direct_light.h"
+#include "solver/gather/hemisphere_gather.h"
+
+namespace reemit::validation {
+
+/// Base triangle whose front faces along `normal` (within 1e-3) and that holds `point` [m], as a point on it.
+/// Throws std::out_of_range when there is none.
+SurfacePoint point_on(const RayScene& rays, const Vec3& point, const Vec3& normal);
+
+/// Work per replicate.
+struct GatherEffort {
+  int light_samples = 64;  ///< Powers of two.
+  int gather_rays = 1024;  ///< A multiple of light_samples.
+};
+
+/// Irradiance by the final gather, as vertices and pixels have it, at given points: direct light plus
+/// cosine-distributed rays that read the zone solution (`close_hit`: see GatherSettings). Replicate r reads
+/// batch r of the SolvedRoom alone and has random numbers of its own, so that the spread of replicates holds
+/// all noise.
+class PointGather {
+ public:
+  PointGather(const SolvedRoom& room, std::uint64_t seed, double close_hit = 1.0);
+
+  /// At a point of the room's surfaces.
+  Estimates at(const Vec3& point, const Vec3& normal, const GatherEffort& effort, std::size_t band = 0) const;
+  /// Area mean over the fronts of surfaces: every light sample at a point of its own, stratified over the
+  /// area.
+  Estimates mean(const std::vector<SurfaceId>& surfaces, const GatherEffort& effort,
+                 std::size_t band = 0) const;
+
+ private:
+  template <class PlaceOf>
+  Estimates gather(std::uint64_t index, const GatherEffort& effort, std::size_t band,
+                   const PlaceOf& place_of) const;
+
+  const SolvedRoom* room_;
+  std::uint64_t seed_;
+  DirectLight direct_;
+  std::vector<RadianceField> fields_;      // by solve
+  std::vector<HemisphereGather> gathers_;  // by solve
+};
+
+/// Direct irradiance [W/m2] at a point in kReplicates independent estimates of `samples` shadow rays each.
+Estimates direct_irradiance(const Scene& scene, const RayScene& rays, const SurfacePoint& x, int samples,
+                            std::uint64_t seed);
+
+/// Relative bound of what single precision and ray starts 1e-6 of the room off their surface do to light at
+/// points.
+inline constexpr double kPointBound = 2e-5;
+
+}  // namespace reemit::validation
