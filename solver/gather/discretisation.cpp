@@ -17,6 +17,9 @@ constexpr std::size_t kHalves = 2;
 constexpr std::size_t kProbes = 1024;
 constexpr ReplicateEffort kEffort{16, 4};
 constexpr std::size_t kChunk = 64;
+/// An estimate that may as well be this many times larger says nothing, unless all it can be is small.
+constexpr double kMostUncertain = 2;
+constexpr double kSmallEnough = 0.03;
 
 /// A zone to look at, and the area it stands for [m2].
 struct Probe {
@@ -114,12 +117,19 @@ std::optional<double> discretisation_error(const Scene& scene, const RayScene& r
   std::optional<double> worst;
   for (std::size_t b = 0; b < bands; ++b) {
     double difference = 0;
+    double squares = 0;
     double value = 0;
     for (std::size_t k = b; k < values.size(); k += bands) {
       difference += differences[k];
+      squares += differences[k] * differences[k];
       value += values[k];
     }
-    if (value > 0) worst = std::max(worst.value_or(0), std::sqrt(std::max(0.0, difference) / value));
+    if (!(value > 0)) continue;
+    // The sum over the probes has about this standard error.
+    const double low = std::sqrt(std::max(0.0, difference) / value);
+    const double high = std::sqrt((std::max(0.0, difference) + 2 * std::sqrt(squares)) / value);
+    if (high > std::max(kSmallEnough, kMostUncertain * low)) return std::nullopt;
+    worst = std::max(worst.value_or(0), low);
   }
   return worst;
 }

@@ -12,7 +12,8 @@ namespace reemit {
 /// edges and gradients inside a zone, which the standard error of the zone values knows nothing of; it is
 /// also the error of a picture that shows the zones themselves. Noise of gathers and zones is taken out: two
 /// independent halves of the batches give two differences, whose product has no noise on the mean. Takes
-/// about 160,000 rays. Nothing with fewer than two batches or without light.
+/// about 160,000 rays. Nothing with fewer
+/// than two batches, without light, or when noise leaves it uncertain by more than a factor of two.
 std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays,
                                            const Solution& solution);
 

@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "bench/convergence/report.h"
+#include "bench/convergence/summary.h"
+
+namespace reemit::bench {
+namespace {
+
+constexpr std::array<double, 4> kErrors{0.05, 0.02, 0.01, 0.005};
+
+std::string time_cell(const TimeToError& time) {
+  const auto seconds =
+      time.seconds < 100 ? fmt::format("{:.2g}", time.seconds) : fmt::format("{:.0f}", time.seconds);
+  switch (time.reach) {
+    case Reach::kMeasured:
+      return seconds;
+    case Reach::kAtMost:
+      return fmt::format("≤ {}", seconds);
+    case Reach::kExtrapolated:
+      return fmt::format("*{}*", seconds);
+    case Reach::kNever:
+      break;
+  }
+  return "–";
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.2g} %", 100 * share);
+}
+
+std::string time_table(const std::vector<Curve>& curves) {
+  std::string text =
+      "| room | method | 5 % | 2 % | 1 % | 0.5 % | longest run | its error (least .. most) | stays |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (const Curve& c : curves) {
+    const std::vector<CurvePoint> points = c.medians();
+    text += fmt::format("| {} | {} |", c.room, c.method);
+    for (const double error : kErrors) text += fmt::format(" {} |", time_cell(time_to_error(points, error)));
+    const Level& last = c.levels.back();
+    const double left = remaining_error(points);
+    text += fmt::format(" {:.2g} s | {} ({} .. {}) | {} |\n", last.seconds.median, percent(last.error.median),
+                        percent(last.error.least), percent(last.error.most), left > 0 ? percent(left) : "");
+  }
+  return text;
+}
+
+std::string rate_table(const std::vector<Curve>& curves) {
+  std::string text =
+      "| room | method | per | rate | least .. most over seeds | last step |\n|---|---|---|---|---|---|\n";
+  for (const Curve& c : curves) {
+    const std::vector<CurvePoint> points = c.medians();
+    const std::optional<double> rate = convergence_rate(points);
+    if (!rate) continue;
+    std::vector<double> rates;
+    for (const auto& seed : c.by_seed)
+      if (const auto own = convergence_rate(seed)) rates.push_back(*own);
+    const Spread spread = spread_of(rates);
+    const auto last_step = convergence_rate({points.end() - 2, points.end()});
+    text += fmt::format("| {} | {} | {} | {:.2f} | {:.2f} .. {:.2f} | {:.2f} |\n", c.room, c.method,
+                        c.work_unit, *rate, spread.least, spread.most, *last_step);
+  }
+  return text;
+}
+
+std::string factor_row(const std::vector<Curve>& curves, const std::string& what, const std::string& room,
+                       const std::string& slow, const std::string& fast, double error,
+                       const std::string& asked) {
+  const Curve* a = find_curve(curves, room, slow);
+  const Curve* b = find_curve(curves, room, fast);
+  if (a == nullptr || b == nullptr) return "";
+  const Factor f = factor_between(*a, *b, error);
+  std::string ratio = "–";
+  if (f.ratio.median > 0)
+    ratio = fmt::format("{}**{:.2g}** ({:.2g} .. {:.2g})", f.is_bound ? "≥ " : "", f.ratio.median,
+                        f.ratio.least, f.ratio.most);
+  return fmt::format("| {}, {} | {} | {}: {} | {}: {} | {} | {} |\n", room, what, percent(error), slow,
+                     time_cell(f.slow), fast, time_cell(f.fast), ratio, asked);
+}
+
+std::string factor_table(const std::vector<Curve>& vertices, const std::vector<Curve>& stills) {
+  std::string text =
+      "| what | error | slower [s] | faster [s] | factor (least .. most over seeds) | aimed at |\n"
+      "|---|---|---|---|---|---|\n";
+  for (const double error : kErrors)
+    text += factor_row(vertices, "vertices, rms", "cornell_box", "zones averaged", "gathered", error,
+                       error == 0.02 ? "20" : "");
+  for (const char* room : {"cornell_box", "cornell_box grey"})
+    for (const double error : {0.05, 0.03, 0.02, 0.01})
+      text += factor_row(stills, "still, median", room, "path", "gather", error, error == 0.03 ? "8" : "");
+  return text;
+}
+
+std::string note_list(const Table& table) {
+  std::string text;
+  for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
+  return text;
+}
+
+std::string pictures(const std::vector<Curve>& curves) {
+  std::string text;
+  std::string last;
+  for (const Curve& c : curves) {
+    if (c.room == last) continue;
+    last = c.room;
+    text += fmt::format("![error over time: {}, {}](images/{})\n", c.quantity, c.room,
+                        plot_name(c.quantity, c.room));
+  }
+  return text;
+}
+
+void replace(std::string& text, const std::string& mark, const std::string& with) {
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) throw std::runtime_error(fmt::format("page.md.in has no {}", mark));
+  text.replace(at, mark.size(), with);
+}
+
+}  // namespace
+
+void write_page(const Table& table, const std::filesystem::path& folder) {
+  const std::filesystem::path source =
+      std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/convergence/page.md.in";
+  std::ifstream in(source);
+  if (!in) throw std::runtime_error(fmt::format("{} cannot be read", source.string()));
+  std::ostringstream buffer;
+  buffer << in.rdbuf();
+  std::string text = buffer.str();
+  const std::vector<Curve> zones = make_curves(table, "zones", Metric::kRms);
+  const std::vector<Curve> vertices = make_curves(table, "vertices", Metric::kRms);
+  const std::vector<Curve> stills = make_curves(table, "still", Metric::kMedian);
+  const std::vector<Curve> stills_rms = make_curves(table, "still", Metric::kRms);
+  replace(text, "@notes@\n", note_list(table));
+  replace(text, "@factors@\n", factor_table(vertices, stills));
+  replace(text, "@zone_pictures@\n", pictures(zones));
+  replace(text, "@zone_times@\n", time_table(zones));
+  replace(text, "@zone_rates@\n", rate_table(zones));
+  replace(text, "@vertex_pictures@\n", pictures(vertices));
+  replace(text, "@vertex_times@\n", time_table(vertices));
+  replace(text, "@vertex_rates@\n", rate_table(vertices));
+  replace(text, "@still_pictures@\n", pictures(stills));
+  replace(text, "@still_times@\n", time_table(stills));
+  replace(text, "@still_times_rms@\n", time_table(stills_rms));
+  replace(text, "@still_rates@\n", rate_table(stills));
+  const std::filesystem::path file = folder / "convergence.md";
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(fmt::format("{} cannot be written", file.string()));
+}
+
+}  // namespace reemit::bench

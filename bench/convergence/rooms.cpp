@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "bench/convergence/jobs.h"
+#include "mesh/build_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "solver/trace/ray_scene.h"
+#include "viewer_export/still/default_cameras.h"
+
+namespace reemit::bench {
+namespace {
+
+/// The same room without colour: reflectances and radiances are means over the bands. For rooms of diffuse
+/// surfaces lit by surfaces.
+Scene grey(Scene scene) {
+  const auto mean_of = [](Spectrum& s) { s = Spectrum::Constant(1, s.mean()); };
+  for (Material& m : scene.materials) {
+    mean_of(m.reflectance);
+    mean_of(m.emitted_radiance);
+  }
+  scene.bands = BandSet::grey();
+  finish_scene(scene);
+  return scene;
+}
+
+Camera first_camera(const Scene& scene) {
+  if (!scene.cameras.empty()) return scene.cameras.front();
+  const MeshResult mesh = build_mesh(scene);
+  const RayScene rays(mesh.mesh);
+  return default_cameras(scene, rays).front();
+}
+
+/// A file below a folder, wherever it is.
+std::optional<std::filesystem::path> find_below(const std::filesystem::path& folder,
+                                                const std::string& file) {
+  if (folder.empty() || !std::filesystem::is_directory(folder)) return std::nullopt;
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().string().ends_with(file)) found.push_back(entry.path());
+  if (found.empty()) return std::nullopt;
+  return *std::min_element(found.begin(), found.end());
+}
+
+}  // namespace
+
+std::vector<Room> find_rooms(const Options& options, Table& table) {
+  const std::filesystem::path library = std::filesystem::path(REEMIT_SOURCE_DIR) / "scenes/library";
+  std::vector<Room> rooms;
+  {
+    Room box;
+    box.name = "cornell_box";
+    box.scene = read_scene(library / "cornell_box.json");
+    box.camera = first_camera(box.scene);
+    box.picture_size = 256;
+    box.tile_stride = 8;
+    box.reference_samples = 4096;
+    box.path_samples = {16, 64, 256};
+    box.vertex_stride = 13;
+    box.vertex_zone_area = 3.1e-5;
+    Room grey_box = box;
+    grey_box.name = "cornell_box grey";
+    grey_box.scene = grey(box.scene);
+    grey_box.stills_only = true;
+    rooms.push_back(std::move(box));
+    rooms.push_back(std::move(grey_box));
+  }
+  const auto add = [&](const std::string& name, const std::filesystem::path& file,
+                       double vertex_zone_area) -> Room& {
+    Room room;
+    room.name = name;
+    room.scene = read_scene(file);
+    room.camera = first_camera(room.scene);
+    room.path_samples = {16, 64, 256};
+    room.vertex_zone_area = vertex_zone_area;
+    return rooms.emplace_back(std::move(room));
+  };
+  {
+    Room& office = add("office", library / "office.json", 0.02);
+    office.vertex_stride = 19;
+    office.picture_size = 96;  // its paths cost ten times those of the other rooms
+    office.reference_samples = 2048;
+    office.path_samples = {8, 32, 128};
+  }
+  for (const char* name : {"scene3", "scene6"}) {
+    const std::string file = fmt::format("erw5/{}.mgf", name);
+    if (const auto path = find_below(options.rooms, file))
+      add(fmt::format("erw5_{}", name), *path, 0.012);
+    else
+      table.notes.push_back(
+          fmt::format("erw5_{}: left out, {} is not below the folder given by --rooms", name, file));
+  }
+  return rooms;
+}
+
+}  // namespace reemit::bench

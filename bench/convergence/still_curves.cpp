@@ -1,0 +1,182 @@
+// Error over time of stills by the three integrators, solve included where a zone solution is read.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "bench/convergence/jobs.h"
+#include "mesh/build_mesh.h"
+#include "solver/progressive_solver.h"
+#include "viewer_export/still/render_still.h"
+#include "viewer_export/still/tile_renderer.h"
+
+namespace reemit::bench {
+namespace {
+
+/// One command line of a user: solve, then render.
+struct Effort {
+  std::uint64_t packets;
+  int samples;  ///< Camera rays per pixel.
+};
+
+constexpr std::array<Effort, 4> kGatherEfforts{
+    {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 128}}};
+constexpr std::array<Effort, 4> kZoneEfforts{{{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}};
+/// Camera rays of a replicate in one block of the reference.
+constexpr int kReferenceBlock = 16;
+
+/// Every so manyeth tile, shifted from row to row so that all parts of the picture have their share.
+std::vector<Tile> chosen_tiles(const Room& room) {
+  std::vector<Tile> tiles;
+  const int size = room.picture_size;
+  for (int y = 0; y < size; y += Tile::kSize)
+    for (int x = 0; x < size; x += Tile::kSize)
+      if ((x / Tile::kSize + 3 * (y / Tile::kSize)) % room.tile_stride == 0)
+        tiles.push_back({x, y, std::min(x + Tile::kSize, size), std::min(y + Tile::kSize, size)});
+  return tiles;
+}
+
+/// Values of the pixels of these tiles.
+std::vector<float> chosen_values(const StillImage& image, const std::vector<float>& layer,
+                                 const std::vector<Tile>& tiles) {
+  const std::size_t bands = image.bands.count();
+  std::vector<float> values;
+  for (const Tile& t : tiles)
+    for (int y = t.y0; y < t.y1; ++y)
+      for (int x = t.x0; x < t.x1; ++x)
+        for (std::size_t b = 0; b < bands; ++b)
+          values.push_back(layer[(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                  static_cast<std::size_t>(x)) *
+                                     bands +
+                                 b]);
+  return values;
+}
+
+int reference_samples(const Room& room, const Options& options) {
+  return room.reference_samples / (options.quick ? 4 : 1);
+}
+
+/// Path tracing of the chosen tiles alone.
+Reference path_reference(const Room& room, const MeshResult& mesh, const std::vector<Tile>& tiles,
+                         const Options& options) {
+  const std::atomic<bool> never{false};
+  // Path tracing reads no zone value: any solution will do.
+  SolverSettings solver;
+  solver.threads = options.threads;
+  solver.packets = 1U << 14;
+  const Solution solution = solve(room.scene, mesh, solver, {}, never);
+  const RayScene rays(solution.mesh);
+  StillSettings settings;
+  settings.integrator = Integrator::kPath;
+  settings.seed = kReferenceSeed;
+  const PinholeCamera camera(room.camera, room.picture_size, room.picture_size, rays);
+  constexpr std::size_t kReplicates = Film::kReplicates;
+  const TileRenderer renderer(room.scene, solution, rays, camera, settings, kReplicates);
+  Film film(room.scene.bands, room.picture_size, room.picture_size, kReplicates, renderer.parts());
+  const int samples = reference_samples(room, options) / static_cast<int>(kReplicates);
+  const int log2_samples = std::bit_width(static_cast<unsigned>(samples - 1));
+  tbb::task_arena arena(options.threads);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+      for (int first = 0; first < samples; first += kReferenceBlock)
+        renderer.render(tiles[i], {first, std::min(kReferenceBlock, samples - first), log2_samples}, film);
+    });
+  });
+  const StillImage image = film.finish();
+  return {room.scene.bands.count(), chosen_values(image, image.radiance, tiles),
+          chosen_values(image, image.radiance_stderr, tiles)};
+}
+
+class StillCurves {
+ public:
+  StillCurves(const Room& room, const Options& options, const ReferenceCache& cache, Table& table)
+      : room_(room),
+        options_(options),
+        table_(table),
+        mesh_(build_mesh(room.scene)),
+        tiles_(chosen_tiles(room)) {
+    norm_.floor_share = StillSettings{}.error_floor;
+    const int samples = reference_samples(room, options);
+    reference_ = cache.get(
+        fmt::format("still-{}-{}-{}-{}", content_hash(room.scene), room.picture_size, tiles_.size(), samples),
+        [&] { return path_reference(room, mesh_, tiles_, options); });
+    reference_error_ = own_error(reference_, norm_);
+    table.notes.push_back(
+        fmt::format("{}, stills: camera {}, {}x{} px, {} of them compared, {} zones; reference: {} "
+                    "path-traced samples per "
+                    "pixel, {:.2g} % median, {:.2g} % rms",
+                    room.name, room.camera.name, room.picture_size, room.picture_size,
+                    reference_.value.size() / reference_.bands, mesh_.mesh.zone_count(), samples,
+                    100 * reference_error_.median, 100 * reference_error_.rms));
+  }
+
+  void run(int seed, std::size_t level, std::size_t levels) {
+    if (level < levels) {
+      measure(Integrator::kZones, seed, level, kZoneEfforts[level]);
+      measure(Integrator::kGather, seed, level, kGatherEfforts[level]);
+    }
+    if (level < room_.path_samples.size() - (options_.quick ? 1 : 0))
+      measure(Integrator::kPath, seed, level, {0, room_.path_samples[level]});
+  }
+
+ private:
+  void measure(Integrator integrator, int seed, std::size_t level, const Effort& effort) {
+    SolverSettings solver;
+    solver.threads = options_.threads;
+    solver.seed = static_cast<std::uint64_t>(seed);
+    // render_still wants a solution of the room even where it reads none; that one is not timed.
+    const bool needs_solution = integrator != Integrator::kPath;
+    solver.packets = needs_solution ? effort.packets : 1U << 14;
+    StillSettings still;
+    still.threads = options_.threads;
+    still.seed = solver.seed;
+    still.integrator = integrator;
+    still.width = still.height = room_.picture_size;
+    still.spp = effort.samples;
+    Solution solution;
+    MeshResult own_mesh = mesh_;
+    const double solve_seconds =
+        seconds_of([&] { solution = solve(room_.scene, std::move(own_mesh), solver, {}, never_); });
+    StillImage image;
+    const double render_seconds = seconds_of([&] {
+      const RayScene rays(solution.mesh);
+      image = render_still(room_.scene, solution, rays, room_.camera, still, {}, never_);
+    });
+    // What a picture of the zones costs, and how good it is, depends on their packets.
+    const bool of_zones = integrator == Integrator::kZones;
+    report({room_.name, "still", to_string(integrator), solver.seed, static_cast<int>(level),
+            render_seconds + (needs_solution ? solve_seconds : 0.0),
+            of_zones ? static_cast<double>(solution.record.rays) : static_cast<double>(effort.samples),
+            of_zones ? "rays of the solve" : "samples per pixel",
+            deviation(chosen_values(image, image.radiance, tiles_), reference_, norm_), reference_error_},
+           table_);
+  }
+
+  const std::atomic<bool> never_{false};
+  const Room& room_;
+  const Options& options_;
+  Table& table_;
+  MeshResult mesh_;
+  std::vector<Tile> tiles_;
+  ErrorNorm norm_;
+  Reference reference_;
+  ErrorPair reference_error_;
+};
+
+}  // namespace
+
+void measure_stills(const Room& room, const Options& options, const ReferenceCache& cache, Table& table) {
+  StillCurves curves(room, options, cache, table);
+  const std::size_t levels = kGatherEfforts.size() - (options.quick ? 1 : 0);
+  for (int seed = 1; seed <= options.seeds; ++seed)
+    for (std::size_t level = 0; level < std::max(levels, room.path_samples.size()); ++level)
+      curves.run(seed, level, levels);
+}
+
+}  // namespace reemit::bench
