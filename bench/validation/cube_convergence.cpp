@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kRays = 1.5e7;
 constexpr GatherEffort kOverFace{2048, 16384};
+constexpr GatherEffort kAtPoint{1024, 8192};
 
 const ReferenceCase& find_case(const std::vector<ReferenceCase>& cases, const std::string& name) {
   for (const ReferenceCase& c : cases)
@@ -18,10 +19,11 @@ const ReferenceCase& find_case(const std::vector<ReferenceCase>& cases, const st
   throw std::out_of_range("no reference case " + name);
 }
 
-const ReferenceValue& find_value(const ReferenceCase& c, const std::string& quantity) {
+/// Value whose id ends with `ending`.
+const ReferenceValue& find_value(const ReferenceCase& c, const std::string& ending) {
   for (const ReferenceValue& v : c.values)
-    if (v.quantity == quantity) return v;
-  throw std::out_of_range("no " + quantity + " in " + c.name);
+    if (v.id.ends_with(ending)) return v;
+  throw std::out_of_range("no " + ending + " in " + c.name);
 }
 
 }  // namespace
@@ -42,15 +44,25 @@ std::vector<CubeStep> measure_cube_convergence(const std::vector<ReferenceCase>&
                               SolveMethod::kShooting, effort.work * kRays * (1 - rho), name);
       const PointGather plain(solved, seed_of(name), 0);
       const PointGather gather(solved, seed_of(name));
+      const auto add = [&](const std::string& place, const ReferenceValue& truth, double squares,
+                           const Estimates& zones, const Estimates& read_all, const Estimates& gathered) {
+        steps.push_back({rho, place, n, truth.value, squares,
+                         make_row(continuous, truth, "zones", zones, kSolveBound),
+                         make_row(continuous, truth, "plain gather", read_all, kPointBound),
+                         make_row(continuous, truth, "gather", gathered, kPointBound)});
+      };
       for (const std::string face : {"z0", "z1", "x0"}) {
-        const std::string quantity = "H_mean on face " + face;
-        const ReferenceValue& truth = find_value(continuous, quantity);
+        const std::string ending = ".Hmean." + face;
         const std::vector<SurfaceId> surface{solved.surface(face)};
-        steps.push_back(
-            {rho, face, n, truth.value, find_value(find_case(cases, name), quantity).value,
-             make_row(continuous, truth, "zones", solved.mean(surface), kSolveBound),
-             make_row(continuous, truth, "plain gather", plain.mean(surface, kOverFace), kPointBound),
-             make_row(continuous, truth, "gather", gather.mean(surface, kOverFace), kPointBound)});
+        add("mean of " + face, find_value(continuous, ending),
+            find_value(find_case(cases, name), ending).value, solved.mean(surface),
+            plain.mean(surface, kOverFace), gather.mean(surface, kOverFace));
+      }
+      for (const std::string place : {"z1(0.5,0.5)", "x0(0.5,0.1)", "x0(0.25,0.75)"}) {
+        const ReferenceValue& truth = find_value(continuous, ".H@" + place);
+        const SurfacePoint x = point_on(solved.rays(), *truth.point, truth.normal);
+        add(place, truth, 0, solved.zone(solved.mesh().zone_at(x.triangle, x.u, x.v, true)),
+            plain.at(*truth.point, truth.normal, kAtPoint), gather.at(*truth.point, truth.normal, kAtPoint));
       }
     }
   }

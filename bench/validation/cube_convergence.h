@@ -6,14 +6,15 @@
 
 namespace reemit::validation {
 
-/// Mean irradiance of one face of the cube whose face z0 emits, by zones of one size.
+/// Irradiance in the cube whose face z0 emits, at a point or as the mean of a face, by zones of one size.
 struct CubeStep {
   double rho = 0;
-  std::string face;
-  int divisions = 0;           ///< Each face has 2 divisions^2 triangular zones.
-  double continuous = 0;       ///< Of the continuous equation.
-  double square_zones = 0;     ///< Exact zonal system of divisions x divisions squares per face.
-  ValidationRow zones;         ///< Shooting, mean of the zones; expected is `continuous`.
+  std::string place;      ///< "mean of z0" or "x0(0.5,0.1)": face and position on it.
+  int divisions = 0;      ///< Each face has 2 divisions^2 triangular zones.
+  double continuous = 0;  ///< Of the continuous equation.
+  /// Exact zonal system of divisions x divisions squares per face; 0 where it is not known.
+  double square_zones = 0;
+  ValidationRow zones;         ///< Shooting: mean of the zones, or the zone at the point.
   ValidationRow plain_gather;  ///< Gather that reads every zone it hits.
   ValidationRow gather;        ///< Gather as the program has it: close hits are carried on.
 };

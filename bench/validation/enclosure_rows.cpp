@@ -13,13 +13,14 @@ namespace {
 
 constexpr std::array<SolveMethod, 2> kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
 /// Rays of one solution.
-constexpr double kRays = 1.5e7;
+constexpr double kRays = 1.6e7;
 constexpr GatherEffort kAtPoint{256, 4096};
+constexpr GatherEffort kOverSurface{1024, 16384};
 
 /// A walk is reflected a geometric number of times, rho/(1-rho) on average and about as much by chance: below
 /// a number of walks the mean over a whole room is not known well enough. Shooting knows it almost exactly.
 double packets_for(SolveMethod method, double rho, const Effort& effort) {
-  constexpr double kFewestWalks = 3e5;
+  constexpr double kFewestWalks = 3.2e5;
   return effort.work * std::max(kRays * (1 - rho), method == SolveMethod::kWalk ? kFewestWalks : 0.0);
 }
 
@@ -72,7 +73,7 @@ void add_furnace(const ReferenceCase& c, const Effort& effort, std::vector<Valid
     const PointGather gather(solved, seed_of(c.name));
     for (const Vec3& point : {Vec3(0.3, 0.4, 0), Vec3(0.999, 0.999, 0), Vec3(0.001, 1.999, 0)}) {
       const Estimates light = gather.at(point, Vec3::UnitZ(), kAtPoint);
-      add_rows(c, "gathered point of the floor at x = " + std::to_string(point.x()).substr(0, 5), kPointBound,
+      add_rows(c, "gathered point, floor at x = " + std::to_string(point.x()).substr(0, 5), kPointBound,
                as_quantity(light), rows);
     }
   }
@@ -112,7 +113,7 @@ void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vec
                                 scaled(solved.mean(s, b), r, (1 - r) * b0), kSolveBound));
         if (method == SolveMethod::kShooting)
           rows.push_back(make_row(c, v, "gathered mean, " + where,
-                                  scaled(gather.mean({s}, kAtPoint, b), r, (1 - r) * b0), kPointBound));
+                                  scaled(gather.mean({s}, kOverSurface, b), r, (1 - r) * b0), kPointBound));
       }
     }
   }

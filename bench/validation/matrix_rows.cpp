@@ -81,8 +81,8 @@ Geometry make_geometry(const ReferenceCase& c, const std::string& key) {
 std::string key_of(const ReferenceCase& c) {
   std::string key = c.kind;
   for (const char* name : {"dims", "N", "subdivision"})
-    if (c.parameters.contains(name)) key += " " + c.parameters.at(name).dump();
-  if (c.kind == "lroom_zone") key += " " + std::to_string(zones_per_metre(c));
+    if (c.parameters.contains(name)) key.append(1, ' ').append(c.parameters.at(name).dump());
+  if (c.kind == "lroom_zone") key.append(1, ' ').append(std::to_string(zones_per_metre(c)));
   return key;
 }
 

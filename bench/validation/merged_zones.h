@@ -13,9 +13,9 @@ namespace reemit::validation {
 
 /// A mean irradiance of the zonal system with what is not known about it.
 struct ZonalValue {
-  double mean = 0;            ///< [W/m2]
-  /// From sampled visibility; 0 in rooms without blockers. Larger than true, because factors do not credit the
-  /// stratification of their rays nor the closure of rows.
+  double mean = 0;  ///< [W/m2]
+  /// From sampled visibility; 0 in rooms without blockers. Larger than true, because factors do not credit
+  /// the stratification of their rays nor the closure of rows.
   double standard_error = 0;
 };
 

@@ -63,30 +63,26 @@ void plot_deviations(const std::vector<ValidationRow>& rows, const std::filesyst
 }
 
 void plot_convergence(const std::vector<CubeStep>& steps, const std::filesystem::path& svg) {
+  constexpr const char* kPlace = "x0(0.5,0.1)";
   std::string script =
-      "set logscale xy\nset xlabel 'zones along an edge of the cube'\n"
-      "set ylabel 'deviation from the continuous solution [%]'\nset format y '%g'\n"
-      "set xrange [0.8:20]\nset xtics (1,2,4,8,16)\nset key bottom left\nset grid ytics\n"
-      "plot '-' with linespoints pt 4 dt 2 lc rgb '#999999' title 'squares, exact zonal system', "
-      "'-' with yerrorlines pt 7 lc rgb '#4477aa' title 'triangles, shooting', "
-      "'-' with yerrorlines pt 9 lc rgb '#228833' title 'gather, every hit read', "
-      "'-' with yerrorlines pt 5 lc rgb '#cc3311' title 'gather, close hits carried on'\n";
-  const auto series = [&](const auto& value_and_error) {
-    for (const CubeStep& s : steps) {
-      if (s.face != "z0" || s.rho != 0.5) continue;
-      const auto [value, error] = value_and_error(s);
-      const double percent = 100 * std::fabs(value / s.continuous - 1);
-      const double spread = 100 * error / s.continuous;
-      script += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", s.divisions, percent,
-                            std::max(percent - spread, 1e-4), percent + spread);
+      "set logscale x\nset xlabel 'N: 2 N^2 triangular zones on each face'\n"
+      "set ylabel 'deviation from the continuous solution [%]'\n"
+      "set xrange [0.8:20]\nset xtics (1,2,4,8,16)\nset key bottom right\nset grid ytics\n"
+      "plot '-' with yerrorlines pt 7 lc rgb '#4477aa' title 'value of the zone, rho 0.5', "
+      "'-' with yerrorlines pt 6 lc rgb '#4477aa' dt 2 title 'value of the zone, rho 0.8', "
+      "'-' with yerrorlines pt 9 lc rgb '#228833' title 'gather, every hit read, rho 0.5', "
+      "'-' with yerrorlines pt 8 lc rgb '#228833' dt 2 title 'gather, every hit read, rho 0.8', "
+      "'-' with yerrorlines pt 5 lc rgb '#cc3311' title 'gather, close hits carried on, rho 0.5', "
+      "'-' with yerrorlines pt 4 lc rgb '#cc3311' dt 2 title 'gather, close hits carried on, rho 0.8'\n";
+  for (const auto row : {&CubeStep::zones, &CubeStep::plain_gather, &CubeStep::gather})
+    for (const double rho : {0.5, 0.8}) {
+      for (const CubeStep& s : steps)
+        if (s.place == kPlace && s.rho == rho)
+          script +=
+              fmt::format("{} {:.6g} {:.6g}\n", s.divisions, 100 * ((s.*row).measured / s.continuous - 1),
+                          100 * (s.*row).standard_error / s.continuous);
+      script += "e\n";
     }
-    script += "e\n";
-  };
-  const auto of_row = [](const ValidationRow& r) { return std::pair(r.measured, r.standard_error); };
-  series([](const CubeStep& s) { return std::pair(s.square_zones, 0.0); });
-  series([&](const CubeStep& s) { return of_row(s.zones); });
-  series([&](const CubeStep& s) { return of_row(s.plain_gather); });
-  series([&](const CubeStep& s) { return of_row(s.gather); });
   run_gnuplot(script, svg);
 }
 

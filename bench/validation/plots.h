@@ -14,7 +14,8 @@ void require_gnuplot();
 /// fails.
 void plot_deviations(const std::vector<ValidationRow>& rows, const std::filesystem::path& svg);
 
-/// Deviation of zone means and gathered means from the continuous solution by the size of zones, as SVG.
+/// Deviation of the zone and of gathers from the continuous solution at one point, by the size of zones, as
+/// SVG.
 void plot_convergence(const std::vector<CubeStep>& steps, const std::filesystem::path& svg);
 
 }  // namespace reemit::validation

@@ -95,16 +95,18 @@ std::string kind_table(const std::vector<ValidationRow>& rows) {
 
 std::string convergence_table(const std::vector<CubeStep>& steps) {
   std::string text =
-      "| rho | face | N | squares, exact | triangles, shooting | gather, every hit read | gather, close hits "
+      "| rho | place | N | squares, exact | triangles, shooting | gather, every hit read | gather, close "
+      "hits "
       "carried on | continuous |\n|---|---|---|---|---|---|---|---|\n";
   for (const CubeStep& s : steps) {
     const auto percent = [&](double value) { return 100 * (value / s.continuous - 1); };
     const auto with_error = [&](const ValidationRow& r) {
       return fmt::format("{:+.2f} ± {:.2f} %", percent(r.measured), 100 * r.standard_error / s.continuous);
     };
-    text += fmt::format("| {} | {} | {} | {:+.2f} % | {} | {} | {} | {:.6g} |\n", s.rho, s.face, s.divisions,
-                        percent(s.square_zones), with_error(s.zones), with_error(s.plain_gather),
-                        with_error(s.gather), s.continuous);
+    const std::string squares = s.square_zones > 0 ? fmt::format("{:+.2f} %", percent(s.square_zones)) : "";
+    text +=
+        fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.6g} |\n", s.rho, s.place, s.divisions, squares,
+                    with_error(s.zones), with_error(s.plain_gather), with_error(s.gather), s.continuous);
   }
   return text;
 }
