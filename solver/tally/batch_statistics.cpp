@@ -215,8 +215,7 @@ ZoneError zone_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& s
   for (const BandError& band : band_errors(scene, mesh, sums, true)) {
     const double rms = relative_rms(band);
     result.rms = std::max(result.rms, rms);
-    result.bound =
-        std::max(result.bound, rms * std::sqrt(1 + kSigmas * spread_of_squared_error(band, sums)));
+    result.bound = std::max(result.bound, rms * std::sqrt(1 + kSigmas * spread_of_squared_error(band, sums)));
   }
   return result;
 }
