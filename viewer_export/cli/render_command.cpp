@@ -100,11 +100,7 @@ class Renderer {
     progress.finish();
     std::optional<WrittenImage> written;
     write_output([&] { written = write_still_image(image, job.file, options_.tone_map); });
-    if (image.limited_by_zones && !options_.style.quiet)
-      print_note(
-          fmt::format("{}: the noise of the zone solution keeps the error above the target; solve to a lower "
-                      "--error",
-                      job.camera.name));
+    if (!options_.style.quiet) explain_missed_target(job, image);
     report(job, image, *written,
            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
@@ -117,6 +113,19 @@ class Renderer {
   }
 
  private:
+  void explain_missed_target(const Job& job, const StillImage& image) const {
+    if (image.limited_by_zones) {
+      print_note(
+          fmt::format("{}: the noise of the zone solution keeps the error above the target; solve to a "
+                      "lower --error",
+                      job.camera.name));
+    } else if (options_.still.error_target > 0 && image.info.error > options_.still.error_target &&
+               !interrupted()) {
+      print_note(fmt::format("{}: the error is above the target after the most samples a pixel can get ({})",
+                             job.camera.name, options_.still.most_spp));
+    }
+  }
+
   void report(const Job& job, const StillImage& image, const WrittenImage& written, double seconds) {
     const std::string integrator = to_string(options_.still.integrator);
     if (options_.style.json) {

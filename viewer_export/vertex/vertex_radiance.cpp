@@ -27,6 +27,9 @@ void check(const VertexSettings& s) {
   require(s.gather_rays >= 1 && s.gather_rays <= 1 << 20, "number of gather rays", "1 to 1048576.");
   require(s.light_samples >= 1 && s.light_samples <= 1 << 16, "number of light samples", "1 to 65536.");
   require(s.error_target >= 0 && s.error_target < 1, "error", "a share below 1, such as 1%.");
+  if (s.average_zones && s.error_target > 0)
+    throw InputError("vertices", "means of zones cannot be refined to an error",
+                     "Leave out the error, or gather; a lower error of the solve makes better zones.");
   require(s.reach > 0 && s.reach <= 1, "reach", "a share of the zone above 0 and up to 1.");
   require(s.close_hit >= 0 && std::isfinite(s.close_hit), "close-hit distance", "0 or more zone sizes.");
   require(s.threads >= 0, "number of threads", "0 (all cores) or more.");

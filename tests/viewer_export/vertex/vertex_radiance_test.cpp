@@ -174,6 +174,26 @@ TEST(GatherVertices, standard_errors_shrink_with_rays_and_are_reported) {
   EXPECT_LT(fine, coarse / 6);  // better than the 8 of plain Monte Carlo, with room for luck
 }
 
+TEST(GatherVertices, doubles_samples_until_the_error_is_reached) {
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5);
+  const MaterialId lamp = room.material("lamp", 0.2, 1);
+  room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, lamp, wall}, 3);
+  const Solution solution = test::uniform_solution(room, 1, 0.7);
+  double last = 1;
+  for (const double target : {0.1, 0.02, 0.005}) {
+    VertexSettings settings;
+    settings.error_target = target;
+    const VertexData data = gather(room, solution, settings);
+    EXPECT_LE(data.info.error, target);
+    EXPECT_LE(data.info.error, last);
+    EXPECT_GT(data.info.error, 0);
+    EXPECT_FALSE(data.limited_by_zones);
+    last = data.info.error;
+  }
+  EXPECT_LT(last, 0.005);
+}
+
 TEST(GatherVertices, refuses_nonsense) {
   RoomBuilder room;
   const MaterialId wall = room.material("wall", 0.5, 1);
@@ -181,6 +201,10 @@ TEST(GatherVertices, refuses_nonsense) {
   const Solution solution = test::uniform_solution(room, 1, 0.7);
   VertexSettings settings;
   settings.reach = 0;
+  EXPECT_THROW(gather(room, solution, settings), InputError);
+  settings = {};
+  settings.average_zones = true;
+  settings.error_target = 0.01;
   EXPECT_THROW(gather(room, solution, settings), InputError);
   settings = {};
   settings.gather_rays = 0;
