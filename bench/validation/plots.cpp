@@ -18,10 +18,11 @@ namespace {
 void run_gnuplot(const std::string& script, const std::filesystem::path& svg) {
   const auto close = [](std::FILE* f) { return pclose(f); };
   std::unique_ptr<std::FILE, decltype(close)> pipe(popen("gnuplot", "w"), close);
-  const std::string all =
-      fmt::format("set terminal svg size 760,440 font 'sans-serif,13' background 'white'\nset output '{}'\n",
-                  svg.string()) +
-      script;
+  const std::string all = fmt::format(
+                              "set terminal svg size 760,440 noenhanced font 'sans-serif,13' background "
+                              "'white'\nset output '{}'\n",
+                              svg.string()) +
+                          script;
   const bool written = pipe && std::fwrite(all.data(), 1, all.size(), pipe.get()) == all.size();
   if (!written || pclose(pipe.release()) != 0)
     throw ResourceError(svg.string(), "gnuplot could not draw it", "Its message is above.");
@@ -65,15 +66,15 @@ void plot_deviations(const std::vector<ValidationRow>& rows, const std::filesyst
 void plot_convergence(const std::vector<CubeStep>& steps, const std::filesystem::path& svg) {
   constexpr const char* kPlace = "x0(0.5,0.1)";
   std::string script =
-      "set logscale x\nset xlabel 'N: 2 N^2 triangular zones on each face'\n"
+      "set logscale x\nset xlabel 'N (2 N x N triangular zones on each face)'\n"
       "set ylabel 'deviation from the continuous solution [%]'\n"
       "set xrange [0.8:20]\nset xtics (1,2,4,8,16)\nset key bottom right\nset grid ytics\n"
       "plot '-' with yerrorlines pt 7 lc rgb '#4477aa' title 'value of the zone, rho 0.5', "
-      "'-' with yerrorlines pt 6 lc rgb '#4477aa' dt 2 title 'value of the zone, rho 0.8', "
+      "'-' with yerrorlines pt 6 lc rgb '#99bbdd' title 'value of the zone, rho 0.8', "
       "'-' with yerrorlines pt 9 lc rgb '#228833' title 'gather, every hit read, rho 0.5', "
-      "'-' with yerrorlines pt 8 lc rgb '#228833' dt 2 title 'gather, every hit read, rho 0.8', "
+      "'-' with yerrorlines pt 8 lc rgb '#88cc99' title 'gather, every hit read, rho 0.8', "
       "'-' with yerrorlines pt 5 lc rgb '#cc3311' title 'gather, close hits carried on, rho 0.5', "
-      "'-' with yerrorlines pt 4 lc rgb '#cc3311' dt 2 title 'gather, close hits carried on, rho 0.8'\n";
+      "'-' with yerrorlines pt 4 lc rgb '#ee9977' title 'gather, close hits carried on, rho 0.8'\n";
   for (const auto row : {&CubeStep::zones, &CubeStep::plain_gather, &CubeStep::gather})
     for (const double rho : {0.5, 0.8}) {
       for (const CubeStep& s : steps)

@@ -44,7 +44,7 @@ std::string csv(const std::vector<ValidationRow>& rows) {
       "id,kind,method,expected,expected_abs_err,measured,standard_error,numerical_bound,degrees_of_freedom,"
       "deviation\n";
   for (const ValidationRow& r : rows)
-    text += fmt::format("\"{}\",{},\"{}\",{:.12g},{:.2g},{:.9g},{:.4g},{:.2g},{},{:.3f}\n", r.id, r.kind,
+    text += fmt::format("\"{}\",{},\"{}\",{:.12g},{:.3g},{:.12g},{:.5g},{:.3g},{},{:.3f}\n", r.id, r.kind,
                         r.method, r.expected, r.expected_abs_err, r.measured, r.standard_error,
                         r.numerical_bound, r.freedom, r.deviation());
   return text;
