@@ -15,6 +15,7 @@
 #include "mesh/mesh_tolerances.h"
 #include "mesh/orientation.h"
 #include "mesh/polygon_repair.h"
+#include "mesh/room_shapes.h"
 #include "mesh/triangulate_groups.h"
 #include "mesh/zone_sizing.h"
 #include "scenes/model/error.h"
@@ -97,14 +98,16 @@ class BaseMeshBuilder {
 
 }  // namespace
 
-MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
-  check_faces(scene);
+MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
+  check_faces(room);
   if (!(settings.smallest_angle_deg >= 0 && settings.smallest_angle_deg <= 30))
     throw InputError("smallest angle", fmt::format("{} degrees is out of range", settings.smallest_angle_deg),
                      "use a value from 0 to 30");
+  const MeshTolerances tolerances = MeshTolerances::of(bounds(room));
+  const RoomShapes shapes = separate_shapes(room, settings.exact_shapes, tolerances);
+  const Scene& scene = shapes.faceted ? *shapes.faceted : room;
   MeshReport report;
   report.surfaces.resize(scene.surfaces.size());
-  const MeshTolerances tolerances = MeshTolerances::of(bounds(scene));
   VertexTable vertices(tolerances.weld);
 
   std::vector<FacePiece> pieces = repair_polygons(scene, tolerances, vertices, report);
@@ -112,17 +115,20 @@ MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
   orient_faces(scene, vertices, pieces, report);
   double total_area = 0;
   for (const FacePiece& p : pieces) total_area += p.area;
+  for (const CurvedShape& shape : shapes.exact) total_area += shape_area(shape);
   if (!(total_area > 0))
     throw InputError(scene.source.empty() ? "room" : scene.source, "there is no face with an area",
                      "check that the file holds polygons, and its unit of length");
   double zoned_area = 0;
   for (const FacePiece& p : pieces) zoned_area += (p.two_sided ? 2 : 1) * p.area;
+  for (std::size_t i = 0; i < shapes.exact.size(); ++i)
+    zoned_area += (shapes.is_two_sided(scene, i) ? 2 : 1) * shape_area(shapes.exact[i]);
   const double zone_area = wanted_zone_area(settings, zoned_area);
   const double zone_edge = std::sqrt(zone_area);
 
   PieceGroups groups = group_overlapping_pieces(pieces, tolerances, vertices);
   const ContactCuts cuts =
-      find_contact_cuts(pieces, groups, tolerances, kSmallestContact * zone_edge, vertices);
+      find_contact_cuts(pieces, groups, tolerances, kSmallestContact * zone_edge, vertices, shapes.exact);
   if (cuts.ignored > 0)
     report.warnings.push_back(fmt::format(
         "{} faces touch so many others that they were cut along the longest contacts only", cuts.ignored));
@@ -141,6 +147,7 @@ MeshResult build_mesh(const Scene& scene, const MeshSettings& settings) {
   book_areas(vertices, pieces, cut, report);
 
   BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);
+  append_patches(scene, shapes, base, report);
   size_zones(base, zone_area);
   return {ZoneMesh(std::move(base)), std::move(report)};
 }

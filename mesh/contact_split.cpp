@@ -10,6 +10,7 @@
 #include "mesh/contact_segments.h"
 #include "mesh/disjoint_sets.h"
 #include "mesh/edge_points.h"
+#include "mesh/shape_contacts.h"
 
 namespace reemit {
 namespace {
@@ -164,10 +165,11 @@ std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, dou
   return out;
 }
 
-// Pairs (group, piece) whose boxes touch.
+// Pairs (group, piece) whose boxes touch. Shapes are numbered after the pieces.
 std::vector<std::pair<std::size_t, std::size_t>> candidates(const std::vector<FacePiece>& pieces,
                                                             const PieceGroups& groups, double contact,
-                                                            const VertexTable& vertices) {
+                                                            const VertexTable& vertices,
+                                                            std::span<const CurvedShape> shapes) {
   std::vector<IndexedBox> boxes;
   boxes.reserve(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, contact));
@@ -177,6 +179,9 @@ std::vector<std::pair<std::size_t, std::size_t>> candidates(const std::vector<Fa
     out.emplace_back(groups.group_of[i], j);
     out.emplace_back(groups.group_of[j], i);
   });
+  for_each_box_pair(boxes, boxes_of(shapes, contact), [&](std::uint32_t piece, std::uint32_t shape) {
+    out.emplace_back(groups.group_of[piece], pieces.size() + shape);
+  });
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
@@ -185,10 +190,11 @@ std::vector<std::pair<std::size_t, std::size_t>> candidates(const std::vector<Fa
 }  // namespace
 
 ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
-                              const MeshTolerances& tolerances, double smallest, VertexTable& vertices) {
+                              const MeshTolerances& tolerances, double smallest, VertexTable& vertices,
+                              std::span<const CurvedShape> shapes) {
   ContactCuts out;
   out.segments.resize(groups.groups.size());
-  const auto pairs = candidates(pieces, groups, tolerances.contact, vertices);
+  const auto pairs = candidates(pieces, groups, tolerances.contact, vertices, shapes);
   std::vector<PlanarSegment> sections;
   std::vector<PlanarSegment> raw;
   for (auto it = pairs.begin(); it != pairs.end();) {
@@ -202,13 +208,18 @@ ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceG
     }
     raw.clear();
     for (; it != pairs.end() && it->first == g; ++it) {
-      const FacePiece& other = pieces[it->second];
+      const bool is_piece = it->second < pieces.size();
+      const std::size_t other = is_piece ? it->second : it->second - pieces.size();
+      const double size = is_piece ? pieces[other].diameter : std::sqrt(shape_area(shapes[other]));
       // Small faces touch only from nearer: the tolerance must stay a small part of their own size.
       constexpr double kShareOfSize = 0.02;
-      const double contact = std::max(
-          tolerances.weld, std::min(tolerances.contact, kShareOfSize * std::min(diameter, other.diameter)));
+      const double contact =
+          std::max(tolerances.weld, std::min(tolerances.contact, kShareOfSize * std::min(diameter, size)));
       sections.clear();
-      section_with_plane(vertices, other, group.plane, contact, sections);
+      if (is_piece)
+        section_with_plane(vertices, pieces[other], group.plane, contact, sections);
+      else
+        section_with_plane(shapes[other], group.plane, contact, sections);
       for (const PlanarSegment& s : sections)
         for (const PlanarLoops& l : loops) clip_to_loops(s, l, tolerances.snap, raw);
     }

@@ -1,12 +1,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/coplanar_overlap.h"
 #include "mesh/face_piece.h"
 #include "mesh/mesh_tolerances.h"
 #include "mesh/vertex_table.h"
+#include "scenes/model/shape.h"
 
 namespace reemit {
 
@@ -18,10 +20,11 @@ struct ContactCuts {
   std::size_t ignored = 0;  ///< Groups for which small contacts were ignored because there were too many.
 };
 
-/// Finds the lines along which other pieces stand on a group (edges within the contact distance of its plane)
-/// or pierce it. Contacts that extend less than `smallest` metres are not cut: they are much smaller than a
-/// zone.
+/// Finds the lines along which other pieces and curved shapes stand on a group (edges within the contact
+/// distance of its plane) or pierce it. Contacts that extend less than `smallest` metres are not cut: they
+/// are much smaller than a zone.
 ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
-                              const MeshTolerances& tolerances, double smallest, VertexTable& vertices);
+                              const MeshTolerances& tolerances, double smallest, VertexTable& vertices,
+                              std::span<const CurvedShape> shapes = {});
 
 }  // namespace reemit

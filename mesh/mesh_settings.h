@@ -13,6 +13,9 @@ struct MeshSettings {
       20.0;  ///< Quality bound of the base triangulation where the input allows it [0, 30].
   double crease_angle_deg =
       30.0;  ///< Neighbouring faces that bend less share vertices (curved surfaces) [0, 180].
+  /// Spheres, disks, cylinders and cones stay what they are. Else they become flat faces, as a method that
+  /// needs flat zones asks for.
+  bool exact_shapes = true;
 };
 
 }  // namespace reemit

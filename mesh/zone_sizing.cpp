@@ -1,5 +1,6 @@
 #include "mesh/zone_sizing.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -35,12 +36,22 @@ std::uint32_t divisions_at_least(double n) {
 
 void size_zones(BaseMesh& mesh, double zone_area) {
   constexpr double kMostZones = 2147483648.0;
+  std::vector<CurvedPatches> curved;
+  for (const CurvedShape& shape : mesh.shapes) curved.emplace_back(shape);
+  std::size_t patches = 0;
+  for (const CurvedPatches& shape : curved) patches += shape.count();
+  // Round things should look round where their zones become vertices, if that is cheap.
+  constexpr std::size_t kCheap = 20'000;  // zones
+  std::uint32_t least = 4;
+  while (least > 1 && patches * least * least > kCheap) least /= 2;
   double zones = 0;
   for (BaseTriangle& t : mesh.triangles) {
     const Vec3& p0 = mesh.vertices[t.vertex[0]];
-    const double area = 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
+    const double area =
+        t.is_curved() ? curved[t.shape].patch_area()
+                      : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
     const double n = std::sqrt(area / zone_area) * (1 - 1e-12);  // a zone of just the wanted area is fine
-    if (n < 65536) t.divisions = divisions_at_least(n);
+    if (n < 65536) t.divisions = divisions_at_least(t.is_curved() ? std::max<double>(n, least) : n);
     zones += n < 65536 ? (t.two_sided ? 2.0 : 1.0) * t.divisions * t.divisions : kMostZones;
     if (zones >= kMostZones)
       throw InputError("zone area",

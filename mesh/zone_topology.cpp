@@ -134,10 +134,17 @@ void TopologyBuilder::add_edge(std::size_t slot, PatchId p, int k) {
   const bool down = runs_down(t, k);
   const int from = down ? (k + 1) % 3 : k;
   const int to = down ? k : (k + 1) % 3;
+  const bool curved = mesh_.triangle(t).is_curved();
+  const double side = p % 2 == 0 ? 1 : -1;
   for (const std::uint32_t q : edge.position) {
     const double s = static_cast<double>(q) / edge.scale;
-    add_vertex((1 - s) * mesh_.corner(t, from) + s * mesh_.corner(t, to),
-               (1 - s) * corner_normal(p, from) + s * corner_normal(p, to));
+    const double u = (from == 1 ? 1 - s : 0) + (to == 1 ? s : 0);
+    const double v = (from == 2 ? 1 - s : 0) + (to == 2 ? s : 0);
+    if (curved)
+      add_vertex(mesh_.point(t, u, v), side * mesh_.normal(t, u, v));
+    else
+      add_vertex((1 - s) * mesh_.corner(t, from) + s * mesh_.corner(t, to),
+                 (1 - s) * corner_normal(p, from) + s * corner_normal(p, to));
   }
 }
 
@@ -168,13 +175,17 @@ std::uint32_t TopologyBuilder::vertex_at(const GridPoint& g) const {
 
 void TopologyBuilder::add_interior_vertices() {
   first_interior_ = static_cast<std::uint32_t>(out_.n_vertices());
+  const bool curved = mesh_.triangle(triangle_).is_curved();
+  const double side = front_ ? 1 : -1;
   const std::array<Vec3, 3> normal{corner_normal(patch_, 0), corner_normal(patch_, 1),
                                    corner_normal(patch_, 2)};
   for (std::uint32_t i = 1; i + 1 < n_; ++i) {
     for (std::uint32_t j = 1; i + j < n_; ++j) {
       const double u = static_cast<double>(i) / n_;
       const double v = static_cast<double>(j) / n_;
-      add_vertex(mesh_.point(triangle_, u, v), (1 - u - v) * normal[0] + u * normal[1] + v * normal[2]);
+      const Vec3 n = curved ? Vec3(side * mesh_.normal(triangle_, u, v))
+                            : Vec3((1 - u - v) * normal[0] + u * normal[1] + v * normal[2]);
+      add_vertex(mesh_.point(triangle_, u, v), n);
     }
   }
 }

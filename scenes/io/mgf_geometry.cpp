@@ -24,15 +24,17 @@ bool is_polygonal(std::string_view keyword) {
 bool MgfInterpreter::run_geometry(const File& file, const TextLine& line, const std::string& where) {
   const bool curved = is_curved(line.words[0]);
   if (!curved && !is_polygonal(line.words[0])) return false;
-  const std::vector<Polygon> faces = shape_of(line, where);
-  if (curved) ++curved_count_;
-  builder_.add(faces, transform_,
-               {object_path_, contexts_.materials.current_name(), contexts_.materials.current(), file.name,
-                line.number});
+  const MgfSceneBuilder::Target target{object_path_, contexts_.materials.current_name(),
+                                       contexts_.materials.current(), file.name, line.number};
+  if (line.words[0] == "torus") ++tessellated_count_;
+  if (curved && line.words[0] != "torus")
+    builder_.add(curved_shape_of(line, where), transform_, target);
+  else
+    builder_.add(faces_of(line, where), transform_, target);
   return true;
 }
 
-std::vector<Polygon> MgfInterpreter::shape_of(const TextLine& line, const std::string& where) {
+std::vector<Polygon> MgfInterpreter::faces_of(const TextLine& line, const std::string& where) {
   const std::string_view keyword = line.words[0];
   const auto vertex = [&](std::size_t index) -> const MgfVertex& {
     return contexts_.vertices.find(line.words[index], where);
@@ -52,22 +54,30 @@ std::vector<Polygon> MgfInterpreter::shape_of(const TextLine& line, const std::s
     check_argument_count(line, 4, kMostArguments, where);
     return mgf_prism(vertices_of(line, 1, last - 1, where), number(last), where);
   }
+  check_argument_count(line, 3, 3, where);
+  return mgf_torus(vertex(1), number(2), number(3), roundness(number(3)), where);
+}
+
+CurvedShape MgfInterpreter::curved_shape_of(const TextLine& line, const std::string& where) {
+  const std::string_view keyword = line.words[0];
+  const auto vertex = [&](std::size_t index) -> const MgfVertex& {
+    return contexts_.vertices.find(line.words[index], where);
+  };
+  const auto number = [&](std::size_t index) { return mgf_number(line, index, where); };
   if (keyword == "sph") {
     check_argument_count(line, 2, 2, where);
-    return mgf_sphere(vertex(1).position, number(2), roundness(number(2)), where);
+    return mgf_sphere(vertex(1).position, number(2), where);
   }
   if (keyword == "cyl") {
     check_argument_count(line, 3, 3, where);
-    const double radius = number(2);
-    return mgf_cone(vertex(1).position, radius, vertex(3).position, radius, where);
+    return mgf_cone(vertex(1).position, number(2), vertex(3).position, number(2), where);
   }
   if (keyword == "cone") {
     check_argument_count(line, 4, 4, where);
     return mgf_cone(vertex(1).position, number(2), vertex(3).position, number(4), where);
   }
   check_argument_count(line, 3, 3, where);
-  return keyword == "ring" ? mgf_ring(vertex(1), number(2), number(3), where)
-                           : mgf_torus(vertex(1), number(2), number(3), roundness(number(3)), where);
+  return mgf_ring(vertex(1), number(2), number(3), where);
 }
 
 std::vector<MgfVertex> MgfInterpreter::vertices_of(const TextLine& line, std::size_t first, std::size_t last,

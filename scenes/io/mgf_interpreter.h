@@ -23,7 +23,7 @@ class MgfInterpreter {
   void run(const std::filesystem::path& file);
   /// Moves materials, surfaces and warnings into the scene.
   void finish(Scene& scene) { builder_.finish(scene); }
-  std::size_t curved_count() const { return curved_count_; }
+  std::size_t tessellated_count() const { return tessellated_count_; }
 
  private:
   struct File {
@@ -50,7 +50,8 @@ class MgfInterpreter {
   void run_include(const File& file, const TextLine& line, const std::string& where);
   void run_ies(const File& file, const TextLine& line, const std::string& where);
   bool run_geometry(const File& file, const TextLine& line, const std::string& where);
-  std::vector<Polygon> shape_of(const TextLine& line, const std::string& where);
+  std::vector<Polygon> faces_of(const TextLine& line, const std::string& where);
+  CurvedShape curved_shape_of(const TextLine& line, const std::string& where);
   std::vector<MgfVertex> vertices_of(const TextLine& line, std::size_t first, std::size_t last,
                                      const std::string& where) const;
   std::vector<Polygon> face_with_holes(const TextLine& line, const std::string& where) const;
@@ -67,7 +68,7 @@ class MgfInterpreter {
   Eigen::Affine3d transform_ = Eigen::Affine3d::Identity();
   std::set<std::string> unknown_entities_;
   std::uint64_t executed_ = 0;
-  std::size_t curved_count_ = 0;
+  std::size_t tessellated_count_ = 0;
 };
 
 }  // namespace reemit

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "scenes/io/mgf_interpreter.h"
-#include "scenes/io/mgf_shapes.h"
 
 namespace reemit {
 
@@ -18,11 +17,9 @@ Scene read_mgf_scene(const std::filesystem::path& file, const ReadOptions& /*opt
   scene.notes.push_back(
       "MGF: metres; emittance in lm/m2 was divided by pi and 179 lm/W; colours are linear Rec.709, "
       "equal-energy white is neutral.");
-  if (interpreter.curved_count() > 0)
-    scene.notes.push_back(fmt::format(
-        "{} curved shapes were tessellated: cyl, cone and ring with {} segments per circle, sph and torus "
-        "with 16 to 32.",
-        interpreter.curved_count(), kMgfOpenSegments));
+  if (interpreter.tessellated_count() > 0)
+    scene.notes.push_back(fmt::format("{} tori were tessellated with 16 to 32 segments per circle.",
+                                      interpreter.tessellated_count()));
   std::string emitters;
   bool one_sided = false;
   for (const Material& m : scene.materials) {

@@ -36,13 +36,22 @@ void MgfSceneBuilder::add(const std::vector<Polygon>& faces, const Eigen::Affine
                                    at_line(target.file, target.line)));
     return;
   }
-  face_count_ += faces.size();
+  count(faces.size(), target);
+  SurfaceBuilder& surface = surfaces_[surface_index(target)];
+  for (const Polygon& face : faces) surface.add(transformed(face, transform), target.line);
+}
+
+void MgfSceneBuilder::add(const CurvedShape& shape, const Eigen::Affine3d& transform, const Target& target) {
+  count(1, target);
+  surfaces_[surface_index(target)].add(transformed(shape, transform));
+}
+
+void MgfSceneBuilder::count(std::size_t faces, const Target& target) {
+  face_count_ += faces;
   if (face_count_ > kMostFaces)
     throw InputError(at_line(target.file, target.line),
                      fmt::format("the room has more than {} faces", kMostFaces),
                      "Check the counts of its arrays (-a), or split the room.");
-  SurfaceBuilder& surface = surfaces_[surface_index(target)];
-  for (const Polygon& face : faces) surface.add(transformed(face, transform), target.line);
 }
 
 std::size_t MgfSceneBuilder::surface_index(const Target& target) {

@@ -28,6 +28,7 @@ class MgfSceneBuilder {
   /// Places faces in the room; a mirroring transform keeps fronts on their side. Throws InputError when the
   /// room grows beyond kMostFaces.
   void add(const std::vector<Polygon>& faces, const Eigen::Affine3d& transform, const Target& target);
+  void add(const CurvedShape& shape, const Eigen::Affine3d& transform, const Target& target);
   static constexpr std::size_t kMostFaces = 4'000'000;
 
   /// Moves everything into the scene, in order of first use.
@@ -37,6 +38,7 @@ class MgfSceneBuilder {
 
  private:
   MaterialId material_id(const Target& target);
+  void count(std::size_t faces, const Target& target);
   std::size_t surface_index(const Target& target);
 
   std::vector<Material> materials_;

@@ -181,53 +181,30 @@ MgfRoundness mgf_roundness(double radius_m, bool emits) {
   return {8 * static_cast<int>(std::clamp(std::ceil(wanted / 8), kLeast / 8.0, kMost / 8.0)), false};
 }
 
-std::vector<Polygon> mgf_sphere(const Vec3& centre, double radius, const MgfRoundness& roundness,
-                                const std::string& where) {
+CurvedShape mgf_sphere(const Vec3& centre, double radius, const std::string& where) {
   if (radius == 0)
     throw InputError(where, "a sphere of radius 0", "Give its radius in the units of the file.");
-  const int n = roundness.segments;
-  std::vector<Polygon> faces = grid_faces(n / 2, n, radius < 0, [&](int i, int j) {
-    const CosSin polar = circle_point(i, n);
-    const CosSin around = circle_point(j % n, n);
-    const Vec3 normal(polar.sin * around.cos, polar.sin * around.sin, polar.cos);
-    return Corner{centre + std::abs(radius) * normal, normal};
-  });
-  if (roundness.keep_area) scale_to_area(faces, centre, 4 * std::numbers::pi * radius * radius);
-  return faces;
+  return Sphere{centre, std::abs(radius), radius < 0};
 }
 
-std::vector<Polygon> mgf_cone(const Vec3& a, double radius_a, const Vec3& b, double radius_b,
-                              const std::string& where) {
+CurvedShape mgf_cone(const Vec3& a, double radius_a, const Vec3& b, double radius_b,
+                     const std::string& where) {
   if (radius_a * radius_b < 0 || (radius_a == 0 && radius_b == 0))
     throw InputError(where, fmt::format("radii {} and {}", radius_a, radius_b),
                      "They must have the same sign, and at most one may be 0.");
-  const double length = (b - a).stableNorm();
-  if (length == 0) throw InputError(where, "both ends are at the same place", "Use 'ring' for a flat disk.");
-  const Frame frame = frame_along(b - a);
-  const double size_a = std::abs(radius_a), size_b = std::abs(radius_b);
-  constexpr int n = kMgfOpenSegments;
-  return grid_faces(1, n, radius_a + radius_b < 0, [&](int i, int j) {
-    const Vec3 radial = frame.radial(circle_point(j % n, n));
-    const Vec3 normal = (length * radial + (size_a - size_b) * frame.w).stableNormalized();
-    return i == 0 ? Corner{b + size_b * radial, normal} : Corner{a + size_a * radial, normal};
-  });
+  if ((b - a).stableNorm() == 0)
+    throw InputError(where, "both ends are at the same place", "Use 'ring' for a flat disk.");
+  const bool inward = radius_a + radius_b < 0;
+  if (radius_a == radius_b) return Cylinder{a, b, std::abs(radius_a), inward};
+  return Cone{a, b, std::abs(radius_a), std::abs(radius_b), inward};
 }
 
-std::vector<Polygon> mgf_ring(const MgfVertex& centre, double inner, double outer, const std::string& where) {
+CurvedShape mgf_ring(const MgfVertex& centre, double inner, double outer, const std::string& where) {
   check_normal(centre, "ring", where);
   if (!(inner >= 0 && outer > inner))
     throw InputError(where, fmt::format("radii {} and {}", inner, outer),
                      "They must satisfy 0 <= inner < outer.");
-  const Frame frame = frame_along(centre.normal);
-  Polygon ring;
-  std::vector<Vec3> hole;
-  for (int k = 0; k < kMgfOpenSegments; ++k) {
-    const Vec3 radial = frame.radial(circle_point(k, kMgfOpenSegments));
-    ring.outer.push_back(centre.position + outer * radial);
-    hole.push_back(centre.position + inner * radial);
-  }
-  if (inner > 0) ring.holes.push_back(std::move(hole));
-  return {std::move(ring)};
+  return Disk{centre.position, centre.normal.stableNormalized(), outer, inner};
 }
 
 std::vector<Polygon> mgf_torus(const MgfVertex& centre, double inner, double outer,

@@ -5,15 +5,11 @@
 
 #include "scenes/io/mgf_contexts.h"
 #include "scenes/io/polygon_loops.h"
+#include "scenes/model/shape.h"
 
 namespace reemit {
 
-/// Segments per full circle of cyl, cone and ring. It does not depend on their size, so that caps and shells
-/// that meet on a circle share their vertices and no light leaks between them. The polygon inside a circle
-/// has 0.16 % less circumference and 0.64 % less area.
-inline constexpr int kMgfOpenSegments = 32;
-
-/// How sph and torus, which are closed by themselves, are tessellated.
+/// How torus, which is closed by itself, is tessellated.
 struct MgfRoundness {
   int segments = 32;  ///< Per full circle, divisible by 8.
   bool keep_area =
@@ -24,20 +20,19 @@ struct MgfRoundness {
 /// to 32.
 MgfRoundness mgf_roundness(double radius_m, bool emits);
 
-// Each function returns the faces of one MGF entity, in the coordinates of its vertices, fronts as the
-// description of the entity says [MGF]. Curved shapes carry shading normals, caps and polygons only if their
-// vertices do. They throw InputError at `where` when the entity is illegal: wrong sign or zero of a radius,
-// coinciding ends, ...
+// Each function returns the faces or the shape of one MGF entity, in the coordinates of its vertices, fronts
+// as the description of the entity says [MGF]. A torus carries shading normals, prisms and polygons only if
+// their vertices do. They throw InputError at `where` when the entity is illegal: wrong sign or zero of a
+// radius, coinciding ends, ...
 
 /// f and fh: the first loop is the outline, the rest are holes. Seams are turned into holes.
 std::vector<Polygon> mgf_face(const std::vector<std::vector<MgfVertex>>& loops, const std::string& where);
 std::vector<Polygon> mgf_prism(std::span<const MgfVertex> outline, double length, const std::string& where);
-std::vector<Polygon> mgf_sphere(const Vec3& centre, double radius, const MgfRoundness& roundness,
-                                const std::string& where);
+CurvedShape mgf_sphere(const Vec3& centre, double radius, const std::string& where);
 /// cyl and cone; negative radii face inwards.
-std::vector<Polygon> mgf_cone(const Vec3& a, double radius_a, const Vec3& b, double radius_b,
-                              const std::string& where);
-std::vector<Polygon> mgf_ring(const MgfVertex& centre, double inner, double outer, const std::string& where);
+CurvedShape mgf_cone(const Vec3& a, double radius_a, const Vec3& b, double radius_b,
+                     const std::string& where);
+CurvedShape mgf_ring(const MgfVertex& centre, double inner, double outer, const std::string& where);
 std::vector<Polygon> mgf_torus(const MgfVertex& centre, double inner, double outer,
                                const MgfRoundness& roundness, const std::string& where);
 

@@ -19,9 +19,20 @@ int read_segments(const JsonCursor& at) {
   return segments ? segments->integer_in(3, kMostSegments) : kDefaultSegments;
 }
 
-void flip_if_inward(const JsonCursor& at, Surface& shape) {
+bool is_inward(const JsonCursor& at) {
   const auto inward = at.find("inward");
-  if (inward && inward->boolean()) flip_surface(shape);
+  return inward && inward->boolean();
+}
+
+void flip_if_inward(const JsonCursor& at, Surface& shape) {
+  if (is_inward(at)) flip_surface(shape);
+}
+
+/// A shape that is kept as it is; with a number of segments it would become flat faces.
+Surface exact(const CurvedShape& shape) {
+  Surface surface;
+  surface.shapes.push_back(shape);
+  return surface;
 }
 
 /// Two unit vectors u, v with u x v = axis (unit).
@@ -59,6 +70,7 @@ Surface read_sphere(const JsonCursor& at) {
   at.expect_object({"center", "radius", "segments", "rings", "inward"});
   const Vec3 centre = at.at("center").vec3();
   const double radius = at.at("radius").positive_number();
+  if (!at.find("segments") && !at.find("rings")) return exact(Sphere{centre, radius, is_inward(at)});
   const int segments = read_segments(at);
   const auto given_rings = at.find("rings");
   const int rings = given_rings ? given_rings->integer_in(2, kMostSegments) : std::max(2, segments / 2);
@@ -103,10 +115,19 @@ Surface read_cylinder(const JsonCursor& at) {
   const double radius = at.at("radius").positive_number();
   const auto given_top = at.find("top_radius");
   const double top_radius = given_top ? given_top->number_in(0, 1e300) : radius;
-  const int segments = read_segments(at);
   const auto given_caps = at.find("caps");
   const std::string caps = given_caps ? given_caps->choice({"both", "base", "top", "none"}) : "both";
   const Vec3 axis = (top - base) / height;
+  if (!at.find("segments")) {
+    Surface shape = top_radius == radius ? exact(Cylinder{base, top, radius, false})
+                                         : exact(Cone{base, top, radius, top_radius, false});
+    if (caps == "both" || caps == "base") shape.shapes.emplace_back(Disk{base, -axis, radius, 0});
+    if ((caps == "both" || caps == "top") && top_radius > 0)
+      shape.shapes.emplace_back(Disk{top, axis, top_radius, 0});
+    flip_if_inward(at, shape);
+    return shape;
+  }
+  const int segments = read_segments(at);
   const auto frame = frame_around(axis);
 
   Surface shape;
@@ -149,15 +170,17 @@ Surface read_disk(const JsonCursor& at) {
   const Vec3 normal = at.at("normal").vec3();
   if (!(normal.norm() > 0)) at.at("normal").fail("the normal has no length", "Give a direction.");
   const double radius = at.at("radius").positive_number();
+  const auto inner = at.find("inner_radius");
+  const double inner_radius = inner ? inner->positive_number() : 0;
+  if (inner_radius >= radius)
+    inner->fail("the hole is as large as the disk", "Make it smaller than the radius.");
+  if (!at.find("segments")) return exact(Disk{centre, normal.normalized(), radius, inner_radius});
   const int segments = read_segments(at);
   const auto frame = frame_around(normal.normalized());
   Surface shape;
   Face face;
   face.outer = ring_loop(append_ring(shape, centre, frame, radius, segments), segments, false);
-  if (const auto inner = at.find("inner_radius")) {
-    const double inner_radius = inner->positive_number();
-    if (inner_radius >= radius)
-      inner->fail("the hole is as large as the disk", "Make it smaller than the radius.");
+  if (inner) {
     face.holes.push_back(
         ring_loop(append_ring(shape, centre, frame, inner_radius, segments), segments, true));
   }

@@ -40,12 +40,18 @@ void read_sides(const JsonCursor& at, Material& material) {
   }
 }
 
+/// Radiance along the normal; of a Lambertian surface, M / pi.
+Spectrum radiance_of_exitance(const Spectrum& exitance, const Material& material) {
+  return (material.emission_exponent + 2) / (2 * std::numbers::pi) * exitance;
+}
+
 }  // namespace
 
 NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
   for (const auto& [name, at] : materials.members()) {
     at.expect_object({"reflectance", "radiance", "exitance", "luminance_cd_m2", "exitance_lm_m2",
-                      "total_power", "total_flux_lm", "emission_color", "sides", "emission_sides"});
+                      "total_power", "total_flux_lm", "emission_color", "emission_exponent", "sides",
+                      "emission_sides"});
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;
     material.name = name;
@@ -63,6 +69,11 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
       colour->fail("a colour without a photometric emission",
                    fmt::format("Use it with luminance_cd_m2, {}", "exitance_lm_m2 or total_flux_lm."));
     }
+    if (const auto exponent = at.find("emission_exponent")) {
+      if (!emission)
+        exponent->fail("an exponent without an emission", "Say how much it emits, or remove the exponent.");
+      material.emission_exponent = exponent->number_in(0, 1e4);
+    }
     if (emission) {
       const JsonCursor given = at.at(emission);
       const Spectrum value =
@@ -72,9 +83,8 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
       if (key == "total_power" || key == "total_flux_lm") {
         totals_.push_back({given, id, value});
       } else {
-        // A Lambertian surface of exitance M has the radiance M/pi.
         const bool is_exitance = key == "exitance" || key == "exitance_lm_m2";
-        material.emitted_radiance = is_exitance ? Spectrum(value / std::numbers::pi) : value;
+        material.emitted_radiance = is_exitance ? radiance_of_exitance(value, material) : value;
       }
     }
     ids_.emplace(name, id);
@@ -113,7 +123,7 @@ void NativeMaterials::share_total_powers(Scene& scene) const {
                       material.name),
           "Use the material, or remove its emission.");
     }
-    material.emitted_radiance = total.power / (std::numbers::pi * area);
+    material.emitted_radiance = radiance_of_exitance(total.power / area, material);
   }
 }
 

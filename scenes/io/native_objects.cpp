@@ -176,12 +176,15 @@ MaterialId NativeObjects::demand_material(const JsonCursor& at, const Placement&
 void NativeObjects::append(Surface surface, const JsonCursor& at, const Placement& placement,
                            const std::string& name) {
   std::erase_if(surface.faces, [](const Face& face) { return face.outer.empty(); });  // Open sides of a box.
-  faces_ += surface.faces.size();
+  faces_ += surface.faces.size() + surface.shapes.size();
   if (faces_ > kMostFaces) {
     at.fail(fmt::format("the room has more than {} faces", kMostFaces),
             "Use fewer segments or smaller arrays.");
   }
-  if (surface.faces.empty()) return;
+  if (surface.empty()) return;
+  if (!surface.shapes.empty() && !is_similarity(placement.to_world))
+    at.fail("a round shape is scaled by different factors in different directions",
+            "Scale it evenly, or give it \"segments\", which makes it of flat faces.");
   if (surface.source.empty()) surface.source = scene_.source;
   const int uses = ++names_[name];
   surface.name = uses == 1 ? name : fmt::format("{} #{}", name, uses);

@@ -15,6 +15,7 @@ class SurfaceBuilder {
   SurfaceBuilder(std::string name, std::string source, MaterialId material);
 
   void add(const Polygon& polygon, std::uint32_t source_line);
+  void add(const CurvedShape& shape) { surface_.shapes.push_back(shape); }
   const Surface& surface() const { return surface_; }
   Surface take() { return std::move(surface_); }
 

@@ -32,12 +32,14 @@ double surface_area(const Surface& surface) {
     for (const auto& hole : face.holes) face_area -= loop_area(surface, hole);
     area += std::max(face_area, 0.0);
   }
+  for (const CurvedShape& shape : surface.shapes) area += shape_area(shape);
   return area;
 }
 
 void flip_surface(Surface& surface) {
   reverse_loops(surface);
   for (Vec3& normal : surface.normals) normal = -normal;
+  for (CurvedShape& shape : surface.shapes) shape = flipped(shape);
 }
 
 void transform_surface(const Eigen::Affine3d& transform, Surface& surface) {
@@ -53,6 +55,7 @@ void transform_surface(const Eigen::Affine3d& transform, Surface& surface) {
   if (mirrors) cofactors = -cofactors;
   for (Vec3& normal : surface.normals) normal = (cofactors * normal).normalized();
   if (mirrors) reverse_loops(surface);
+  for (CurvedShape& shape : surface.shapes) shape = transformed(shape, transform);
 }
 
 }  // namespace reemit

@@ -15,7 +15,8 @@ double surface_area(const Surface& surface);
 /// Turns fronts into backs: loops are reversed and normals negated.
 void flip_surface(Surface& surface);
 
-/// Applies a transform; one that mirrors also turns the loops, so that fronts stay fronts.
+/// Applies a transform; one that mirrors also turns the loops, so that fronts stay fronts. Curved shapes need
+/// a similarity (is_similarity), which keeps them what they are.
 void transform_surface(const Eigen::Affine3d& transform, Surface& surface);
 
 }  // namespace reemit

@@ -39,12 +39,27 @@ void add_material(Hasher& hash, const Material& m) {
   hash.add(m.emitted_radiance);
   hash.add(m.two_sided);
   hash.add(m.emits_both_sides);
+  if (m.emission_exponent != 0) hash.add(m.emission_exponent);
 }
 
 // The corners themselves rather than their indices, so that vertices no face uses do not count.
 void add_loop(Hasher& hash, std::span<const std::uint32_t> loop, const std::vector<Vec3>& points) {
   hash.add(std::uint64_t{loop.size()});
   for (const std::uint32_t index : loop) hash.add(points[index]);
+}
+
+void add_shape(Hasher& hash, const CurvedShape& shape) {
+  hash.add(std::uint64_t{shape.index()});
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    hash.add(sphere->centre);
+    hash.add(sphere->radius);
+    hash.add(sphere->inward);
+    return;
+  }
+  const Frustum f = frustum_of(shape);
+  for (const Vec3& v : {f.base, f.axis}) hash.add(v);
+  for (const double x : {f.height, f.r0, f.r1}) hash.add(x);
+  hash.add(f.inward);
 }
 
 void add_surface(Hasher& hash, const Surface& surface) {
@@ -56,6 +71,9 @@ void add_surface(Hasher& hash, const Surface& surface) {
     add_loop(hash, face.normals,
              surface.normals);  // creases, and with them shared vertices, follow from these
   }
+  if (surface.shapes.empty()) return;
+  hash.add(std::uint64_t{surface.shapes.size()});
+  for (const CurvedShape& shape : surface.shapes) add_shape(hash, shape);
 }
 
 void add_light(Hasher& hash, const PunctualLight& light) {

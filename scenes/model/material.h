@@ -1,4 +1,5 @@
 #pragma once
+#include <numbers>
 #include <string>
 
 #include "scenes/model/bands.h"
@@ -20,12 +21,17 @@ struct NonDiffusePart {
 struct Material {
   std::string name;
   Spectrum reflectance;       ///< Diffuse (Lambertian) reflectance rho [0,1] per band; BRDF = rho/pi.
-  Spectrum emitted_radiance;  ///< L_e [W/(m2 sr)] per band, Lambertian; all 0 = no luminaire.
+  Spectrum emitted_radiance;  ///< L_e [W/(m2 sr)] per band along the normal; all 0 = no luminaire.
+  /// e in L_e(theta) = emitted_radiance cos^e(theta): 0 = Lambertian, larger = a narrower beam [0, 1e4].
+  double emission_exponent = 0;
   bool two_sided = true;  ///< The back reflects like the front; else the back of the face absorbs all light.
   bool emits_both_sides = false;  ///< Else only the front emits. Needs two_sided.
   NonDiffusePart non_diffuse;
 
   bool emits() const { return (emitted_radiance > 0).any(); }
+  /// Emitted by a square metre of one side [W/m2] per band: the integral of L_e cos(theta) over the
+  /// hemisphere.
+  Spectrum exitance() const { return 2 * std::numbers::pi / (emission_exponent + 2) * emitted_radiance; }
 };
 
 }  // namespace reemit

@@ -127,15 +127,17 @@ void finish_scene(Scene& scene) {
 Box bounds(const Scene& scene) {
   bool any = false;
   Box box;
+  const auto add = [&](const Vec3& low, const Vec3& high) {
+    box.min = any ? Vec3(box.min.cwiseMin(low)) : low;
+    box.max = any ? Vec3(box.max.cwiseMax(high)) : high;
+    any = true;
+  };
   for (const Surface& surface : scene.surfaces) {
-    for (const Face& face : surface.faces) {
-      for (const std::uint32_t index : face.outer) {
-        const Vec3& p = surface.positions[index];
-        if (!any) box.min = box.max = p;
-        any = true;
-        box.min = box.min.cwiseMin(p);
-        box.max = box.max.cwiseMax(p);
-      }
+    for (const Face& face : surface.faces)
+      for (const std::uint32_t index : face.outer) add(surface.positions[index], surface.positions[index]);
+    for (const CurvedShape& shape : surface.shapes) {
+      const auto [low, high] = shape_bounds(shape);
+      add(low, high);
     }
   }
   return box;

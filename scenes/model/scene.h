@@ -39,7 +39,7 @@ struct Box {
   Vec3 centre() const { return 0.5 * (min + max); }
 };
 
-/// Bounding box of all faces [m]; a box of zero size if there are none.
+/// Bounding box of all faces and shapes [m]; a box of zero size if there are none.
 Box bounds(const Scene& scene);
 
 /// Content hash of everything that light transport depends on (geometry, materials, lights, bands; not

@@ -61,6 +61,10 @@ void check_material(Material& m, Scene& scene, const std::string& where) {
     if (!std::isfinite(value) || value < 0)
       throw InputError(where, "roughness or index of refraction is negative or not a number",
                        "Give 0 or more.");
+  constexpr double kNarrowest = 1e4;
+  if (!(m.emission_exponent >= 0 && m.emission_exponent <= kNarrowest))
+    throw InputError(where, fmt::format("emission exponent {}", m.emission_exponent),
+                     "Give 0 (Lambertian) to 10000 (a narrow beam).");
   if (m.emits_both_sides && !m.two_sided)
     throw InputError(where, "emits from both sides but is one-sided",
                      "Make the material two-sided, or let only its front emit.");
@@ -104,6 +108,15 @@ bool usable_normals(const Face& face, Surface& surface, const std::string& where
     if (std::abs(length - 1) > 1e-12) normal /= length;
   }
   return true;
+}
+
+void check_shape(const CurvedShape& shape, const std::string& where) {
+  const auto [low, high] = shape_bounds(shape);
+  if (!low.allFinite() || !high.allFinite())
+    throw InputError(where, "a coordinate or radius is infinite or not a number", "Repair the numbers.");
+  if (!(shape_area(shape) > 0))
+    throw InputError(where, "it has no area: a radius or length is zero or negative",
+                     "Give a positive radius and length, or remove the shape.");
 }
 
 void check_direction(Vec3& direction, const std::string& where) {
@@ -172,7 +185,7 @@ void check_materials(Scene& scene) {
 }
 
 void check_geometry(Scene& scene) {
-  std::erase_if(scene.surfaces, [](const Surface& s) { return s.faces.empty(); });
+  std::erase_if(scene.surfaces, [](const Surface& s) { return s.empty(); });
   if (scene.surfaces.empty())
     throw InputError(in_file(scene, "room"), "it has no faces", "A room needs at least one polygon.");
   std::size_t flattened = 0;
@@ -180,6 +193,9 @@ void check_geometry(Scene& scene) {
     if (surface.material.index() >= scene.materials.size())
       throw InputError(in_file(scene, fmt::format("surface '{}'", surface.name)), "it has no material",
                        "Give every surface a material of the room.");
+    for (std::size_t i = 0; i < surface.shapes.size(); ++i)
+      check_shape(surface.shapes[i],
+                  in_file(scene, fmt::format("surface '{}', shape {}", surface.name, i + 1)));
     for (std::size_t i = 0; i < surface.faces.size(); ++i) {
       Face& face = surface.faces[i];
       const std::string where = face_name(scene, surface, i);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scenes/model/ids.h"
+#include "scenes/model/shape.h"
 #include "scenes/model/vec.h"
 
 namespace reemit {
@@ -17,7 +18,7 @@ struct Face {
   std::uint32_t source_line = 0;       ///< In the file named by Surface::source; 0 = not known.
 };
 
-/// A named group of faces of one material, in world coordinates.
+/// A named group of faces and curved shapes of one material, in world coordinates.
 struct Surface {
   std::string name;
   std::string source;  ///< File it came from, for messages.
@@ -25,6 +26,9 @@ struct Surface {
   std::vector<Vec3> positions;  ///< [m]
   std::vector<Vec3> normals;    ///< Unit shading normals; used in stills and to find creases only.
   std::vector<Face> faces;
+  std::vector<CurvedShape> shapes;
+
+  bool empty() const { return faces.empty() && shapes.empty(); }
 };
 
 }  // namespace reemit

@@ -14,7 +14,7 @@ const float* DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin, c
   LuminaireSample sample;
   if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return nullptr;
   const Vec3f towards = sample.at_infinity ? sample.target : Vec3f(sample.target - origin);
-  if (!(towards.dot(side_normal(*rays_, x.triangle, x.front)) > 0)) return nullptr;
+  if (!(towards.dot(side_normal(*rays_, x)) > 0)) return nullptr;
   const bool visible =
       sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
   if (!visible) return nullptr;

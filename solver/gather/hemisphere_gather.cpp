@@ -59,7 +59,7 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   const RayScene& rays = gather_->rays();
   const Vec3f direction = sample_lambert(x.normal, u0, u1);
   // Below a shading normal's horizon there is only the surface itself.
-  if (!(direction.dot(side_normal(rays, x.triangle, x.front)) > 0)) return;
+  if (!(direction.dot(side_normal(rays, x)) > 0)) return;
   const Vec3f origin = rays.ray_origin(x.triangle, x.u, x.v, x.front);
   const auto lane = static_cast<std::size_t>(count_);
   rays_.ox[lane] = origin.x();

@@ -16,7 +16,7 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
   const std::size_t bands = materials_->band_count();
   SurfacePoint point = x;
   Vec3f direction = sample_lambert(x.normal, u0, u1);
-  if (!(direction.dot(side_normal(*rays_, x.triangle, x.front)) > 0)) return;
+  if (!(direction.dot(side_normal(*rays_, x)) > 0)) return;
   for (std::uint32_t bounce = 0;; ++bounce) {
     Hit hit;
     if (!rays_->closest(rays_->ray_origin(point.triangle, point.u, point.v, point.front), direction, hit))

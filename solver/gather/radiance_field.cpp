@@ -42,9 +42,11 @@ void RadianceField::read_surfaces(const Scene& scene) {
   surface_reflectance_.reserve(scene.surfaces.size() * bands_);
   for (const Surface& surface : scene.surfaces) {
     const Material& material = scene.material_of(surface);
+    const Spectrum emitted = material.exitance() / std::numbers::pi;
+    surface_exponent_.push_back(static_cast<float>(material.emission_exponent));
     for (std::size_t b = 0; b < bands_; ++b) {
       const auto k = static_cast<Eigen::Index>(b);
-      surface_emitted_.push_back(static_cast<float>(material.emitted_radiance[k]));
+      surface_emitted_.push_back(static_cast<float>(emitted[k]));
       surface_reflectance_.push_back(static_cast<float>(material.reflectance[k]));
     }
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -34,10 +35,16 @@ class RadianceField {
   const float* reflected_direct(std::size_t triangle, float u, float v, bool front) const {
     return zone_value(reflected_direct_.data(), triangle, u, v, front);
   }
-  /// Self-emitted radiance [W/(m2 sr)] of one side of a triangle; zero where it does not emit.
+  /// Self-emitted radiance [W/(m2 sr)] of one side of a triangle: exitance over pi, which is the radiance in
+  /// every direction where emission is Lambertian. Zero where it does not emit.
   const float* emitted(std::size_t triangle, bool front) const {
     const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
     return side.emits ? &surface_emitted_[side.surface * bands_] : zero_.data();
+  }
+  /// Radiance at an angle to the normal over emitted(): (e+2)/2 cos^e, 1 for Lambertian emission.
+  float emission_shape(std::size_t triangle, float cosine) const {
+    const float e = surface_exponent_[sides_[2 * triangle].surface];
+    return e == 0 ? 1.0F : (0.5F * e + 1) * std::pow(cosine, e);
   }
   /// Diffuse reflectance [0,1] of one side of a triangle; zero on backs that absorb.
   const float* reflectance(std::size_t triangle, bool front) const {
@@ -70,6 +77,7 @@ class RadianceField {
   std::vector<float> reflected_;     // by part, then by zone
   std::vector<float> reflected_direct_;
   std::vector<float> surface_emitted_;
+  std::vector<float> surface_exponent_;
   std::vector<float> surface_reflectance_;
   std::vector<float> zone_size_;
   std::vector<float> zero_;

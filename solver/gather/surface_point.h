@@ -17,14 +17,18 @@ struct SurfacePoint {
   Vec3f normal{0, 0, 1};
 };
 
-/// Geometric normal of one side of a triangle.
-inline Vec3f side_normal(const RayScene& rays, TriangleId t, bool front) {
-  return front ? rays.normal(t) : Vec3f(-rays.normal(t));
+/// Geometric normal at a point of one side of a triangle or patch.
+inline Vec3f side_normal(const RayScene& rays, TriangleId t, float u, float v, bool front) {
+  const Vec3f normal = rays.normal(t, u, v);
+  return front ? normal : Vec3f(-normal);
+}
+inline Vec3f side_normal(const RayScene& rays, const SurfacePoint& x) {
+  return side_normal(rays, x.triangle, x.u, x.v, x.front);
 }
 
 /// Point with the geometric normal.
 inline SurfacePoint surface_point(const RayScene& rays, TriangleId t, float u, float v, bool front) {
-  return {t, u, v, front, side_normal(rays, t, front)};
+  return {t, u, v, front, side_normal(rays, t, u, v, front)};
 }
 inline SurfacePoint surface_point(const RayScene& rays, const Hit& hit) {
   return surface_point(rays, hit.triangle, hit.u, hit.v, hit.front);

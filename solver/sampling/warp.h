@@ -63,6 +63,18 @@ inline std::array<float, 2> invert_cosine_hemisphere(const Vec3f& direction) {
   return invert_disk({direction.x(), direction.y()});
 }
 
+/// Direction about +z with density (k+1)/(2 pi) cos(theta)^k per steradian, k >= 0.
+inline Vec3f sample_cosine_power(float u0, float u1, float k) {
+  const Point2 d = sample_disk(u0, u1);
+  const float r2 = std::min(1.0F, d.x * d.x + d.y * d.y);
+  const float z = std::pow(1 - r2, 1 / (k + 1));
+  const float stretch = r2 > 0 ? std::sqrt(std::max(0.0F, 1 - z * z) / r2) : 0.0F;
+  return {stretch * d.x, stretch * d.y, z};
+}
+inline float cosine_power_pdf_per_sr(float cos_theta, float k) {
+  return cos_theta > 0 ? (k + 1) / (2 * std::numbers::pi_v<float>)*std::pow(cos_theta, k) : 0.0F;
+}
+
 /// Barycentric (u,v) of a uniform point in a triangle [TUR90]; density 1/area per area.
 inline std::array<float, 2> sample_triangle(float u0, float u1) {
   const float s = std::sqrt(u0);

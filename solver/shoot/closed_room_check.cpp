@@ -50,7 +50,7 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
           for (std::size_t d = 0; d < 4; ++d) numbers_of_bounce.u[d][lane] = x[d];
           transport.put_zone(zone, lanes, lane, lane + 1);
         }
-        start_rays(lanes, numbers_of_bounce, rays);
+        transport.start(lanes, numbers_of_bounce, rays);
       }
     }
     throw InputError(scene.source,

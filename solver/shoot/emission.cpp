@@ -99,17 +99,16 @@ Emission collect_emission(const TransportScene& transport) {
     const Material& material = scene.material_of(scene.surfaces[triangle.surface.index()]);
     if (!material.emits()) continue;
     const std::size_t per_side = std::size_t{triangle.divisions} * triangle.divisions;
-    // Exitance of a Lambertian luminaire: M = pi L.
-    const Spectrum power =
-        std::numbers::pi * mesh.triangle_area(id) / static_cast<double>(per_side) * material.emitted_radiance;
+    const Spectrum power = mesh.triangle_area(id) / static_cast<double>(per_side) * material.exitance();
+    const auto exponent = static_cast<float>(material.emission_exponent);
     for (const bool front : {true, false}) {
       if (!front && !(material.emits_both_sides && triangle.two_sided)) continue;
       const std::size_t first = mesh.first_zone(id, front).index();
-      for (std::size_t z = 0; z < per_side; ++z) add({ZoneId(first + z), 0}, power);
+      for (std::size_t z = 0; z < per_side; ++z) add({ZoneId(first + z), 0, exponent}, power);
     }
   }
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
-    add({ZoneId(), static_cast<std::uint32_t>(l)}, light_power(scene.lights[l], transport.rays()));
+    add({ZoneId(), static_cast<std::uint32_t>(l), 0}, light_power(scene.lights[l], transport.rays()));
 
   const std::size_t count = emission.sources.size();
   emission.quanta.assign(count * bands, 0);

@@ -12,6 +12,7 @@ namespace reemit {
 struct EmissionSource {
   ZoneId zone;              ///< Valid for surfaces that emit.
   std::uint32_t light = 0;  ///< Else index into Scene::lights.
+  float exponent = 0;       ///< Of a surface: Material::emission_exponent.
 };
 
 /// All that emits, with its power in quanta: the sources of one band share kBatchQuanta exactly.

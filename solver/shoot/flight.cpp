@@ -75,30 +75,34 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
                            std::int64_t* quanta) {
   UniformLanes x;
   numbers.get16(first, x);
-  std::array<const PunctualLight*, 16> light{};
-  bool any_light = false;
+  std::array<const EmissionSource*, 16> special{};  // those that do not send packets as zones reflect them
+  bool any_special = false;
   for (int lane = 0; lane < count;) {
     const std::uint32_t packet = first + static_cast<std::uint32_t>(lane);
     while (packet >= end_) enter_source(current_ + 1);
     const int until = static_cast<int>(std::min(end_ - first, static_cast<std::uint32_t>(count)));
     const EmissionSource& s = flight_.sources[current_];
-    if (s.zone.valid()) {
-      transport_.put_zone(s.zone, lanes_, lane, until);
-    } else {
-      std::fill(&light[static_cast<std::size_t>(lane)], light.data() + until,
-                &transport_.scene().lights[s.light]);
-      any_light = true;
+    if (s.zone.valid()) transport_.put_zone(s.zone, lanes_, lane, until);
+    if (!s.zone.valid() || s.exponent != 0) {
+      std::fill(&special[static_cast<std::size_t>(lane)], special.data() + until, &s);
+      any_special = true;
     }
     std::int64_t k = packet - begin_;
     for (; lane < until; ++lane, ++k)
       for (std::size_t b = 0; b < bands_; ++b) *quanta++ = share_[b] + (k < remainder_[b] ? 1 : 0);
   }
-  start_rays(lanes_, x, rays);
-  if (!any_light) return;
-  for (int lane = 0; lane < count; ++lane)
-    if (const PunctualLight* l = light[static_cast<std::size_t>(lane)])
-      start_light_ray(*l, transport_.rays(), x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane], rays,
-                      lane);
+  transport_.start(lanes_, x, rays);
+  if (!any_special) return;
+  for (int lane = 0; lane < count; ++lane) {
+    const EmissionSource* s = special[static_cast<std::size_t>(lane)];
+    if (s == nullptr) continue;
+    if (s->zone.valid())
+      transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane],
+                            sample_cosine_power(x.u[2][lane], x.u[3][lane], s->exponent + 1), rays, lane);
+    else
+      start_light_ray(transport_.scene().lights[s->light], transport_.rays(), x.u[0][lane], x.u[1][lane],
+                      x.u[2][lane], x.u[3][lane], rays, lane);
+  }
 }
 
 }  // namespace reemit

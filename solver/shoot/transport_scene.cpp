@@ -22,4 +22,31 @@ TransportScene::TransportScene(const Scene& scene, const ZoneMesh& mesh, const R
   }
 }
 
+void TransportScene::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays,
+                                int lane) const {
+  const TriangleId t = mesh_->zone_triangle(z);
+  const bool front = mesh_->zone_is_front(z);
+  const auto corners = mesh_->zone_barycentrics(z);
+  const auto [a, b] = sample_triangle(u0, u1);
+  const auto inside = [&](double Barycentric::*k) {
+    return static_cast<float>((1 - a - b) * corners[0].*k + a * corners[1].*k + b * corners[2].*k);
+  };
+  const float u = inside(&Barycentric::u);
+  const float v = inside(&Barycentric::v);
+  const Vec3f origin = rays_->ray_origin(t, u, v, front);
+  const Vec3f normal = rays_->normal(t, u, v);
+  const Vec3f direction = Frame(front ? normal : Vec3f(-normal)).to_world(local);
+  for (int k = 0; k < 3; ++k) {
+    (k == 0 ? rays.ox : k == 1 ? rays.oy : rays.oz)[lane] = origin[k];
+    (k == 0 ? rays.dx : k == 1 ? rays.dy : rays.dz)[lane] = direction[k];
+  }
+}
+
+void TransportScene::start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
+  for (int lane = 0; lane < 16; ++lane)
+    if ((lanes.curved >> lane & 1U) != 0)
+      start_from(ZoneId(lanes.zone[lane]), numbers.u[0][lane], numbers.u[1][lane],
+                 sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]), rays, lane);
+}
+
 }  // namespace reemit

@@ -31,6 +31,13 @@ class TransportScene {
   /// Puts the geometry of a zone into lanes first .. last-1.
   void put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {
     const TriangleId t = mesh_->zone_triangle(z);
+    const std::uint32_t bits = ((1U << last) - 1) & ~((1U << first) - 1);
+    if (t.index() >= mesh_->flat_count()) {
+      lanes.curved |= bits;
+      std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(z.index()));
+      return;
+    }
+    lanes.curved &= ~bits;
     const TrianglePatch& p = patches_[t.index()];
     std::size_t in_side = z.index() - p.first_zone;
     const std::size_t per_side = std::size_t{p.divisions} * p.divisions;
@@ -53,6 +60,14 @@ class TransportScene {
     }
   }
 
+  /// start_rays for zones that may be curved.
+  void start(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
+    start_rays(lanes, numbers, rays);
+    if (lanes.curved != 0) start_curved(lanes, numbers, rays);
+  }
+  /// Starts one ray from a uniform point of a zone with a direction given in the frame of its normal (z up).
+  void start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const;
+
   /// Zone that a hit belongs to; not valid when it is the back of a one-sided face.
   ZoneId zone_of(std::uint32_t triangle, float u, float v, bool front) const {
     const TrianglePatch& p = patches_[triangle];
@@ -62,6 +77,8 @@ class TransportScene {
   }
 
  private:
+  void start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
+
   /// A base triangle with the edges of one of its zones (normalised space).
   struct TrianglePatch {
     Vec3f corner, edge1, edge2, middle;

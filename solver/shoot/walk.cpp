@@ -105,7 +105,7 @@ class WalkTask {
         id[lane] = p.id;
         transport_.put_zone(p.zone, lanes_, lane, lane + 1);
       }
-      start_rays(lanes_, numbers, rays_);
+      transport_.start(lanes_, numbers, rays_);
       trace(count, id, &leaving_.quanta[first * bands_], zones_.indirect, bounce);
     }
     look_again(zones_.indirect, bounce);

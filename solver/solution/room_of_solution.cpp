@@ -30,8 +30,11 @@ bool fits(const Solution& solution, const Scene& scene) {
     return false;
   const auto& triangles = solution.mesh.base().triangles;
   return std::all_of(triangles.begin(), triangles.end(), [&scene](const BaseTriangle& t) {
-    return t.surface.index() < scene.surfaces.size() &&
-           t.face < scene.surfaces[t.surface.index()].faces.size();
+    if (t.surface.index() >= scene.surfaces.size()) return false;
+    const Surface& surface = scene.surfaces[t.surface.index()];
+    // Shapes may have become faces, which are numbered after those of the room.
+    return t.is_curved() ? t.face < surface.shapes.size()
+                         : t.face < surface.faces.size() || !surface.shapes.empty();
   });
 }
 

@@ -68,7 +68,7 @@ Estimate Solution::irradiance(ZoneId z, std::size_t band) const {
 double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {
   const Material& material = zone_material(z);
   if (!material.emits_both_sides && !mesh.zone_is_front(z)) return 0;
-  return std::numbers::pi * material.emitted_radiance[to_index(band)];
+  return material.exitance()[to_index(band)];
 }
 
 Estimate Solution::radiosity(ZoneId z, std::size_t band) const {

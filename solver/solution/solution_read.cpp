@@ -6,6 +6,7 @@
 #include "scenes/model/error.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
+#include "solver/solution/shape_rows.h"
 #include "solver/solution/solution_file.h"
 #include "solver/solution/solution_layout.h"
 
@@ -103,6 +104,7 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
   const std::uint64_t count = names.size();
   const auto reflectance = group.read<double>("reflectance", {count, bands});
   const auto emitted = group.read<double>("emitted_radiance", {count, bands});
+  const auto exponent = group.read<double>("emission_exponent", {count});
   const auto two_sided = group.read<std::uint8_t>("two_sided", {count});
   const auto emits_both_sides = group.read<std::uint8_t>("emits_both_sides", {count});
   const auto in_range = [](double low, double high) {
@@ -111,12 +113,14 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
   require(std::all_of(reflectance.begin(), reflectance.end(), in_range(0, 1)), "reflectance outside [0,1]");
   require(std::all_of(emitted.begin(), emitted.end(), in_range(0, std::numeric_limits<double>::max())),
           "negative or infinite emission");
+  require(std::all_of(exponent.begin(), exponent.end(), in_range(0, 1e4)), "emission exponent out of range");
   const auto size = static_cast<Eigen::Index>(bands);
   for (std::size_t m = 0; m < count; ++m) {
     Material material;
     material.name = names[m];
     material.reflectance = Spectrum::Map(reflectance.data() + m * bands, size);
     material.emitted_radiance = Spectrum::Map(emitted.data() + m * bands, size);
+    material.emission_exponent = exponent[m];
     material.two_sided = two_sided[m] != 0;
     material.emits_both_sides = emits_both_sides[m] != 0;
     solution.materials.push_back(std::move(material));
@@ -162,6 +166,11 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   const auto face = group.read<std::uint32_t>("triangle_face", {count});
   const auto divisions = group.read<std::uint32_t>("triangle_divisions", {count});
   const auto two_sided = group.read<std::uint8_t>("triangle_two_sided", {count});
+  const auto shape = group.read<std::uint32_t>("triangle_shape", {count});
+  const std::uint64_t shapes = rows_of(group, "shapes");
+  const auto rows = group.read<double>("shapes", {shapes, kShapeRow});
+  require(all_finite(rows), "shapes that are not finite");
+  for (std::size_t s = 0; s < shapes; ++s) base.shapes.push_back(shape_of(&rows[s * kShapeRow]));
   std::uint64_t zones = 0;
   for (std::size_t t = 0; t < count; ++t) {
     require(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
@@ -175,6 +184,9 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
     triangle.face = face[t];
     triangle.divisions = divisions[t];
     triangle.two_sided = two_sided[t] != 0;
+    triangle.shape = shape[t];
+    if (t > 0 && shape[t] == shape[t - 1] && triangle.is_curved())
+      triangle.patch = base.triangles.back().patch + 1;
     base.triangles.push_back(triangle);
   }
   require(zones == zone_count, "fewer zones in the mesh than in the sums");

@@ -7,6 +7,7 @@
 #include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/hdf5_memory_file.h"
+#include "solver/solution/shape_rows.h"
 #include "solver/solution/solution_file.h"
 #include "solver/solution/solution_layout.h"
 
@@ -145,6 +146,9 @@ void write_surfaces(const Hdf5Group& root, const Solution& solution) {
             flattened<double>(solution.materials,
                               [](const Material& m) -> const Spectrum& { return m.emitted_radiance; }),
             bands, "W/(m2 sr)", "radiance emitted by itself");
+  put(materials, "emission_exponent",
+      column<double>(solution.materials, std::mem_fn(&Material::emission_exponent)), 1, "1",
+      "e: the emitted radiance falls as cos^e from the normal; 0 = the same in all directions");
   put(materials, "two_sided", column<std::uint8_t>(solution.materials, std::mem_fn(&Material::two_sided)), 1,
       "", "1 if the back reflects like the front, else it absorbs");
   put(materials, "emits_both_sides",
@@ -173,6 +177,10 @@ void write_mesh(const Hdf5Group& root, const Solution& solution) {
       "", "n: the triangle has n*n zones on each side that has zones");
   put(mesh, "triangle_two_sided", column<std::uint8_t>(triangles, std::mem_fn(&BaseTriangle::two_sided)), 1,
       "", "1 if the back has zones, numbered after those of the front");
+  put(mesh, "shapes", flattened<double>(base.shapes, [](const CurvedShape& s) { return row_of(s); }),
+      kShapeRow, "m", "curved shapes: kind, centre or base, normal or top, radii, inward");
+  put(mesh, "triangle_shape", column<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::shape)), 1, "",
+      "row of shapes that the triangle is a patch of; 4294967295 = flat");
   AttributeWriter counts{mesh};
   transfer_mesh_counts(counts, solution.mesh_report);
   mesh.write("warnings", solution.mesh_report.warnings, "what meshing warned about");

@@ -29,9 +29,9 @@ struct Hit16 {
   bool front[16];
 };
 
-/// Owner of the ray-tracing structure over the base triangles. Rays live in a normalised space in which the
-/// room fits into [-1,1]^3, so that rooms of any size and place behave alike. Const members may be called
-/// from any thread.
+/// Owner of the ray-tracing structure over the base triangles and curved shapes. Rays live in a normalised
+/// space in which the room fits into [-1,1]^3, so that rooms of any size and place behave alike. Const
+/// members may be called from any thread.
 class RayScene {
  public:
   static constexpr std::uint32_t kMiss = 0xffffffff;
@@ -54,10 +54,20 @@ class RayScene {
   Vec3 in_room(const Vec3f& point) const { return point.cast<double>() * metres_per_unit_ + centre_; }
 
   Vec3f corner(TriangleId t, int k) const { return corners_[3 * t.index() + static_cast<std::size_t>(k)]; }
-  const Vec3f& normal(TriangleId t) const { return normals_[t.index()]; }  ///< Unit, of the front.
+  /// Unit normal of the front of a flat triangle, or in the middle of a curved patch.
+  const Vec3f& normal(TriangleId t) const { return normals_[t.index()]; }
+  /// Unit normal of the front at (u,v).
+  Vec3f normal(TriangleId t, float u, float v) const {
+    return is_curved(t) ? curved_normal(t, u, v) : normals_[t.index()];
+  }
+  bool is_curved(TriangleId t) const { return t.index() >= flat_count_; }
+  bool has_shapes() const { return !shapes_.empty(); }
   Vec3f point(TriangleId t, float u, float v) const {
+    if (is_curved(t)) return curved_point(t, u, v).cast<float>();
     return (1 - u - v) * corner(t, 0) + u * corner(t, 1) + v * corner(t, 2);
   }
+  /// The curved shape that a patch belongs to, in the normalised space.
+  const CurvedPatches& patches(TriangleId t) const { return shapes_[shape_of(t)]; }
   /// The one self-intersection rule of the program: start of a ray that leaves a triangle with centroid
   /// `middle` at `point` on the side that `side_normal` (unit) points to.
   static Vec3f lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle);
@@ -87,11 +97,21 @@ class RayScene {
 
  private:
   struct EmbreeScene;
+  void add_triangles();
+  void add_shapes();
+  std::uint32_t shape_of(TriangleId t) const { return mesh_->triangle(t).shape; }
+  Vec3 curved_point(TriangleId t, float u, float v) const;
+  Vec3f curved_normal(TriangleId t, float u, float v) const;
+  void read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
+                const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
+
   const ZoneMesh* mesh_;
   double metres_per_unit_ = 1;
   Vec3 centre_{0, 0, 0};
   std::vector<Vec3f> corners_;
   std::vector<Vec3f> normals_;
+  std::size_t flat_count_ = 0;
+  std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
   std::unique_ptr<EmbreeScene> embree_;
 };
 

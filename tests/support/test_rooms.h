@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/build_mesh.h"
+#include "mesh/room_shapes.h"
 #include "scenes/model/scene.h"
 
 namespace reemit::test {
@@ -93,13 +94,37 @@ class RoomBuilder {
     return *this;
   }
 
+  /// A curved shape as a surface of its own; every patch has n*n zones.
+  RoomBuilder& shape(MaterialId material, const CurvedShape& shape, std::uint32_t divisions) {
+    Surface s;
+    s.name = "shape" + std::to_string(scene_.surfaces.size());
+    s.material = material;
+    s.shapes.push_back(shape);
+    scene_.surfaces.push_back(s);
+    shapes_.exact.push_back(shape);
+    shapes_.surface.emplace_back(scene_.surfaces.size() - 1);
+    shapes_.index.push_back(0);
+    shape_divisions_.push_back(divisions);
+    return *this;
+  }
+
   Scene& scene() { return scene_; }
   const Scene& scene() const { return scene_; }
-  MeshResult mesh() const { return {ZoneMesh(base_), MeshReport{}}; }
+  MeshResult mesh() const {
+    BaseMesh base = base_;
+    MeshReport report;
+    report.surfaces.resize(scene_.surfaces.size());
+    append_patches(scene_, shapes_, base, report);
+    for (BaseTriangle& t : base.triangles)
+      if (t.is_curved()) t.divisions = shape_divisions_[t.shape];
+    return {ZoneMesh(std::move(base)), MeshReport{}};
+  }
 
  private:
   Scene scene_;
   BaseMesh base_;
+  RoomShapes shapes_;
+  std::vector<std::uint32_t> shape_divisions_;
 };
 
 }  // namespace reemit::test

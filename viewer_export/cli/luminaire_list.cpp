@@ -34,7 +34,7 @@ std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshReport& 
     const Material& material = scene.material_of(scene.surfaces[s]);
     if (!material.emits()) continue;
     const double area = report.surfaces[s].meshed * (material.emits_both_sides ? 2 : 1);
-    const Spectrum exitance = pi * material.emitted_radiance;
+    const Spectrum exitance = material.exitance();
     rows.push_back({scene.surfaces[s].name, "surface", area, area * exitance, exitance});
   }
   for (const PunctualLight& light : scene.lights) {

@@ -65,7 +65,7 @@ std::string rest_text(std::size_t rows, const std::string& of_what) {
 
 std::size_t face_count(const Scene& scene) {
   std::size_t count = 0;
-  for (const Surface& surface : scene.surfaces) count += surface.faces.size();
+  for (const Surface& surface : scene.surfaces) count += surface.faces.size() + surface.shapes.size();
   return count;
 }
 
@@ -111,7 +111,7 @@ std::string surfaces_text(const Scene& scene, const MeshReport& report) {
   table.row({"surface", "faces", "area [m2]", "removed [m2]", "material"});
   for (std::size_t s = 0; s < std::min(kMostRows, scene.surfaces.size()); ++s) {
     const Surface& surface = scene.surfaces[s];
-    table.row({"  " + surface.name, std::to_string(surface.faces.size()),
+    table.row({"  " + surface.name, std::to_string(surface.faces.size() + surface.shapes.size()),
                number_text(report.surfaces[s].input), number_text(report.surfaces[s].removed),
                scene.material_of(surface).name});
   }
@@ -228,6 +228,7 @@ Json room_json(const Scene& scene, const MeshResult& meshed) {
     json["surfaces"].push_back({{"name", scene.surfaces[s].name},
                                 {"material", scene.material_of(scene.surfaces[s]).name},
                                 {"faces", scene.surfaces[s].faces.size()},
+                                {"shapes", scene.surfaces[s].shapes.size()},
                                 {"area_m2", meshed.report.surfaces[s].input},
                                 {"removed_m2", meshed.report.surfaces[s].removed}});
   }

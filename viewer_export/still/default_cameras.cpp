@@ -54,6 +54,12 @@ Vec3 mean_emission_direction(const Scene& scene) {
       total += weighted.norm();
       if (!material.emits_both_sides) sum += weighted;
     }
+    for (const CurvedShape& shape : surface.shapes) {  // all but disks emit to all sides alike
+      const double power = material.emitted_radiance.sum() * 2 * shape_area(shape);
+      total += power;
+      const auto* disk = std::get_if<Disk>(&shape);
+      if (disk != nullptr && !material.emits_both_sides) sum += power * disk->normal;
+    }
   }
   return total > 0 ? Vec3(sum / total) : Vec3(0, 0, 0);
 }

@@ -91,8 +91,10 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
 
   const float* emitted = field_.emitted(t, hit.front);
   const float* reflectance = field_.reflectance(t, hit.front);
+  const float towards_eye = std::fabs(rays_->normal(hit.triangle, hit.u, hit.v).dot(ray.direction));
+  const float emission = sums.share * field_.emission_shape(t, towards_eye);
   for (std::size_t b = 0; b < bands; ++b) {
-    sums.direct[b] += sums.share * emitted[b];
+    sums.direct[b] += emission * emitted[b];
     sums.albedo[b] += sums.share * reflectance[b];
   }
   if (settings_->integrator != Integrator::kZones) {
@@ -139,7 +141,7 @@ SurfacePoint TileRenderer::seen_point(const Hit& hit) const {
   SurfacePoint point = surface_point(*rays_, hit);
   const BaseMesh& base = rays_->mesh().base();
   const BaseTriangle& triangle = rays_->mesh().triangle(hit.triangle);
-  if (triangle.normal[0] == BaseTriangle::kFlat) return point;
+  if (triangle.is_curved() || triangle.normal[0] == BaseTriangle::kFlat) return point;
   const auto corner = [&](std::size_t k) {
     const std::uint32_t n = triangle.normal[k];
     return n == BaseTriangle::kFlat ? rays_->normal(hit.triangle) : Vec3f(base.normals[n].cast<float>());

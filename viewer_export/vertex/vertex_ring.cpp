@@ -12,16 +12,6 @@ Vec3 to_vec3(const OpenMesh::Vec3d& v) {
   return {v[0], v[1], v[2]};
 }
 
-/// Barycentric position of a point in the plane of a base triangle.
-Barycentric barycentric_of(const ZoneMesh& mesh, TriangleId t, const Vec3& p) {
-  const Vec3 e1 = mesh.corner(t, 1) - mesh.corner(t, 0);
-  const Vec3 e2 = mesh.corner(t, 2) - mesh.corner(t, 0);
-  const Vec3 d = p - mesh.corner(t, 0);
-  const Vec3 n = e1.cross(e2);
-  const double n2 = n.squaredNorm();
-  return {d.cross(e2).dot(n) / n2, e1.cross(d).dot(n) / n2};
-}
-
 /// Irradiance of a surface's backs over the mean of the room from which on they count as lit. A single packet
 /// of millions that found its way through a crack is no light.
 constexpr double kLitShare = 1e-6;
@@ -119,8 +109,7 @@ VertexRings::VertexRings(const Scene& scene, const Solution& solution, bool all_
       const auto z = static_cast<std::size_t>(face->idx());
       if (!kept[z]) continue;
       const ZoneId zone(z);
-      rings_.push_back(
-          {zone, barycentric_of(mesh, mesh.zone_triangle(zone), position), mesh.zone_area(zone)});
+      rings_.push_back({zone, mesh.barycentric_of(mesh.zone_triangle(zone), position), mesh.zone_area(zone)});
     }
     if (rings_.size() == first_.back()) continue;
     number[static_cast<std::size_t>(vertex.idx())] = static_cast<std::uint32_t>(positions_.size());

@@ -82,7 +82,9 @@ TEST_F(MgfReader, VerticesAreTransformedOnlyWithTheGeometry) {
   // The example of the description: the ring ends up at (5,-10,0) and looks down.
   const Scene scene = read("xf -t 5 0 0\nv v1 =\np 0 10 0\nn 0 0 1\nxf -rx 180\nring v1 0 2\nxf\nxf\n");
   EXPECT_TRUE(bounds(scene).centre().isApprox(Vec3(5, -10, 0)));
-  EXPECT_LT(test::area_vector(scene.surfaces[0], scene.surfaces[0].faces[0]).z(), -12);
+  const auto disk = std::get<Disk>(scene.surfaces.at(0).shapes.at(0));
+  EXPECT_TRUE(disk.normal.isApprox(Vec3(0, 0, -1)));
+  EXPECT_NEAR(disk.radius, 2, 1e-12);
 }
 
 TEST_F(MgfReader, ArraysNestAndRepeatTheirContents) {
@@ -96,7 +98,7 @@ TEST_F(MgfReader, ArraysNestAndRepeatTheirContents) {
 }
 
 TEST_F(MgfReader, MirroredGeometryKeepsItsFront) {
-  const std::string body = "v o =\np 3 0 0\nn 0 0 1\nsph o 1\nprism d c b a 1\nring o 0.5 1\n";
+  const std::string body = "v o =\np 3 0 0\nn 0 0 1\ntorus o 0.5 1\nprism d c b a 1\n";
   const auto volume = [](const Scene& scene) {
     double sum = 0;
     for (const Surface& s : scene.surfaces)
@@ -104,22 +106,40 @@ TEST_F(MgfReader, MirroredGeometryKeepsItsFront) {
     return sum;
   };
   const double plain = volume(read(kSquare + body));
-  EXPECT_GT(plain, 4);
+  EXPECT_GT(plain, 1.5);
   for (const char* mirror : {"-mx", "-my", "-mz", "-mx -my -mz", "-s -1", "-mx -rz 30 -t 1 2 0"})
     EXPECT_NEAR(volume(read(kSquare + "xf " + mirror + "\n" + body + "xf\n")), plain, 1e-9) << mirror;
 
   // The ring alone: the normal of a mirrored surface is the mirrored normal.
   const Scene ring = read(kSquare + "v o =\np 3 0 0\nn 0 0 1\nxf -mz\nring o 0.5 1\nxf\n");
-  EXPECT_LT(test::area_vector(ring.surfaces[0], ring.surfaces[0].faces[0]).z(), 0);
+  EXPECT_TRUE(std::get<Disk>(ring.surfaces.at(0).shapes.at(0)).normal.isApprox(Vec3(0, 0, -1)));
+}
+
+TEST_F(MgfReader, RoundShapesAreTransformedAndStayRound) {
+  const Scene scene = read(
+      "v o =\np 0 0 1\nv p =\np 0 0 3\nxf -s 5 -rx 90 -mx -t 1 2 3\nsph o -1\ncyl o 0.5 p\ncone o 1 p "
+      "0\nxf\n");
+  const Surface& s = scene.surfaces.at(0);
+  ASSERT_EQ(s.shapes.size(), 3U);
+  const auto sphere = std::get<Sphere>(s.shapes[0]);
+  EXPECT_TRUE(sphere.centre.isApprox(Vec3(1, -3, 3), 1e-12));
+  EXPECT_NEAR(sphere.radius, 5, 1e-12);
+  EXPECT_TRUE(sphere.inward);
+  const auto cylinder = std::get<Cylinder>(s.shapes[1]);
+  EXPECT_TRUE(cylinder.top.isApprox(Vec3(1, -13, 3), 1e-12));
+  EXPECT_NEAR(cylinder.radius, 2.5, 1e-12);
+  EXPECT_EQ(std::get<Cone>(s.shapes[2]).top_radius, 0);
 }
 
 TEST_F(MgfReader, ShadingNormalsFollowRotationAndScale) {
-  const Scene scene = read("v o =\np 0 0 0\nxf -s 5 -rx 40 -mx -t 1 2 3\nsph o 1\nxf\n");
+  // A torus about the z axis through (1,2,3) after rotation about x: its normals look away from its core.
+  const Scene scene = read("v o =\np 0 0 0\nn 0 0 1\nxf -s 5 -rz 40 -mx -t 1 2 3\ntorus o 1 2\nxf\n");
   const Surface& s = scene.surfaces.at(0);
   for (const Face& face : s.faces)
     for (std::size_t i = 0; i < face.outer.size(); ++i) {
-      const Vec3 outwards = (s.positions[face.outer[i]] - Vec3(1, 2, 3)).normalized();
-      EXPECT_TRUE(s.normals[face.normals[i]].isApprox(outwards, 1e-12));
+      const Vec3 p = s.positions[face.outer[i]] - Vec3(1, 2, 3);
+      const Vec3 core = 7.5 * Vec3(p.x(), p.y(), 0).normalized();
+      EXPECT_TRUE(s.normals[face.normals[i]].isApprox((p - core).normalized(), 1e-9));
     }
 }
 

@@ -95,6 +95,30 @@ TEST(NativeShapes, CylinderAndConeAreClosedAndLookOutwards) {
   EXPECT_EQ(tube.faces.size(), 8u);
 }
 
+TEST(NativeShapes, RoundShapesStayWhatTheyAreWithoutSegments) {
+  const Surface sphere = only_surface(
+      R"({"material": "white", "sphere": {"center": [5, 0, 0], "radius": 2, "inward": true}, "flip": true})");
+  EXPECT_TRUE(sphere.faces.empty());
+  EXPECT_FALSE(std::get<Sphere>(sphere.shapes.at(0)).inward) << "turned twice";
+  EXPECT_NEAR(surface_area(sphere), 16 * std::numbers::pi, 1e-12);
+  const Surface can = only_surface(
+      R"({"material": "white", "cylinder": {"base": [0, 0, 0], "top": [0, 3, 0], "radius": 1}})");
+  ASSERT_EQ(can.shapes.size(), 3U);
+  EXPECT_NEAR(surface_area(can), 8 * std::numbers::pi, 1e-12);
+  EXPECT_EQ(std::get<Disk>(can.shapes[1]).normal, Vec3(0, -1, 0));
+  const Surface inside = only_surface(
+      R"({"material": "white", "cylinder": {"base": [0, 0, 0], "top": [0, 3, 0], "radius": 1, "inward": true}})");
+  EXPECT_TRUE(std::get<Cylinder>(inside.shapes[0]).inward);
+  EXPECT_EQ(std::get<Disk>(inside.shapes[1]).normal, Vec3(0, 1, 0));
+  const Surface cone = only_surface(R"({"material": "white", "cylinder":
+      {"base": [0, 0, 0], "top": [0, 3, 0], "radius": 1, "top_radius": 0, "caps": "none"},
+      "transform": {"scale": 2}})");
+  EXPECT_EQ(std::get<Cone>(cone.shapes.at(0)).base_radius, 2);
+  EXPECT_THROW(only_surface(R"({"material": "white", "sphere": {"center": [0, 0, 0], "radius": 1},
+      "transform": {"scale": [1, 2, 1]}})"),
+               InputError);
+}
+
 TEST(NativeShapes, DiskHasAHoleAndLooksAlongItsNormal) {
   const Surface ring = only_surface(R"({"material": "white",
       "disk": {"center": [0, 1, 0], "normal": [0, -2, 0], "radius": 2, "inner_radius": 1, "segments": 512}})");

@@ -1,0 +1,104 @@
+#include "solver/trace/shape_hit.h"
+
+#include <cmath>
+#include <limits>
+
+namespace reemit {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+/// How far mantles and disks reach beyond their rims [normalised units], so that no ray slips between them
+/// and the faces that they meet there, whose corners are rounded to single precision.
+constexpr double kRim = 2e-7;
+/// A disk in the plane of a face is hit first: it is what was put there.
+constexpr double kProud = 1e-6;
+
+double nearest_of(double a, double b, double near, double far) {
+  if (a > near && a < far) return a;
+  return b > near && b < far ? b : kNone;
+}
+
+}  // namespace
+
+ShapeTarget::ShapeTarget(const CurvedShape& shape) : is_sphere_(std::holds_alternative<Sphere>(shape)) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    centre_ = sphere->centre;
+    radius_ = sphere->radius;
+  } else {
+    frustum_ = frustum_of(shape);
+  }
+  const auto [low, high] = shape_bounds(shape);
+  constexpr double kMargin = 1e-6;
+  low_ = low - Vec3::Constant(kMargin);
+  high_ = high + Vec3::Constant(kMargin);
+}
+
+double ShapeTarget::nearest(const Vec3& origin, const Vec3& d, double near, double far) const {
+  if (is_sphere_) return nearest_on_sphere(centre_ - origin, d, near, far);
+  return frustum_.height > 0 ? nearest_on_mantle(origin - frustum_.base, d, near, far)
+                             : on_disk(origin - frustum_.base, d, near, far);
+}
+
+double ShapeTarget::nearest_on_sphere(const Vec3& to_centre, const Vec3& d, double near, double far) const {
+  const double d2 = d.squaredNorm();
+  const double middle = d.dot(to_centre) / d2;
+  // The distance of the centre from the ray, rather than a difference of squares, keeps small spheres exact.
+  const double rest = radius_ * radius_ - (to_centre - middle * d).squaredNorm();
+  if (rest < 0) return kNone;
+  const double half = std::sqrt(rest / d2);
+  return nearest_of(middle - half, middle + half, near, far);
+}
+
+double ShapeTarget::nearest_on_mantle(const Vec3& p, const Vec3& d, double near, double far) const {
+  const Frustum& f = frustum_;
+  // Radius r0 - slope h at height h: |radial part of p + t d| = that.
+  const double slope = (f.r0 - f.r1) / f.height;
+  const double hp = f.axis.dot(p);
+  const double hd = f.axis.dot(d);
+  const Vec3 rp = p - hp * f.axis;
+  const Vec3 rd = d - hd * f.axis;
+  const double a = rd.squaredNorm() - slope * slope * hd * hd;
+  const auto reaches = [&](double t) {
+    const double h = hp + t * hd;
+    return h >= -kRim && h <= f.height + kRim;
+  };
+  double t0 = kNone;
+  double t1 = kNone;
+  if (slope == 0) {  // shift to the point nearest to the axis, as for spheres
+    if (!(a > 0)) return kNone;
+    const double middle = -rd.dot(rp) / a;
+    const double rest = f.r0 * f.r0 - (rp + middle * rd).squaredNorm();
+    if (rest < 0) return kNone;
+    const double half = std::sqrt(rest / a);
+    t0 = middle - half;
+    t1 = middle + half;
+  } else {
+    const double rim = f.r0 - slope * hp;
+    const double b = rd.dot(rp) + slope * hd * rim;
+    const double c = rp.squaredNorm() - rim * rim;
+    const double discriminant = b * b - a * c;
+    if (discriminant < 0) return kNone;
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+    t0 = a != 0 ? q / a : kNone;
+    t1 = q != 0 ? c / q : kNone;
+    if (t1 < t0) std::swap(t0, t1);
+  }
+  if (!(t0 > near && t0 < far && reaches(t0))) t0 = kNone;
+  if (t0 < kNone) return t0;
+  return t1 > near && t1 < far && reaches(t1) ? t1 : kNone;
+}
+
+double ShapeTarget::on_disk(const Vec3& p, const Vec3& d, double near, double far) const {
+  const Frustum& f = frustum_;
+  const double hd = f.axis.dot(d);
+  if (hd == 0) return kNone;
+  const double t = -f.axis.dot(p) / hd * (1 - kProud);
+  if (!(t > near && t < far)) return kNone;
+  const Vec3 at = p + t * d;
+  const double r2 = (at - f.axis.dot(at) * f.axis).squaredNorm();
+  const double outer = f.r0 + kRim;
+  const double inner = f.r1 > 0 ? f.r1 - kRim : 0;
+  return r2 <= outer * outer && r2 >= inner * inner ? t : kNone;
+}
+
+}  // namespace reemit

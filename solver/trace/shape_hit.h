@@ -1,0 +1,31 @@
+#pragma once
+#include "scenes/model/shape.h"
+
+namespace reemit {
+
+/// A curved shape of the normalised space as rays see it. Rays are given in single precision and taken as
+/// exact; all arithmetic is double.
+class ShapeTarget {
+ public:
+  explicit ShapeTarget(const CurvedShape& shape);
+
+  /// Distance of the nearest hit beyond `near` and before `far` along a direction of about unit length;
+  /// infinity if there is none.
+  double nearest(const Vec3& origin, const Vec3& direction, double near, double far) const;
+  /// Smallest and largest coordinates.
+  const Vec3& low() const { return low_; }
+  const Vec3& high() const { return high_; }
+
+ private:
+  double nearest_on_sphere(const Vec3& to_centre, const Vec3& d, double near, double far) const;
+  double nearest_on_mantle(const Vec3& from_base, const Vec3& d, double near, double far) const;
+  double on_disk(const Vec3& from_base, const Vec3& d, double near, double far) const;
+
+  bool is_sphere_;
+  Vec3 centre_;
+  double radius_ = 0;
+  Frustum frustum_;
+  Vec3 low_, high_;
+};
+
+}  // namespace reemit
