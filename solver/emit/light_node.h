@@ -27,7 +27,7 @@ struct alignas(32) LightNode {
   float cos_normals[kWidth];
   float sin_normals[kWidth];
   float cos_emission[kWidth];
-  float intensity[kWidth];      ///< Share of the whole tree; 0 where there is no child.
+  float intensity[kWidth];      ///< Share of all luminaires; 0 where there is no child.
   std::uint32_t child[kWidth];  ///< Index of a node, or kLeaf + index of a luminaire.
 };
 static_assert(sizeof(LightNode) == 224);

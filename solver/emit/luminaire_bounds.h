@@ -36,7 +36,10 @@ LuminaireBounds spot_bounds(const Vec3f& position, const Vec3f& unit_direction, 
 /// The smallest bounds of this kind that hold both, up to float rounding, which only ever makes them larger.
 LuminaireBounds merged(const LuminaireBounds& a, const LuminaireBounds& b);
 
-/// Finite numbers, min <= max, a unit axis, cosines in [-1,1] and an intensity above 0.
+/// Rooms fill the unit cube or so; farther out, squares of distances could leave the range of float.
+inline constexpr float kFarthest = 1e6F;
+
+/// Coordinates within kFarthest, min <= max, a unit axis, cosines in [-1,1] and a finite intensity above 0.
 bool valid(const LuminaireBounds& bounds);
 
 }  // namespace reemit
