@@ -73,7 +73,7 @@ LuminaireBounds merged(const LuminaireBounds& a, const LuminaireBounds& b) {
 
 bool valid(const LuminaireBounds& bounds) {
   const auto cosine = [](float c) { return c >= -1 && c <= 1; };
-  return bounds.min.allFinite() && bounds.max.allFinite() &&
+  return bounds.min.minCoeff() >= -kFarthest && bounds.max.maxCoeff() <= kFarthest &&
          (bounds.min.array() <= bounds.max.array()).all() && std::fabs(bounds.axis.norm() - 1) < 1e-3F &&
          cosine(bounds.cos_normals) && cosine(bounds.cos_emission) && bounds.intensity > 0 &&
          std::isfinite(bounds.intensity);
