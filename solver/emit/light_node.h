@@ -56,35 +56,41 @@ inline Importance importance(const LightNode& node, const Receiver& at) {
     const float hz = node.half[2][i];
     const float distance2 = dx * dx + dy * dy + dz * dz;
     const float radius2 = hx * hx + hy * hy + hz * hz;
+    const float inverse2 = 1 / (distance2 > kLeastDistance2 ? distance2 : kLeastDistance2);
 
     const float height = at.n[0] * dx + at.n[1] * dy + at.n[2] * dz;
     const float reach = at.abs_n[0] * hx + at.abs_n[1] * hy + at.abs_n[2] * hz;
     const float terms =
         at.abs_n[0] * std::fabs(dx) + at.abs_n[1] * std::fabs(dy) + at.abs_n[2] * std::fabs(dz) + reach;
+    const float facing = -(node.axis[0][i] * dx + node.axis[1][i] * dy + node.axis[2][i] * dz);
 
-    // Cosine and sine of the angle that the bounding sphere subtends; all directions from within it. Angles
-    // are subtracted by the addition theorem, and a difference below 0 becomes 0 by taking the larger angle.
+    // The bounding sphere reaches from its middle over an angle with sine radius/distance. Angles are
+    // subtracted by the addition theorem, where a difference below 0 counts as 0. All sines and cosines are
+    // kept times the distance, and their products times its square: so the square roots do not wait for each
+    // other.
     const bool inside = radius2 >= distance2;
-    const float inverse2 = 1 / (distance2 > kLeastDistance2 ? distance2 : kLeastDistance2);
-    const float inverse = std::sqrt(inverse2);
-    const float sine2 = inside ? 0.0F : radius2 * inverse2;
-    const float sphere_sine = std::sqrt(sine2);
-    const float sphere_cosine = inside ? -1.0F : std::sqrt(sine2 < 1 ? 1 - sine2 : 0.0F);
-    const auto less = [](float cosine, float sine, float from_cosine) {
-      const float c = from_cosine < cosine ? from_cosine : cosine;
-      const float s2 = 1 - c * c;
-      return c * cosine + std::sqrt(s2 > 0 ? s2 : 0.0F) * sine;
+    const float radius = std::sqrt(radius2);
+    const float tangent2 = distance2 - radius2;
+    const float tangent = std::sqrt(tangent2 > 0 ? tangent2 : 0.0F);
+    const auto beside = [distance2](float cosine) {
+      const float sine2 = distance2 - cosine * cosine;
+      return std::sqrt(sine2 > 0 ? sine2 : 0.0F);
     };
-    const float at_receiver = less(sphere_cosine, sphere_sine, height * inverse);
-    const float to_axis = -(node.axis[0][i] * dx + node.axis[1][i] * dy + node.axis[2][i] * dz) * inverse;
-    const float at_luminaire =
-        less(node.cos_normals[i], node.sin_normals[i], less(sphere_cosine, sphere_sine, to_axis));
+    const float to_middle = height * tangent + beside(height) * radius;
+    const float at_receiver = (inside | (height >= tangent)) ? 1.0F : to_middle * inverse2;
+
+    const float sine = beside(facing);
+    const bool faced = inside | (facing >= tangent);
+    const float from_axis = (facing * tangent + sine * radius) * inverse2;
+    const float from_axis_sine = (sine * tangent - facing * radius) * inverse2;
+    const float from_cone = from_axis * node.cos_normals[i] + from_axis_sine * node.sin_normals[i];
+    const float at_luminaire = (faced | (from_axis >= node.cos_normals[i])) ? 1.0F : from_cone;
 
     const float nearest2 = radius2 > distance2 ? radius2 : distance2;
+    const float strength = node.intensity[i] / (nearest2 > kLeastDistance2 ? nearest2 : kLeastDistance2);
     const float cosines = (at_receiver > kLeastCosine ? at_receiver : kLeastCosine) *
                           (at_luminaire > kLeastCosine ? at_luminaire : kLeastCosine);
-    const float worth =
-        node.intensity[i] * cosines / (nearest2 > kLeastDistance2 ? nearest2 : kLeastDistance2);
+    const float worth = strength * cosines;
     const bool possible = (height + reach >= -kHeightSlack * terms) &
                           (at_luminaire >= node.cos_emission[i] - kCosineSlack) & (node.intensity[i] > 0);
     const float at_least = worth > kLeast ? worth : kLeast;
