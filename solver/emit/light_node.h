@@ -86,7 +86,8 @@ inline Importance importance(const LightNode& node, const Receiver& at) {
     const float from_cone = from_axis * node.cos_normals[i] + from_axis_sine * node.sin_normals[i];
     const float at_luminaire = (faced | (from_axis >= node.cos_normals[i])) ? 1.0F : from_cone;
 
-    const float nearest2 = radius2 > distance2 ? radius2 : distance2;
+    const float full2 = radius2 * (1.0F / 3);
+    const float nearest2 = full2 > distance2 ? full2 : distance2;
     const float strength = node.intensity[i] / (nearest2 > kLeastDistance2 ? nearest2 : kLeastDistance2);
     const float cosines = (at_receiver > kLeastCosine ? at_receiver : kLeastCosine) *
                           (at_luminaire > kLeastCosine ? at_luminaire : kLeastCosine);

@@ -20,9 +20,10 @@ struct Shares {
   Importance weight;
   std::array<double, LightNode::kWidth> upto;
 
-  explicit Shares(const LightNode& node, const Receiver& at) : weight(importance(node, at)) {
-    double sum = 0;
-    for (std::size_t i = 0; i < upto.size(); ++i) upto[i] = sum += static_cast<double>(weight[i]);
+  Shares() = default;
+  Shares(const LightNode& node, const Receiver& at) : weight(importance(node, at)) {
+    const auto w = [this](std::size_t i) { return static_cast<double>(weight[i]); };
+    upto = {w(0), w(0) + w(1), (w(0) + w(1)) + w(2), (w(0) + w(1)) + (w(2) + w(3))};
   }
   double total() const { return upto.back(); }
   bool dead_end() const { return !(total() > 0); }
@@ -142,12 +143,24 @@ LightTree::LightTree(std::span<const LuminaireBounds> luminaires) {
   nodes_.shrink_to_fit();
 }
 
+void LightTree::fetch_children(std::uint32_t node) const {
+#if defined(__GNUC__)
+  constexpr std::size_t kCacheLine = 64;
+  for (const std::uint32_t child : nodes_[node].child) {
+    if (child & LightNode::kLeaf) continue;
+    const char* bytes = reinterpret_cast<const char*>(&nodes_[child]);
+    for (std::size_t at = 0; at < sizeof(LightNode); at += kCacheLine) __builtin_prefetch(bytes + at);
+  }
+#endif
+}
+
 bool LightTree::pick(const Vec3f& x, const Vec3f& n, double& u, Pick& result) const {
   if (empty()) return false;
   const Receiver at(x, n);
   double product = 1;
   double rest = u;
   for (std::uint32_t node = 0;;) {
+    fetch_children(node);
     const Shares shares(nodes_[node], at);
     if (shares.dead_end()) return false;
     const double position = shares.position(rest);
@@ -180,51 +193,49 @@ float LightTree::probability(std::uint32_t luminaire, const Vec3f& x, const Vec3
 std::size_t LightTree::pick_many(const Vec3f& x, const Vec3f& n, double u, std::span<Pick> picks,
                                  std::span<double> rest) const {
   assert(rest.size() == picks.size());
-  if (empty() || picks.empty()) return 0;
-  // Positions of the unit interval that go into a node, still waiting; the walk goes depth first, so no more
-  // than the siblings along one path wait at once.
-  struct Waiting {
-    std::uint32_t node;
-    std::uint32_t first, last;
-    double product;
-  };
-  std::array<Waiting, (LightNode::kWidth - 1) * kMostLevels + 1> stack;
+  if (empty()) return 0;
+  constexpr std::size_t kSideBySide = 64;
+  constexpr std::uint32_t kDead = 0xFFFFFFFFU;
+  std::array<std::uint32_t, kSideBySide> node;
+  std::array<double, kSideBySide> left, product;
   const Receiver at(x, n);
   const std::size_t count = picks.size();
-  for (std::size_t i = 0; i < count; ++i)
-    rest[i] = std::min((static_cast<double>(i) + u) / static_cast<double>(count), kBelowOne);
-  std::size_t waiting = 0;
-  std::size_t done = 0;
-  stack[waiting++] = {0, 0, static_cast<std::uint32_t>(count), 1};
-  while (waiting > 0) {
-    const Waiting now = stack[--waiting];
-    if (now.node & LightNode::kLeaf) {
-      for (std::size_t i = now.first; i < now.last; ++i) {
-        picks[done] = {now.node - LightNode::kLeaf, as_probability(now.product)};
-        rest[done++] = rest[i];
+  std::size_t found = 0;
+  for (std::size_t first = 0; first < count; first += kSideBySide) {
+    // All take one step, then all the next. Neighbours are often at the same node, which is looked at once;
+    // for the rest the processor need not finish one before it starts the next.
+    const std::size_t many = std::min(kSideBySide, count - first);
+    for (std::size_t i = 0; i < many; ++i) {
+      node[i] = 0;
+      product[i] = 1;
+      left[i] = std::min((static_cast<double>(first + i) + u) / static_cast<double>(count), kBelowOne);
+    }
+    for (bool moved = true; moved;) {
+      moved = false;
+      Shares shares;
+      std::uint32_t seen = kDead;
+      for (std::size_t i = 0; i < many; ++i) {
+        if (node[i] & LightNode::kLeaf) continue;
+        moved = true;
+        if (node[i] != seen) shares = Shares(nodes_[seen = node[i]], at);
+        if (shares.dead_end()) {
+          node[i] = kDead;
+          continue;
+        }
+        const double position = shares.position(left[i]);
+        const std::size_t lane = shares.lane_at(position);
+        left[i] = shares.stretched(position, lane);
+        product[i] *= shares.probability(lane);
+        node[i] = nodes_[node[i]].child[lane];
       }
-      continue;
     }
-    const Shares shares(nodes_[now.node], at);
-    if (shares.dead_end()) continue;
-    std::array<std::uint32_t, LightNode::kWidth> end{};
-    for (std::uint32_t i = now.first; i < now.last; ++i) {
-      const double position = shares.position(rest[i]);
-      const std::size_t lane = shares.lane_at(position);
-      rest[i] = shares.stretched(position, lane);
-      end[lane] = i + 1;
-    }
-    // Positions grow with i, so those of one child are neighbours; the first child is to come off the stack
-    // first, which keeps `done` behind the positions that still wait.
-    for (std::size_t lane = end.size(); lane-- > 0;) {
-      if (end[lane] == 0) continue;
-      std::uint32_t first = now.first;
-      for (std::size_t before = lane; before-- > 0;) first = std::max(first, end[before]);
-      stack[waiting++] = {nodes_[now.node].child[lane], first, end[lane],
-                          now.product * shares.probability(lane)};
+    for (std::size_t i = 0; i < many; ++i) {
+      if (node[i] == kDead) continue;
+      picks[found] = {node[i] - LightNode::kLeaf, as_probability(product[i])};
+      rest[found++] = left[i];
     }
   }
-  return done;
+  return found;
 }
 
 }  // namespace reemit
