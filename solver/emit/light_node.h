@@ -35,8 +35,9 @@ static_assert(sizeof(LightNode) == 224);
 using Importance = std::array<float, LightNode::kWidth>;
 
 /// Estimates of the irradiance from each child without occlusion, up to a common factor: intensity times both
-/// cosines at their largest over the bounding sphere of the box, over the squared distance to its middle,
-/// which counts as no smaller than the radius of that sphere [CON18, eq. 3]. 0 only if the whole box is below
+/// cosines at their largest over the bounding sphere of the box, over the squared distance to its middle
+/// [CON18, eq. 3]. That counts as no less than a third of the squared radius of the sphere: in the middle of a
+/// ball evenly full of luminaires this gives what all of them together give. 0 only if the whole box is below
 /// the horizon or every side in it faces away, by more than rounding could pretend.
 inline Importance importance(const LightNode& node, const Receiver& at) {
   // How far float rounding may move the height of a box over the horizon, as a share of the terms summed, and
