@@ -31,7 +31,7 @@ taken = []  # (x, y, z, radius) of what stands already
 
 def free(x, y, z, radius):
     return all(math.dist((x, y, z), t[:3]) > radius + t[3] for t in taken) and all(
-        math.dist((x, y, z), eye) > radius + 1.2 for eye in EYES)
+        math.dist((x, y, z), eye) > radius + 2.5 for eye in EYES)
 
 
 def clear_of_walls(x, z, radius):

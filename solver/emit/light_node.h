@@ -36,9 +36,9 @@ using Importance = std::array<float, LightNode::kWidth>;
 
 /// Estimates of the irradiance from each child without occlusion, up to a common factor: intensity times both
 /// cosines at their largest over the bounding sphere of the box, over the squared distance to its middle
-/// [CON18, eq. 3]. That counts as no less than a third of the squared radius of the sphere: in the middle of a
-/// ball evenly full of luminaires this gives what all of them together give. 0 only if the whole box is below
-/// the horizon or every side in it faces away, by more than rounding could pretend.
+/// [CON18, eq. 3]. That counts as no less than a third of the squared radius of the sphere: in the middle of
+/// a ball evenly full of luminaires this gives what all of them together give. 0 only if the whole box is
+/// below the horizon or every side in it faces away, by more than rounding could pretend.
 inline Importance importance(const LightNode& node, const Receiver& at) {
   // How far float rounding may move the height of a box over the horizon, as a share of the terms summed, and
   // the cosine to the limit of emission, whose angles lose half their digits near 0 and pi.

@@ -18,8 +18,12 @@ TEST(LightTreeZero, NoLuminaireThatContributesIsRuledOut) {
   int contributing = 0, centre_below = 0, ruled_out = 0;
   for (int scene = 0; scene < 60; ++scene) {
     const float size = std::pow(10.0F, random.uniform(-3, 0.3F));
+    const std::size_t count = std::array<std::size_t, 4>{1, 3, 40, 400}[static_cast<std::size_t>(scene % 4)];
+    // All kinds, or one: bounds of spots alone are the narrowest, and any other kind would widen them.
+    const int kind = scene % 5;
     const std::vector<ShapedLuminaire> luminaires =
-        random.scene(std::array<std::size_t, 4>{1, 3, 40, 400}[static_cast<std::size_t>(scene % 4)], size);
+        kind == 4 ? random.scene(count, size)
+                  : random.scene_of(static_cast<ShapedLuminaire::Kind>(kind), count, size);
     const LightTree tree(test::bounds_of(luminaires));
     for (int i = 0; i < 60; ++i) {
       // Anywhere, close to a luminaire, or just about in its plane and at its horizon.

@@ -89,6 +89,11 @@ class RandomLuminaires {
     for (std::size_t i = 0; i < count; ++i) all.push_back(any(size));
     return all;
   }
+  std::vector<ShapedLuminaire> scene_of(ShapedLuminaire::Kind kind, std::size_t count, float size) {
+    std::vector<ShapedLuminaire> all;
+    for (std::size_t i = 0; i < count; ++i) all.push_back(of_kind(kind, size));
+    return all;
+  }
 
  private:
   std::mt19937 random_;
