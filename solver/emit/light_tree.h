@@ -58,10 +58,6 @@ class LightTree {
                         std::span<double> rest) const;
 
  private:
-  /// Starts to load the children while their parent is looked at: a quarter of the time of a pick among a
-  /// million, nothing where all nodes are in cache.
-  void fetch_children(std::uint32_t node) const;
-
   std::vector<LightNode> nodes_;       // The root is the first.
   std::vector<std::uint64_t> trails_;  // Per luminaire: the children to take from the root on, 2 bits each.
 };
