@@ -86,7 +86,8 @@ void intersect(const Surface& surface, const Face& face, const Vec3& eye, const 
 
 TEST_P(LibraryRoom, CamerasSeeFrontsInEveryDirection) {
   const Scene scene = read_room(GetParam());
-  const bool open = std::string(GetParam()).starts_with("cornell");
+  const std::string name = GetParam();
+  const bool open = name.starts_with("cornell") || name == "hundred_panels";
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   constexpr int kRays = 400;  // Per camera.
@@ -113,13 +114,13 @@ TEST_P(LibraryRoom, CamerasSeeFrontsInEveryDirection) {
 
 INSTANTIATE_TEST_SUITE_P(All, LibraryRoom,
                          testing::Values("cornell_box", "cornell_box_empty", "cornell_box_spectral",
-                                         "furnace_box", "two_rooms", "office", "gallery"));
+                                         "furnace_box", "two_rooms", "office", "gallery", "hundred_panels"));
 
 TEST(Library, EveryRoomIsTested) {
   std::size_t rooms = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kLibrary))
     rooms += entry.path().extension() == ".json";
-  EXPECT_EQ(rooms, 7u);
+  EXPECT_EQ(rooms, 8u + 2u);  // Those above, and the two sphereflakes below.
 }
 
 TEST(Library, CornellBoxIsThePublishedOne) {
@@ -195,11 +196,74 @@ TEST(Library, FurnaceEmitsPi) {
   EXPECT_EQ(material.emitted_radiance[0], 1);
 }
 
+std::size_t luminaires_of(const Scene& scene) {
+  std::size_t count = scene.lights.size();
+  for (const Surface& surface : scene.surfaces) count += scene.material_of(surface).emits();
+  return count;
+}
+
 TEST(Library, GalleryHasManyLuminaires) {
-  const Scene scene = read_room("gallery");
-  std::size_t luminaires = scene.lights.size();
-  for (const Surface& surface : scene.surfaces) luminaires += scene.material_of(surface).emits();
-  EXPECT_EQ(luminaires, 100u);
+  EXPECT_EQ(luminaires_of(read_room("gallery")), 100u);
+}
+
+TEST(Library, HundredPanelsDifferWidely) {
+  const Scene scene = read_room("hundred_panels");
+  EXPECT_EQ(luminaires_of(scene), 100u);
+  double weakest = std::numeric_limits<double>::infinity(), strongest = 0;
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.material_of(surface);
+    if (!material.emits()) continue;
+    const double flux =
+        surface_area(surface) * (material.emitted_radiance * scene.bands.efficacy_lm_per_w()).sum();
+    weakest = std::min(weakest, flux);
+    strongest = std::max(strongest, flux);
+  }
+  EXPECT_GT(strongest, 1e4 * weakest);
+}
+
+/// Spheres and luminous spheres of a list of objects. As they would be many thousands of objects when read,
+/// they are counted in the file: groups hold groups, arrays repeat them.
+struct Spheres {
+  std::size_t all = 0;
+  std::size_t luminous = 0;
+};
+
+Spheres count_spheres(const nlohmann::json& room, const nlohmann::json& objects) {
+  Spheres sum;
+  for (const auto& object : objects) {
+    Spheres one;
+    if (object.contains("sphere")) {
+      one = {1, room["materials"][object["material"].get<std::string>()].contains("total_flux_lm") ? 1u : 0u};
+    } else if (object.contains("group")) {
+      one = count_spheres(room, room["groups"][object["group"].get<std::string>()]);
+    }
+    const std::size_t times = object.contains("array") ? object["array"]["count"].get<std::size_t>() : 1;
+    sum.all += times * one.all;
+    sum.luminous += times * one.luminous;
+  }
+  return sum;
+}
+
+TEST(Library, SphereflakesHaveFourGenerations) {
+  const auto read = [](const char* name) {
+    std::ifstream file(kLibrary / name);
+    return nlohmann::json::parse(file, nullptr, true, true);
+  };
+  const auto total_flux = [](const nlohmann::json& room) {
+    double sum = 0;
+    for (const auto& material : room["materials"]) sum += material.value("total_flux_lm", 0.0);
+    return sum;
+  };
+  const nlohmann::json every = read("sphereflake.json"), one = read("sphereflake_one_lamp.json");
+  const Spheres all = count_spheres(every, every["objects"]);
+  EXPECT_EQ(all.all, 1u + 9 + 81 + 729 + 6561);
+  EXPECT_EQ(all.luminous, 7381u);
+  const Spheres dark = count_spheres(one, one["objects"]);
+  EXPECT_EQ(dark.all, 7381u);
+  EXPECT_EQ(dark.luminous, 1u);
+  EXPECT_NEAR(total_flux(every), total_flux(one), 1e-9);
+  EXPECT_EQ(every["groups"].size(), one["groups"].size());
+  EXPECT_EQ(every["objects"], one["objects"]);
 }
 
 }  // namespace
