@@ -14,6 +14,7 @@ std::vector<Family> families() {
        {"irr_polygon", "irr_disk", "irr_disk_clipped", "irr_sphere", "irr_cylinder", "irr_rect_occluded",
         "irr_cornell_blocks", "point_source", "sky_opening"},
        evaluate_direct_light},
+      {"measured luminaires", {"ies_axial", "ies_planes"}, evaluate_measured_luminaires},
       {"enclosures",
        {"furnace", "furnace_var", "integrating_sphere", "energy_closed", "concentric"},
        evaluate_enclosures},

@@ -20,6 +20,10 @@ std::vector<ValidationRow> evaluate_form_factors(const std::vector<ReferenceCase
 std::vector<ValidationRow> evaluate_direct_light(const std::vector<ReferenceCase>& cases,
                                                  const Effort& effort);
 
+/// Flux and direct illuminance of measured luminaires: ies_axial, ies_planes.
+std::vector<ValidationRow> evaluate_measured_luminaires(const std::vector<ReferenceCase>& cases,
+                                                        const Effort& effort);
+
 /// Rooms whose mean or whole solution follows from their energy balance: furnace, furnace_var,
 /// integrating_sphere, energy_closed, concentric.
 std::vector<ValidationRow> evaluate_enclosures(const std::vector<ReferenceCase>& cases, const Effort& effort);

@@ -33,6 +33,7 @@ class NodeReader {
     if (node.camera >= 0) read_camera(placed, node.camera);
     const auto light = node.extensions.find("KHR_lights_punctual");
     if (light != node.extensions.end()) read_light(placed, light->second);
+    if (node.extensions.contains("EXT_lights_ies")) ++measured_;
     if (node.skin >= 0) ++skins_;
   }
 
@@ -45,6 +46,7 @@ class NodeReader {
     warn(omissions_.coloured, "mesh primitive(s) have vertex colours, which are ignored");
     warn(omissions_.plain, "mesh primitive(s) have no material: grey with reflectance 0.5 is used");
     warn(flattened_, "mesh node(s) are left out because their scale is 0");
+    warn(measured_, "measured luminaire(s) (EXT_lights_ies) are left out; a native room can place them");
     warn(skins_, "skinned node(s) are read in their rest pose");
     if (!gltf_.model.animations.empty()) {
       scene_.warnings.push_back(
@@ -183,6 +185,7 @@ class NodeReader {
   std::size_t faces_ = 0;
   std::size_t flattened_ = 0;
   std::size_t skins_ = 0;
+  std::size_t measured_ = 0;
   std::size_t node_ = 0;
   std::string name_;
 };

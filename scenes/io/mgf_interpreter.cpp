@@ -29,16 +29,15 @@ fs::path identity_of(const fs::path& file) {
   return error ? file : path;
 }
 
-// Names in MGF are relative to the file that mentions them, with '/' between folders.
-fs::path mentioned_file(const fs::path& folder, std::string_view name, const std::string& where) {
+}  // namespace
+
+fs::path mgf_mentioned_file(const fs::path& folder, std::string_view name, const std::string& where) {
   const fs::path path{std::string(name)};
   if (path.is_absolute())
     throw InputError(where, fmt::format("'{}' is not relative to this file", name),
                      "Give the path from the folder of the file that mentions it.");
   return folder / path;
 }
-
-}  // namespace
 
 void MgfInterpreter::run(const fs::path& file) {
   run_file(load(file, ""));
@@ -153,7 +152,7 @@ void MgfInterpreter::run_object(const TextLine& line, const std::string& where) 
 
 void MgfInterpreter::run_include(const File& file, const TextLine& line, const std::string& where) {
   if (line.words.size() < 2) throw InputError(where, "'i' names no file", "Write 'i file.mgf [transform]'.");
-  const fs::path path = mentioned_file(file.folder, line.words[1], where);
+  const fs::path path = mgf_mentioned_file(file.folder, line.words[1], where);
   if (line.words.size() == 2) {
     run_file(load(path, where));
     return;
@@ -162,24 +161,6 @@ void MgfInterpreter::run_include(const File& file, const TextLine& line, const s
   do {
     run_file(load(path, where));
   } while (next_instance());
-}
-
-void MgfInterpreter::run_ies(const File& file, const TextLine& line, const std::string& where) {
-  if (line.words.size() < 2)
-    throw InputError(where, "'ies' names no file", "Write 'ies file [-m factor] [transform]'.");
-  const fs::path path = mentioned_file(file.folder, line.words[1], where);
-  try {
-    check_readable_file(path);
-  } catch (const InputError& error) {
-    throw InputError(where, std::string("the luminaire file cannot be read: ") + error.what(), "");
-  }
-  const bool has_factor = line.words.size() > 2 && line.words[2] == "-m";
-  if (has_factor && line.words.size() < 4) throw InputError(where, "'-m' lacks a number", "Give the factor.");
-  if (has_factor) mgf_number(line, 3, where);
-  const MgfTransform transform(words_from(line, has_factor ? 4 : 2), where);
-  builder_.warnings.push_back(
-      fmt::format("{}: measured luminaires are not supported; {} of '{}' are missing and give no light.",
-                  where, transform.instance_count(), line.words[1]));
 }
 
 void MgfInterpreter::close_what_is_open(const File& file) {

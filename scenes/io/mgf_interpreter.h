@@ -5,8 +5,10 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "scenes/io/ies_reader.h"
 #include "scenes/io/mgf_contexts.h"
 #include "scenes/io/mgf_scene_builder.h"
 #include "scenes/io/mgf_transform.h"
@@ -21,8 +23,8 @@ class MgfInterpreter {
  public:
   /// Throws InputError with file and line.
   void run(const std::filesystem::path& file);
-  /// Moves materials, surfaces and warnings into the scene.
-  void finish(Scene& scene) { builder_.finish(scene); }
+  /// Moves materials, surfaces, lights and warnings into the scene.
+  void finish(Scene& scene);
   std::size_t tessellated_count() const { return tessellated_count_; }
 
  private:
@@ -57,6 +59,8 @@ class MgfInterpreter {
   std::vector<Polygon> face_with_holes(const TextLine& line, const std::string& where) const;
   void close_what_is_open(const File& file);
 
+  static constexpr std::size_t kMostLuminaires = 100'000;
+
   MgfContexts contexts_;
   MgfSceneBuilder builder_;
   std::map<std::filesystem::path, std::unique_ptr<File>> files_;  // by canonical path
@@ -69,6 +73,14 @@ class MgfInterpreter {
   std::set<std::string> unknown_entities_;
   std::uint64_t executed_ = 0;
   std::size_t tessellated_count_ = 0;
+  IesLibrary luminaires_;
+  std::vector<PunctualLight> lights_;
+  std::vector<std::string> notes_;
 };
+
+/// A file that an entity names: relative to the file with the entity, with '/' between folders. Throws
+/// InputError at `where` if the name is absolute.
+std::filesystem::path mgf_mentioned_file(const std::filesystem::path& folder, std::string_view name,
+                                         const std::string& where);
 
 }  // namespace reemit

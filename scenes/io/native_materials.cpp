@@ -80,6 +80,9 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
           is_photometric(key) ? photometric_emission(given.number_in(0, std::numeric_limits<double>::max()),
                                                      colour, scene.bands)
                               : read_emission(given, scene.bands);
+      if (!(value > 0).any())
+        given.fail(fmt::format("the material \"{}\" emits nothing, though its emission is given", name),
+                   "Remove the emission or give it power.");
       if (key == "total_power" || key == "total_flux_lm") {
         totals_.push_back({given, id, value});
       } else {

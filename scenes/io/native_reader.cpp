@@ -61,7 +61,7 @@ void read_room(const JsonCursor& room, const std::filesystem::path& folder, cons
     NativeObjects(folder, options, unit, room.find("groups"), materials, scene).read(*objects);
   }
   materials.share_total_powers(scene);
-  if (const auto lights = room.find("lights")) read_lights(*lights, unit, scene);
+  if (const auto lights = room.find("lights")) read_lights(*lights, unit, folder, scene);
   if (const auto cameras = room.find("cameras")) read_cameras(*cameras, unit, scene);
 }
 

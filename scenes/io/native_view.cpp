@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/native_ies_light.h"
 #include "scenes/io/native_materials.h"
 
 namespace reemit {
@@ -36,9 +37,12 @@ Spectrum read_quantity(const JsonCursor& at, std::initializer_list<Quantity> cho
   const auto colour = at.find("color");
   if (!chosen->photometric) {
     if (colour) colour->fail("a colour needs a photometric strength", "Give one value per band instead.");
-    return read_emission(value, bands) / chosen->divisor;
+    const Spectrum strength = read_emission(value, bands) / chosen->divisor;
+    if (!(strength > 0).any()) value.fail("the light emits nothing", "Remove it or give it power.");
+    return strength;
   }
   const double amount = value.number_in(0, std::numeric_limits<double>::max());
+  if (!(amount > 0)) value.fail("the light emits nothing", "Remove it or give it power.");
   return photometric_emission(amount, colour, bands) / chosen->divisor;
 }
 
@@ -126,18 +130,21 @@ Camera read_camera(const JsonCursor& at, const std::string& name, double unit) {
 
 }  // namespace
 
-void read_lights(const JsonCursor& lights, double unit, Scene& scene) {
+void read_lights(const JsonCursor& lights, double unit, const std::filesystem::path& folder, Scene& scene) {
+  NativeIesLights measured(folder, unit, scene);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const JsonCursor at = lights[i];
     at.expect_object();
-    const std::string& type = at.at("type").choice({"point", "spot", "directional"});
+    const std::string& type = at.at("type").choice({"point", "spot", "directional", "ies"});
     const std::string name = read_name(at, fmt::format("{} {}", type, i));
     if (type == "point") {
       scene.lights.emplace_back(read_point(at, name, unit, scene.bands));
     } else if (type == "spot") {
       scene.lights.emplace_back(read_spot(at, name, unit, scene.bands));
-    } else {
+    } else if (type == "directional") {
       scene.lights.emplace_back(read_directional(at, name, scene.bands));
+    } else {
+      scene.lights.emplace_back(measured.read(at, name));
     }
   }
 }

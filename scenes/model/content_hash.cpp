@@ -1,7 +1,6 @@
 #include <bit>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -76,24 +75,40 @@ void add_surface(Hasher& hash, const Surface& surface) {
   for (const CurvedShape& shape : surface.shapes) add_shape(hash, shape);
 }
 
-void add_light(Hasher& hash, const PunctualLight& light) {
-  hash.add(std::uint64_t{light.index()});
-  std::visit(
-      [&hash](const auto& l) {
-        using Light = std::decay_t<decltype(l)>;
-        if constexpr (!std::is_same_v<Light, DirectionalLight>) {
-          hash.add(l.position);
-          hash.add(l.intensity);
-        } else {
-          hash.add(l.irradiance);
-        }
-        if constexpr (!std::is_same_v<Light, PointLight>) hash.add(l.direction);
-        if constexpr (std::is_same_v<Light, SpotLight>) {
-          hash.add(l.inner_angle);
-          hash.add(l.outer_angle);
-        }
-      },
-      light);
+void add_numbers(Hasher& hash, const std::vector<double>& numbers) {
+  hash.add(std::uint64_t{numbers.size()});
+  for (const double x : numbers) hash.add(x);
+}
+
+void add_light(Hasher& hash, const PointLight& l) {
+  hash.add(l.position);
+  hash.add(l.intensity);
+}
+
+void add_light(Hasher& hash, const SpotLight& l) {
+  hash.add(l.position);
+  hash.add(l.intensity);
+  hash.add(l.direction);
+  hash.add(l.inner_angle);
+  hash.add(l.outer_angle);
+}
+
+void add_light(Hasher& hash, const DirectionalLight& l) {
+  hash.add(l.irradiance);
+  hash.add(l.direction);
+}
+
+void add_light(Hasher& hash, const PhotometricLight& l) {
+  hash.add(l.position);
+  for (int axis = 0; axis < 3; ++axis) hash.add(Vec3(l.orientation.col(axis)));
+  hash.add(l.intensity_per_candela);
+  hash.add(static_cast<std::uint64_t>(l.table->type()));
+  add_numbers(hash, l.table->polar());
+  add_numbers(hash, l.table->azimuth());
+  add_numbers(hash, l.table->candela());
+  hash.add(static_cast<std::uint64_t>(l.opening.shape));
+  hash.add(static_cast<std::uint64_t>(l.opening.axis));
+  hash.add(l.opening.size());
 }
 
 }  // namespace
@@ -109,7 +124,10 @@ std::string content_hash(const Scene& scene) {
     add_surface(hash, surface);
   }
   hash.add(std::uint64_t{scene.lights.size()});
-  for (const PunctualLight& light : scene.lights) add_light(hash, light);
+  for (const PunctualLight& light : scene.lights) {
+    hash.add(std::uint64_t{light.index()});
+    std::visit([&hash](const auto& l) { add_light(hash, l); }, light);
+  }
   return fmt::format("{:016x}", hash.state());
 }
 

@@ -1,13 +1,16 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <variant>
 
 #include "scenes/model/bands.h"
+#include "scenes/model/photometry.h"
 #include "scenes/model/vec.h"
 
 namespace reemit {
 
-/// Luminaires without area. Emissive surfaces are luminaires by their Material and are not listed here.
+/// Luminaires that rays do not see. Emissive surfaces are luminaires by their Material and are not listed
+/// here.
 struct PointLight {
   std::string name;
   Vec3 position;       ///< [m]
@@ -31,6 +34,19 @@ struct DirectionalLight {
   Spectrum irradiance;  ///< [W/m2] per band on a plane across the beam.
 };
 
-using PunctualLight = std::variant<PointLight, SpotLight, DirectionalLight>;
+/// A measured luminaire [LM63]: every point of its opening sends out the same distribution of intensity
+/// (photometrically homogeneous aperture). It is light only: rays do not see it and it casts no shadow.
+struct PhotometricLight {
+  std::string name;
+  Vec3 position;  ///< Centre of the opening [m].
+  /// Luminaire coordinates (photometry.h) to the room: the columns are the directions of C = 0, C = 90 and
+  /// up. Orthogonal; a determinant of -1 mirrors the luminaire.
+  Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();
+  std::shared_ptr<const IntensityTable> table;  ///< Never null; lights of one kind share it.
+  Spectrum intensity_per_candela;               ///< [W/sr] per band for each candela of the table.
+  LuminousOpening opening;
+};
+
+using PunctualLight = std::variant<PointLight, SpotLight, DirectionalLight, PhotometricLight>;
 
 }  // namespace reemit

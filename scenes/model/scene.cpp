@@ -14,13 +14,17 @@ bool is_grey(const Spectrum& s) {
   return s.maxCoeff() - s.minCoeff() <= kRoundOff * s.maxCoeff();
 }
 
-// Intensity or irradiance, whichever the light has. Light is PunctualLight or const PunctualLight.
+// Intensity (of a measured luminaire: per candela) or irradiance, whichever the light has. Light is
+// PunctualLight or const PunctualLight.
 template <class Light>
 auto& power_of(Light& light) {
   return std::visit(
       [](auto& l) -> std::conditional_t<std::is_const_v<Light>, const Spectrum&, Spectrum&> {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(l)>, DirectionalLight>)
+        using Kind = std::remove_cvref_t<decltype(l)>;
+        if constexpr (std::is_same_v<Kind, DirectionalLight>)
           return l.irradiance;
+        else if constexpr (std::is_same_v<Kind, PhotometricLight>)
+          return l.intensity_per_candela;
         else
           return l.intensity;
       },
@@ -91,8 +95,7 @@ void warn_of_ignored_parts(Scene& scene, const std::vector<bool>& used) {
 void warn_if_dark(Scene& scene, const std::vector<bool>& used) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (used[i] && scene.materials[i].emits()) return;
-  for (const PunctualLight& light : scene.lights)
-    if ((power_of(light) > 0).any()) return;
+  if (!scene.lights.empty()) return;
   scene.warnings.push_back(
       "The room has no luminaire: no surface and no light emits, so everything stays black.");
 }

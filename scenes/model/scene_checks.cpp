@@ -127,16 +127,23 @@ void check_direction(Vec3& direction, const std::string& where) {
   direction /= length;
 }
 
+// The power of a light: as check_power, and some of it.
+void check_strength(Spectrum& s, const Scene& scene, const std::string& where, const char* what) {
+  check_size(s, scene, where, what);
+  check_power(s, where, what);
+  if (!(s > 0).any())
+    throw InputError(where, fmt::format("the light emits nothing: its {} is 0", what),
+                     "Remove it or give it power.");
+}
+
 void check_light(PointLight& light, Scene& scene, const std::string& where) {
-  check_size(light.intensity, scene, where, "intensity");
-  check_power(light.intensity, where, "intensity");
+  check_strength(light.intensity, scene, where, "intensity");
   if (!light.position.allFinite())
     throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
 }
 
 void check_light(SpotLight& light, Scene& scene, const std::string& where) {
-  check_size(light.intensity, scene, where, "intensity");
-  check_power(light.intensity, where, "intensity");
+  check_strength(light.intensity, scene, where, "intensity");
   if (!light.position.allFinite())
     throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
   check_direction(light.direction, where);
@@ -149,9 +156,23 @@ void check_light(SpotLight& light, Scene& scene, const std::string& where) {
 }
 
 void check_light(DirectionalLight& light, Scene& scene, const std::string& where) {
-  check_size(light.irradiance, scene, where, "irradiance");
-  check_power(light.irradiance, where, "irradiance");
+  check_strength(light.irradiance, scene, where, "irradiance");
   check_direction(light.direction, where);
+}
+
+void check_light(PhotometricLight& light, Scene& scene, const std::string& where) {
+  check_strength(light.intensity_per_candela, scene, where, "intensity");
+  if (!light.position.allFinite())
+    throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
+  if (!light.table) throw InputError(where, "it has no intensities", "Name the file of the luminaire.");
+  constexpr double kSlack = 1e-6;
+  const Eigen::Matrix3d square = light.orientation.transpose() * light.orientation;
+  if (!square.isApprox(Eigen::Matrix3d::Identity(), kSlack))
+    throw InputError(where, "its axes are not unit vectors at right angles",
+                     "Place the luminaire by rotations only.");
+  const Vec3 size = light.opening.size();
+  if (!size.allFinite() || (size.array() < 0).any())
+    throw InputError(where, "the size of its opening is negative or not a number", "Give 0 or more.");
 }
 
 void check_camera(const Camera& camera, const std::string& where) {

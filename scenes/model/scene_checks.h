@@ -13,7 +13,7 @@ void check_materials(Scene& scene);
 /// unusable becomes flat, with one warning for the room.
 void check_geometry(Scene& scene);
 
-/// Intensities finite and >= 0, cone angles in order; directions become unit vectors.
+/// Intensities finite, >= 0 and not 0 in all bands, cone angles in order; directions become unit vectors.
 void check_lights(Scene& scene);
 
 /// Checks views and makes camera names unique by a suffix.

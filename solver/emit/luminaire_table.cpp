@@ -79,9 +79,10 @@ bool LuminaireTable::sample(std::size_t entry, const Vec3f& x, const Vec3f& n, f
     return true;
   }
   const PunctualEmitter& e = punctual_[entry - triangles_.size()];
-  result.factor = e.unoccluded_irradiance(x, n, static_cast<float>(rays_->metres_per_unit()));
-  result.at_infinity = e.kind == PunctualEmitter::Kind::kDirectional;
-  result.target = result.at_infinity ? Vec3f(-e.direction) : e.position;
+  const PunctualSample point = e.sample(x, n, u0, u1, static_cast<float>(rays_->metres_per_unit()));
+  result.factor = point.factor;
+  result.at_infinity = point.at_infinity;
+  result.target = point.target;
   return result.factor > 0;
 }
 

@@ -13,9 +13,8 @@ namespace {
 constexpr std::uint32_t kPointsPerScramble =
     PunctualIrradiance::kRaysPerZone / PunctualIrradiance::kReplicates;
 
-bool lit(const RayScene& rays, const PunctualEmitter& emitter, const Vec3f& origin) {
-  return emitter.kind == PunctualEmitter::Kind::kDirectional ? rays.escapes(origin, -emitter.direction)
-                                                             : rays.visible(origin, emitter.position);
+bool lit(const RayScene& rays, const PunctualSample& sample, const Vec3f& origin) {
+  return sample.at_infinity ? rays.escapes(origin, sample.target) : rays.visible(origin, sample.target);
 }
 
 }  // namespace
@@ -38,8 +37,9 @@ PunctualIrradiance punctual_irradiance(const PunctualLight& light, const Transpo
       for (std::uint32_t k = 0; k < kPointsPerScramble; ++k) {
         const auto [u, v] = sample_triangle(numbers.sample(k, 0), numbers.sample(k, 1));
         const Vec3f origin = points.origin(u, v);
-        const float unoccluded = emitter.unoccluded_irradiance(origin, points.normal(), metres);
-        if (unoccluded > 0 && lit(rays, emitter, origin)) sum += static_cast<double>(unoccluded);
+        const PunctualSample sample =
+            emitter.sample(origin, points.normal(), numbers.sample(k, 2), numbers.sample(k, 3), metres);
+        if (sample.factor > 0 && lit(rays, sample, origin)) sum += static_cast<double>(sample.factor);
       }
       result.of_zone(z, r) = sum / kPointsPerScramble;
     }

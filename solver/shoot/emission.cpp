@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/emit/photometric_emitter.h"
+#include "solver/emit/spot_distribution.h"
+
 namespace reemit {
 namespace {
 
@@ -18,28 +21,6 @@ void set_ray(const Vec3f& origin, const Vec3f& direction, Ray16& rays, int lane)
   rays.dz[lane] = direction.z();
 }
 
-/// Integral of the KHR_lights_punctual fall-off clamp((cos t - cos o)/(cos i - cos o))^2 over the sphere
-/// [sr]: full within the inner cone, and one third of the solid angle between the cones.
-double spot_solid_angle(const SpotLight& s) {
-  const double inner = std::cos(s.inner_angle);
-  const double outer = std::cos(s.outer_angle);
-  return 2 * std::numbers::pi * ((1 - inner) + (inner - outer) / 3);
-}
-
-Vec3f sample_spot(const SpotLight& s, float u0, float u1) {
-  const double inner = std::cos(s.inner_angle);
-  const double outer = std::cos(s.outer_angle);
-  const double full = 1 - inner;
-  const double total = full + (inner - outer) / 3;
-  const double x = u0 * total;
-  // Beyond the inner cone the share within cos t is ((cos t - o)/(i - o))^3, which the cube root inverts.
-  const double z =
-      x < full ? 1 - x : outer + (inner - outer) * std::cbrt(std::max(0.0, 1 - (x - full) / (total - full)));
-  const double r = std::sqrt(std::max(0.0, 1 - z * z));
-  const double phi = 2 * std::numbers::pi * u1;
-  return Vec3(r * std::cos(phi), r * std::sin(phi), z).cast<float>();
-}
-
 struct StartRay {
   const RayScene& scene;
   float u0, u1, u2, u3;
@@ -51,7 +32,7 @@ struct StartRay {
   }
   void operator()(const SpotLight& l) const {
     const Frame frame(l.direction.cast<float>());
-    set_ray(scene.normalised(l.position), frame.to_world(sample_spot(l, u2, u3)), rays, lane);
+    set_ray(scene.normalised(l.position), frame.to_world(SpotDistribution(l).sample(u2, u3)), rays, lane);
   }
   void operator()(const DirectionalLight& l) const {
     const Frame frame(l.direction.cast<float>());
@@ -59,15 +40,24 @@ struct StartRay {
     const Vec3f origin = kRoomRadius * (d.x * frame.tangent + d.y * frame.bitangent - 1.01F * frame.normal);
     set_ray(origin, frame.normal, rays, lane);
   }
+  void operator()(const PhotometricLight& l) const {
+    Vec3f origin;
+    Vec3f direction;
+    start_photometric_ray(l, scene, u0, u1, u2, u3, origin, direction);
+    set_ray(origin, direction, rays, lane);
+  }
 };
 
 struct Power {
   const RayScene& scene;
   Spectrum operator()(const PointLight& l) const { return 4 * std::numbers::pi * l.intensity; }
-  Spectrum operator()(const SpotLight& l) const { return spot_solid_angle(l) * l.intensity; }
+  Spectrum operator()(const SpotLight& l) const { return SpotDistribution(l).solid_angle() * l.intensity; }
   Spectrum operator()(const DirectionalLight& l) const {
     const double radius = kRoomRadius * scene.metres_per_unit();
     return std::numbers::pi * radius * radius * l.irradiance;
+  }
+  Spectrum operator()(const PhotometricLight& l) const {
+    return l.table->total_flux() * l.intensity_per_candela;
   }
 };
 

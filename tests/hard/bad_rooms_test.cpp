@@ -36,6 +36,11 @@ void expect_refused(const TempFolder& folder, const std::string& room,
   EXPECT_EQ(folder.listing(), before) << room << ": something was left behind";
 }
 
+/// The small room with one light.
+std::string with_light(const std::string& light) {
+  return replaced(small_json_room(), "\"cameras\"", "\"lights\": [" + light + "],\n  \"cameras\"");
+}
+
 TEST(BadRooms, MissingFile) {
   for (const char* name : {"none.json", "none.obj", "none.gltf", "none.glb", "none.mgf"}) {
     const TempFolder folder;
@@ -229,9 +234,40 @@ TEST(BadRooms, NothingToTrace) {
   expect_refused(folder, "room.json", {"room.json"});
 }
 
-TEST(BadRooms, NoLuminaireIsBlackAndWarned) {
+TEST(BadRooms, EmissionOfNothing) {
   const TempFolder folder;
   folder.write("room.json", replaced(small_json_room(), "[30, 25, 20]", "[0, 0, 0]"));
+  expect_refused(folder, "room.json", {"#/materials/lamp/exitance", "emits nothing"});
+  folder.write("room.json", with_light(R"({"type": "point", "position": [0.5, 0.5, 0.5], "flux_lm": 0})"));
+  expect_refused(folder, "room.json", {"#/lights/0/flux_lm", "emits nothing", "Remove it or give it power"});
+  folder.write("room.json",
+               with_light(R"({"type": "directional", "direction": [0, -1, 0], "irradiance": [0, 0, 0]})"));
+  expect_refused(folder, "room.json", {"#/lights/0/irradiance", "emits nothing"});
+}
+
+TEST(BadRooms, BrokenPhotometricFiles) {
+  const std::string good =
+      "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n100 80 0\n";
+  const std::string room = with_light(R"({"type": "ies", "file": "lamp.ies", "position": [0.5, 0.9, 0.5]})");
+  const TempFolder folder;
+  folder.write("room.json", room);
+  folder.write("lamp.ies", replaced(good, "100 80 0", "100 80"));
+  expect_refused(folder, "room.json", {"#/lights/0/file", "lamp.ies:7", "number 3 of 3 candela values"});
+  folder.write("lamp.ies", replaced(good, "0 45 90", "0 90 45"));
+  expect_refused(folder, "room.json", {"lamp.ies:5", "do not increase"});
+  folder.write("lamp.ies", replaced(good, "1 -1 1 3 1", "1 -1 1 2000000000 1"));
+  expect_refused(folder, "room.json", {"lamp.ies:3", "vertical angles"});
+  folder.write("lamp.ies", replaced(good, "100 80 0", "0 0 0"));
+  expect_refused(folder, "room.json", {"lamp.ies:7", "gives no light"});
+  folder.write("lamp.ies", good);
+  const ProgramRun run = run_reemit(
+      {"solve", (folder / "room.json").string(), "-o", (folder / "room.h5").string(), "--packets", "1000"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+TEST(BadRooms, NoLuminaireIsBlackAndWarned) {
+  const TempFolder folder;
+  folder.write("room.json", replaced(small_json_room(), R"(, "exitance": [30, 25, 20])", ""));
   const ProgramRun run = run_reemit(
       {"solve", (folder / "room.json").string(), "-o", (folder / "room.h5").string(), "--packets", "1000"});
   EXPECT_EQ(run.exit_code, 0) << run.err;

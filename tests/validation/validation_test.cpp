@@ -79,6 +79,10 @@ TEST(Validation, direct_light) {
                1);
 }
 
+TEST(Validation, measured_luminaires) {
+  expect_valid("measured luminaires", {"ies.axial.total_flux_lm", "ies.planes.total_flux_lm"}, 1);
+}
+
 TEST(Validation, enclosures) {
   expect_valid("enclosures", {"furnace.0.5", "furnace.var", "sphere.0.5", "energy.closed", "conc.spheres"},
                0.15);
@@ -134,6 +138,12 @@ TEST(ValidationPower, luminaire_area_2_percent_too_large_is_noticed) {
   std::vector<ReferenceCase> cases = pick({"irr.rect.far", "irr.rect.wall", "cie56.50cm.v6"});
   for (ReferenceCase& c : cases) multiply(c.parameters["luminaire"]["edge_u"], kPlanted);
   expect_noticed("direct light", cases, 1);
+}
+
+TEST(ValidationPower, luminaire_hung_1_percent_too_low_is_noticed) {
+  std::vector<ReferenceCase> cases = pick({"ies.axial.total_flux_lm"});
+  multiply(cases[0].parameters["h"], 0.99);
+  expect_noticed("measured luminaires", cases, 1);
 }
 
 TEST(ValidationPower, emitted_power_2_percent_too_high_is_noticed) {

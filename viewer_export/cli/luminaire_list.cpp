@@ -1,8 +1,9 @@
 #include "viewer_export/cli/luminaire_list.h"
 
-#include <cmath>
 #include <numbers>
 #include <variant>
+
+#include "solver/emit/spot_distribution.h"
 
 namespace reemit::cli {
 namespace {
@@ -14,12 +15,11 @@ LuminaireRow row_of(const PointLight& light) {
 }
 
 LuminaireRow row_of(const SpotLight& light) {
-  // Full intensity inside the inner cone, then falling with the square of (cos a - cos outer)/(cos inner -
-  // cos outer), whose integral over the ring is a third of the ring's solid angle.
-  const double inner = std::cos(light.inner_angle);
-  const double outer = std::cos(light.outer_angle);
-  const double solid_angle = 2 * pi * ((1 - inner) + (inner - outer) / 3);
-  return {light.name, "spot", 0, solid_angle * light.intensity};
+  return {light.name, "spot", 0, SpotDistribution(light).solid_angle() * light.intensity};
+}
+
+LuminaireRow row_of(const PhotometricLight& light) {
+  return {light.name, "ies", 0, light.table->total_flux() * light.intensity_per_candela};
 }
 
 LuminaireRow row_of(const DirectionalLight& light) {

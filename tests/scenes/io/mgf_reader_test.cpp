@@ -190,15 +190,36 @@ TEST_F(MgfReader, RefusesMissingAndCircularIncludes) {
 }
 
 TEST_F(MgfReader, SaysWhatItLeavesOut) {
-  folder_.write("lamp.ies", "IESNA:LM-63-1995\n");
-  const Scene scene =
-      read(kSquare + "ies lamp.ies -m 2 -a 3 -t 1 0 0\nnurbs 1 2\nnurbs 3 4\nf a b a\nf a b c\n");
-  EXPECT_THAT(scene.warnings, Contains(HasSubstr("3 of 'lamp.ies'")));
+  const Scene scene = read(kSquare + "nurbs 1 2\nnurbs 3 4\nf a b a\nf a b c\n");
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'nurbs' is not an MGF entity")));
-  EXPECT_THAT(scene.warnings, Contains(HasSubstr("room.mgf:12")));
-  EXPECT_EQ(scene.warnings.size(), 3U) << "each unknown entity once";
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("room.mgf:11")));
+  EXPECT_EQ(scene.warnings.size(), 2U) << "each unknown entity once";
+}
+
+TEST_F(MgfReader, PlacesMeasuredLuminaires) {
+  folder_.write("lamp.ies", "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0.5 0.25 0\n1 1 0\n0 90\n0\n100 0\n");
+  const Scene scene = read(kSquare +
+                           "xf -rx 90 -s 2 -t 0 0 3\no lamps\nies lamp.ies -m 2 -a 3 -t 1 0 0\no\n"
+                           "xf\nies lamp.ies -mz\n");
+  ASSERT_EQ(scene.lights.size(), 4U);
+  const auto& third = std::get<PhotometricLight>(scene.lights[2]);
+  EXPECT_EQ(third.name, "lamps 3");
+  EXPECT_TRUE(third.position.isApprox(Vec3(4, 0, 3)));
+  // Nadir -z and C = 0 along x, turned about x: the nadir is y.
+  EXPECT_TRUE((-third.orientation.col(2)).isApprox(Vec3(0, 1, 0), 1e-12));
+  EXPECT_TRUE(third.orientation.col(0).isApprox(Vec3(1, 0, 0), 1e-12));
+  EXPECT_NEAR(third.opening.width, 1, 1e-12) << "sizes are scaled";
+  EXPECT_NEAR(third.intensity_per_candela[0], 2.0 / 179, 1e-9) << "intensities are not";
+  const auto& mirrored = std::get<PhotometricLight>(scene.lights[3]);
+  EXPECT_NEAR(mirrored.orientation.determinant(), -1, 1e-12);
+  EXPECT_EQ(mirrored.name, "lamp");
+  EXPECT_EQ(mirrored.table.get(), third.table.get());
   EXPECT_THAT(refusal("ies nothing.ies\n"), HasSubstr("cannot be read"));
   EXPECT_THAT(refusal("ies room.mgf -m\n"), HasSubstr("-m"));
+  EXPECT_THAT(refusal("ies lamp.ies -m 0\n"), HasSubstr("room.mgf:1"));
+  EXPECT_THAT(refusal("ies lamp.ies -a 1000000 -t 1 0 0\n"), HasSubstr("luminaires"));
+  folder_.write("bad.ies", "IESNA91\nTILT=NONE\n1 -1 0\n");
+  EXPECT_THAT(refusal("ies bad.ies\n"), AllOf(HasSubstr("room.mgf:1"), HasSubstr("bad.ies:3")));
 }
 
 TEST_F(MgfReader, ClosesWhatIsLeftOpenAndSaysSo) {

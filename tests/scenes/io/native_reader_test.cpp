@@ -163,6 +163,87 @@ TEST(NativeLights, RefusesWrongValues) {
       {"not smaller"});
 }
 
+TEST(NativeLights, ALightOrEmissionOfNoPowerIsRefused) {
+  const auto refused = [](const std::string& light, std::initializer_list<const char*> parts) {
+    expect_refused(room(R"("materials": {}, "lights": [{)" + light + "}]"), parts);
+  };
+  refused(R"("type": "point", "position": [0,0,0], "intensity": 0)",
+          {"#/lights/0/intensity", "emits nothing"});
+  refused(R"("type": "point", "position": [0,0,0], "flux_lm": 0)", {"#/lights/0/flux_lm", "emits nothing"});
+  refused(R"("type": "spot", "position": [0,0,0], "direction": [0,0,1], "intensity_cd": 0)",
+          {"#/lights/0/intensity_cd", "emits nothing"});
+  refused(R"("type": "directional", "direction": [0,0,1], "illuminance_lx": 0)",
+          {"#/lights/0/illuminance_lx", "emits nothing"});
+  refused(R"("type": "point", "position": [0,0,0], "intensity": -1)", {"#/lights/0/intensity"});
+  for (const char* key :
+       {"radiance", "exitance", "total_power", "luminance_cd_m2", "exitance_lm_m2", "total_flux_lm"})
+    expect_refused(room(std::string(R"("materials": {"lamp": {")") + key + R"(": 0}})"),
+                   {"#/materials/lamp/", key, "emits nothing"});
+  expect_refused(room(R"("bands": "rgb", "materials": {"lamp": {"radiance": [0, 0, 0]}})"),
+                 {"emits nothing"});
+}
+
+constexpr const char* kLamp =
+    "IESNA91\nTILT=NONE\n1 -1 1 3 2 1 2 0.5 0.25 0\n1 1 0\n0 45 90\n0 90\n100 50 0\n100 80 0\n";
+
+/// A room with one light of type "ies" beside its file.
+Scene read_measured(const std::string& fields) {
+  const TempFolder folder;
+  folder.write("lamp.ies", kLamp);
+  return read_native_scene(
+      folder.write("room.json", room(R"("materials": {}, "lights": [{"type": "ies", "file": "lamp.ies", )" +
+                                     fields + "}]")),
+      {});
+}
+
+PhotometricLight measured(const std::string& fields) {
+  return std::get<PhotometricLight>(read_measured(fields).lights.at(0));
+}
+
+TEST(NativeLights, MeasuredLuminairesHangDownUnlessAimed) {
+  const PhotometricLight l = measured(R"("position": [1, 2, 3])");
+  EXPECT_EQ(l.name, "ies 0");
+  EXPECT_EQ(l.position, Vec3(1, 2, 3));
+  EXPECT_TRUE(l.orientation.col(2).isApprox(Vec3(0, 1, 0)));
+  EXPECT_TRUE(l.orientation.col(0).isApprox(Vec3(1, 0, 0)));
+  EXPECT_TRUE(l.orientation.col(1).isApprox(Vec3(0, 0, -1))) << "counter-clockwise seen from above";
+  EXPECT_NEAR(l.intensity_per_candela[0], 1.0 / 179, 1e-9);
+  EXPECT_EQ(l.opening.width, 0.5);
+  EXPECT_EQ(measured(R"("position": [1, 2, 3], "opening": "point")").opening.shape,
+            LuminousOpening::Shape::kPoint);
+}
+
+TEST(NativeLights, MeasuredLuminairesAreTurnedAndDimmed) {
+  const PhotometricLight aimed = measured(R"("position": [0, 2, 0], "look_at": [3, 2, 0], "c0": [1, 5, 0])");
+  EXPECT_TRUE((-aimed.orientation.col(2)).isApprox(Vec3(1, 0, 0)));
+  EXPECT_TRUE(aimed.orientation.col(0).isApprox(Vec3(0, 1, 0)));
+  EXPECT_NEAR(aimed.orientation.determinant(), 1, 1e-12);
+  const PhotometricLight turned = measured(R"("position": [0, 0, 0], "rotate_deg": 90)");
+  EXPECT_TRUE(turned.orientation.col(0).isApprox(Vec3(0, 0, -1), 1e-12));
+  const PhotometricLight along = measured(R"("position": [0, 0, 0], "direction": [2, 0, 0])");
+  EXPECT_TRUE(along.orientation.col(0).isApprox(Vec3(0, 0, 1)));
+  EXPECT_NEAR(measured(R"("position": [0, 0, 0], "scale": 0.5)").intensity_per_candela[0], 0.5 / 179, 1e-9);
+  const PhotometricLight lumens = measured(R"("position": [0, 0, 0], "flux_lm": 1000)");
+  EXPECT_NEAR(lumens.intensity_per_candela[0] * 179 * lumens.table->total_flux(), 1000, 1e-3);
+}
+
+TEST(NativeLights, RefusesMeasuredLuminairesThatCannotBe) {
+  const auto refused = [](const std::string& fields, std::initializer_list<const char*> parts) {
+    expect_input_error([&] { read_measured(fields); }, parts);
+  };
+  refused(R"("position": [0, 0, 0], "scale": 0)", {"#/lights/0/scale", "emits nothing"});
+  refused(R"("position": [0, 0, 0], "flux_lm": 0)", {"#/lights/0/flux_lm", "emits nothing"});
+  refused(R"("position": [0, 0, 0], "scale": 1, "flux_lm": 1)", {"#/lights/0/flux_lm", "given already"});
+  refused(R"("position": [0, 0, 0], "direction": [0, 0, 0])", {"#/lights/0/direction", "no length"});
+  refused(R"("position": [0, 0, 0], "look_at": [0, 0, 0])", {"#/lights/0/look_at"});
+  refused(R"("position": [0, 0, 0], "c0": [0, 1, 0])", {"#/lights/0/c0", "along the aim"});
+  refused(R"("position": [0, 0, 0], "opening": "round")", {"#/lights/0/opening"});
+  refused(R"("position": [0, 0, 0], "intensity_cd": 1)", {"unknown key"});
+  expect_refused(
+      room(R"("materials": {}, "lights": [{"type": "ies", "file": "none.ies", "position": [0, 0, 0]}])"),
+      {"#/lights/0/file", "none.ies"});
+}
+
 TEST(NativeCameras, FieldsAndDefaults) {
   const Scene scene = read_text(room(R"("materials": {}, "cameras": [
       {"name": "a", "eye": [1, 2, 3], "look_at": [4, 2, 3], "up": [0, 0, 2], "vertical_fov_deg": 60, "size": [640, 480]},

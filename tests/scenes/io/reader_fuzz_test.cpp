@@ -99,7 +99,7 @@ class ReaderFuzz : public ::testing::Test {
  protected:
   ReaderFuzz() {
     folder_.write("part.inc", "m paint\nf a c d\n");
-    folder_.write("lamp.ies", "IESNA91\n");
+    folder_.write("lamp.ies", "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0.5 0.25 0\n1 1 0\n0 90\n0\n100 0\n");
     folder_.write("room.mtl", kMtl);
     folder_.write("t.ppm", std::string("P6\n1 1\n255\nabc"));
   }

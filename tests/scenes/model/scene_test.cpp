@@ -174,6 +174,70 @@ TEST(FinishScene, ChecksLights) {
   EXPECT_THAT(with(DirectionalLight{"c", {0, 0, std::nan("")}, power}), HasSubstr("light 'c'"));
 }
 
+TEST(FinishScene, RefusesLightsThatEmitNothing) {
+  const auto with = [](const PunctualLight& light) {
+    return refusal([&light](Scene& s) { s.lights.push_back(light); });
+  };
+  const Spectrum none = Eigen::Array3d(0, 0, 0);
+  const Spectrum bad = Eigen::Array3d(1, std::nan(""), 1);
+  for (const Spectrum& power : {none, bad, Spectrum(-Eigen::Array3d(0, 0, 1))})
+    for (const PunctualLight& light : {PunctualLight(PointLight{"a", {0, 0, 0}, power}),
+                                       PunctualLight(SpotLight{"a", {0, 0, 0}, {0, 0, -1}, power, 0.1, 0.5}),
+                                       PunctualLight(DirectionalLight{"a", {0, 0, -1}, power})})
+      EXPECT_THAT(with(light), HasSubstr("light 'a'"));
+  EXPECT_THAT(with(PointLight{"a", {0, 0, 0}, none}), HasSubstr("emits nothing"));
+  EXPECT_THAT(with(PointLight{"a", {0, 0, 0}, Spectrum()}), HasSubstr("emits nothing"));
+}
+
+TEST(FinishScene, ChecksMeasuredLuminaires) {
+  PhotometricLight good;
+  good.name = "m";
+  good.position = Vec3::Zero();
+  good.table =
+      std::make_shared<const IntensityTable>(PhotometricType::kC, std::vector<double>{0, 90},
+                                             std::vector<double>{0, 360}, std::vector<double>(4, 1.0));
+  good.intensity_per_candela = Eigen::Array3d(1, 1, 1);
+  const auto with = [&good](const std::function<void(PhotometricLight&)>& spoil) {
+    PhotometricLight light = good;
+    spoil(light);
+    return refusal([&light](Scene& s) { s.lights.emplace_back(light); });
+  };
+  EXPECT_EQ(with([](PhotometricLight&) {}), "accepted");
+  EXPECT_EQ(with([](PhotometricLight& l) { l.orientation(0, 0) = -1; }), "accepted") << "mirrored";
+  EXPECT_THAT(with([](PhotometricLight& l) { l.orientation *= 2; }), HasSubstr("axes"));
+  EXPECT_THAT(with([](PhotometricLight& l) { l.orientation(0, 0) = std::nan(""); }), HasSubstr("axes"));
+  EXPECT_THAT(with([](PhotometricLight& l) { l.position.x() = std::nan(""); }), HasSubstr("position"));
+  EXPECT_THAT(with([](PhotometricLight& l) { l.table = nullptr; }), HasSubstr("no intensities"));
+  EXPECT_THAT(with([](PhotometricLight& l) { l.opening.width = -1; }), HasSubstr("opening"));
+  EXPECT_THAT(with([](PhotometricLight& l) { l.intensity_per_candela.setZero(); }),
+              HasSubstr("emits nothing"));
+
+  const auto hash = [](const PhotometricLight& light) {
+    Scene scene = small_room();
+    scene.lights.emplace_back(light);
+    return content_hash(scene);
+  };
+  std::set<std::string> hashes{hash(good)};
+  PhotometricLight other = good;
+  other.name = "another";
+  EXPECT_EQ(hash(other), hash(good));
+  const auto differs = [&](const std::function<void(PhotometricLight&)>& change) {
+    PhotometricLight changed = good;
+    change(changed);
+    return hashes.insert(hash(changed)).second;
+  };
+  EXPECT_TRUE(differs([](PhotometricLight& l) { l.position.x() = 1; }));
+  EXPECT_TRUE(differs([](PhotometricLight& l) { l.orientation(0, 0) = -1; }));
+  EXPECT_TRUE(differs([](PhotometricLight& l) { l.intensity_per_candela[1] = 2; }));
+  EXPECT_TRUE(differs([](PhotometricLight& l) { l.opening.shape = LuminousOpening::Shape::kBox; }));
+  EXPECT_TRUE(differs([](PhotometricLight& l) { l.opening.height = 1; }));
+  EXPECT_TRUE(differs([](PhotometricLight& l) {
+    l.table =
+        std::make_shared<const IntensityTable>(PhotometricType::kC, std::vector<double>{0, 90},
+                                               std::vector<double>{0, 360}, std::vector<double>(4, 2.0));
+  }));
+}
+
 TEST(FinishScene, ChecksCamerasAndMakesTheirNamesUnique) {
   const auto with = [](const std::function<void(Camera&)>& spoil) {
     return refusal([&spoil](Scene& s) {

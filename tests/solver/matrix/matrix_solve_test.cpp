@@ -256,6 +256,22 @@ TEST(MatrixSolve, LightsWithoutAreaDeliverTheirPower) {
   EXPECT_GT(test::agreement(irradiances(run(room, SolveMethod::kShooting, 800'000)), matrix, 16),
             test::kFalseAlarm);
 
+  PhotometricLight measured;
+  measured.position = Vec3(-0.2, 0.3, 0.6);
+  measured.table = std::make_shared<const IntensityTable>(PhotometricType::kC, std::vector<double>{0, 30, 90},
+                                                          std::vector<double>{0, 90, 360},
+                                                          std::vector<double>{5, 4, 0, 5, 8, 1, 5, 4, 0});
+  measured.intensity_per_candela = room.flat(2);
+  measured.opening.shape = LuminousOpening::Shape::kBox;
+  measured.opening.length = 0.6;
+  measured.opening.width = 0.3;
+  room.scene().lights = {measured};
+  s = run(room, SolveMethod::kMatrix);
+  EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].emitted), 2 * measured.table->total_flux(),
+              1e-9);
+  EXPECT_GT(test::agreement(irradiances(run(room, SolveMethod::kShooting, 800'000)), irradiances(s), 16),
+            test::kFalseAlarm);
+
   RoomBuilder slab;
   const MaterialId black = slab.material("black", 0.0);
   slab.quad(black, {Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)}, 2);

@@ -197,6 +197,38 @@ TEST(Methods, PointSpotAndDirectionalLightsDeliverTheirPower) {
   EXPECT_GT(s.audit.bands[0].total_escaped(), 0);
 }
 
+TEST(Methods, MeasuredLuminairesDeliverTheirPowerInEveryBand) {
+  RoomBuilder room(BandSet::spectral({450, 550, 650, 700}));
+  const MaterialId black = room.material("black", 0.0);
+  room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {black, black, black, black, black, black}, 1);
+  // 300 cd down to the horizon, none above: the walls below take what a uniform half sphere gives them.
+  PhotometricLight light;
+  light.position = Vec3::Zero();
+  light.table =
+      std::make_shared<const IntensityTable>(PhotometricType::kC, std::vector<double>{0, 90},
+                                             std::vector<double>{0, 360}, std::vector<double>(4, 300.0));
+  light.intensity_per_candela = Eigen::Array4d(1, 0.1, 0, 3.7);
+  room.scene().lights = {light};
+  light.opening.shape = LuminousOpening::Shape::kBox;
+  light.opening.length = 0.5;
+  light.opening.width = 0.3;
+  const double lumens = 600 * std::numbers::pi;
+  for (const bool area : {false, true}) {
+    if (area) room.scene().lights = {light};
+    const Solution s = run(room, settings_of(SolveMethod::kShooting, 320'000));
+    for (std::size_t b = 0; b < 4; ++b) {
+      const BandAudit& band = s.audit.bands[b];
+      const double stated = lumens * light.intensity_per_candela[static_cast<Eigen::Index>(b)];
+      EXPECT_NEAR(s.audit.watts(band, band.emitted), stated, 1e-12 * stated);
+      EXPECT_EQ(s.audit.watts(band, band.absorbed[5]), 0) << "nothing goes up";
+      if (!area) {
+        EXPECT_NEAR(s.audit.watts(band, band.absorbed[4]), stated / 3, 2e-3 * stated);
+      }
+    }
+    EXPECT_TRUE(s.audit.balanced());
+  }
+}
+
 TEST(Methods, NoLuminaireGivesExactlyBlack) {
   RoomBuilder room;
   const MaterialId m = room.material("wall", 0.5);

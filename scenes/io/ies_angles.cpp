@@ -1,0 +1,127 @@
+#include "scenes/io/ies_angles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace reemit {
+namespace {
+
+constexpr double kSlack = 1e-6;  // [degree]
+
+bool same(double a, double b) {
+  return std::fabs(a - b) <= kSlack;
+}
+
+bool one_of(double angle, std::initializer_list<double> choices) {
+  return std::any_of(choices.begin(), choices.end(), [angle](double c) { return same(angle, c); });
+}
+
+/// Planes by increasing azimuth; `column` is an index into the horizontal angles of the file.
+struct Planes {
+  std::vector<double> azimuth;
+  std::vector<std::size_t> column;
+
+  void add(double angle, std::size_t from) {
+    azimuth.push_back(angle);
+    column.push_back(from);
+  }
+  /// Adds the mirror images of the planes about azimuth `about`, which lies at or beyond the last plane.
+  void mirror(double about) {
+    for (std::size_t i = azimuth.size(); i-- > 0;)
+      if (!same(azimuth[i], about)) add(2 * about - azimuth[i], column[i]);
+  }
+};
+
+Planes unfolded_planes(const IesGrid& grid, bool& closed) {
+  Planes planes;
+  const std::vector<double>& h = grid.horizontal;
+  if (grid.type != PhotometricType::kC) {
+    if (same(h.front(), 0))  // the mirror images of 0 ... 90 come first
+      for (std::size_t i = h.size(); i-- > 1;) planes.add(-h[i], i);
+    for (std::size_t i = 0; i < h.size(); ++i) planes.add(h[i], i);
+    return planes;
+  }
+  for (std::size_t i = 0; i < h.size(); ++i) planes.add(h[i], i);
+  if (h.size() == 1) {
+    planes.add(h[0] + 360, 0);
+  } else if (same(h.back(), 90)) {
+    planes.mirror(90);
+    planes.mirror(180);
+  } else if (same(h.back(), 180)) {
+    planes.mirror(180);
+  } else if (same(h.front(), 90)) {
+    planes.mirror(270);
+  } else if (!same(h.back(), 360)) {
+    planes.add(h.front() + 360, 0);
+    closed = true;
+  }
+  // Not off by what same() lets pass.
+  planes.azimuth.front() = std::round(planes.azimuth.front());
+  planes.azimuth.back() = planes.azimuth.front() + 360;
+  return planes;
+}
+
+}  // namespace
+
+IesComplaint check_vertical_angles(const IesGrid& grid) {
+  const double first = grid.vertical.front();
+  const double last = grid.vertical.back();
+  if (grid.type == PhotometricType::kC) {
+    if (one_of(first, {0, 90}) && one_of(last, {90, 180}) && last > first) return {};
+    return {fmt::format("the vertical angles run from {} to {} degrees", first, last),
+            "In type C photometry they run from 0 to 90, 90 to 180 or 0 to 180 degrees."};
+  }
+  if (one_of(first, {-90, 0}) && same(last, 90)) return {};
+  return {fmt::format("the vertical angles run from {} to {} degrees", first, last),
+          "In type A and B photometry they run from -90 or 0 to 90 degrees."};
+}
+
+IesComplaint check_horizontal_angles(const IesGrid& grid) {
+  const double first = grid.horizontal.front();
+  const double last = grid.horizontal.back();
+  const std::string problem = fmt::format("the horizontal angles run from {} to {} degrees", first, last);
+  if (grid.type != PhotometricType::kC) {
+    if (one_of(first, {-90, 0}) && same(last, 90) && last > first) return {};
+    return {problem, "In type A and B photometry they run from -90 or 0 to 90 degrees."};
+  }
+  if (grid.horizontal.size() == 1) {
+    if (same(first, 0)) return {};
+    return {fmt::format("the only horizontal angle is {} degrees", first),
+            "It must be 0, for a distribution without regard to the plane."};
+  }
+  const bool from_zero = same(first, 0) && (one_of(last, {90, 180}) || (last > 180 && last <= 360 + kSlack));
+  if (from_zero || (same(first, 90) && same(last, 270))) return {};
+  return {problem,
+          "In type C photometry they run from 0 to 90, 180 or 360 degrees by their symmetry, or from 90 to "
+          "270."};
+}
+
+IntensityTable unfolded(const IesGrid& grid, bool& closed) {
+  closed = false;
+  const Planes planes = unfolded_planes(grid, closed);
+  const std::size_t rows = grid.vertical.size();
+  const auto value = [&](std::size_t plane, std::size_t row) {
+    return grid.candela[planes.column[plane] * rows + row];
+  };
+  std::vector<double> candela;
+  candela.reserve(planes.azimuth.size() * rows);
+  // The outermost angles are what their check lets pass, to kSlack.
+  const auto colatitude = [](double angle) { return std::clamp(angle, 0.0, 180.0); };
+  std::vector<double> polar;
+  if (grid.type == PhotometricType::kB) {
+    // The pole is horizontal: horizontal angles are latitudes, vertical ones azimuths.
+    for (const double h : planes.azimuth) polar.push_back(colatitude(h + 90));
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t plane = 0; plane < polar.size(); ++plane) candela.push_back(value(plane, row));
+    return {grid.type, polar, grid.vertical, std::move(candela)};
+  }
+  const double offset = grid.type == PhotometricType::kA ? 90 : 0;
+  for (const double v : grid.vertical) polar.push_back(colatitude(v + offset));
+  for (std::size_t plane = 0; plane < planes.azimuth.size(); ++plane)
+    for (std::size_t row = 0; row < rows; ++row) candela.push_back(value(plane, row));
+  return {grid.type, polar, planes.azimuth, std::move(candela)};
+}
+
+}  // namespace reemit

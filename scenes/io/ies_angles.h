@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scenes/model/photometry.h"
+
+namespace reemit {
+
+/// The grid of an LM-63 file as it stands there.
+struct IesGrid {
+  PhotometricType type = PhotometricType::kC;
+  std::vector<double> vertical;    ///< [degree]
+  std::vector<double> horizontal;  ///< [degree]
+  std::vector<double> candela;     ///< candela[horizontal * vertical.size() + vertical]
+};
+
+/// What is wrong with the vertical or horizontal angles, and what they should be; both empty if they are as
+/// LM-63 wants them for the type of photometry.
+struct IesComplaint {
+  std::string problem, advice;
+};
+IesComplaint check_vertical_angles(const IesGrid& grid);
+IesComplaint check_horizontal_angles(const IesGrid& grid);
+
+/// Unfolds the symmetry of the horizontal angles and brings the grid to polar angle and azimuth. The values
+/// are copied, not resampled: mirrored grid lines of a bilinear function give the mirrored function. Sets
+/// `closed` if the last plane was missing and plane 0 was taken for it. Throws std::invalid_argument if there
+/// is no flux.
+IntensityTable unfolded(const IesGrid& grid, bool& closed);
+
+}  // namespace reemit

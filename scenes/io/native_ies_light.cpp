@@ -1,0 +1,84 @@
+#include "scenes/io/native_ies_light.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "scenes/io/native_materials.h"
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace {
+
+Vec3 nadir_of(const JsonCursor& at, const Vec3& position, double unit) {
+  const auto direction = at.find("direction");
+  const auto look_at = at.find("look_at");
+  if (look_at && direction) look_at->fail("the direction is given already", "Keep one of the two.");
+  const Vec3 aim =
+      look_at ? Vec3(look_at->vec3() * unit - position) : (direction ? direction->vec3() : Vec3(0, -1, 0));
+  const double length = aim.stableNorm();
+  if (!(length > 0) || !std::isfinite(length))
+    (look_at ? *look_at : *direction).fail("the direction has no length", "Choose another point or vector.");
+  return aim / length;
+}
+
+/// Direction of C = 0: across the aim, as near to what was asked for as that allows.
+Vec3 plane_zero_of(const JsonCursor& at, const Vec3& nadir) {
+  const auto given = at.find("c0");
+  constexpr double kAlong = 0.999;  // within 2.6 degrees
+  const Vec3 wanted = given ? given->vec3() : (std::fabs(nadir.x()) < kAlong ? Vec3(1, 0, 0) : Vec3(0, 0, 1));
+  const Vec3 unit = wanted.stableNormalized();
+  const Vec3 across = unit - unit.dot(nadir) * nadir;
+  constexpr double kLeastSine = 1e-6;
+  if (given && !(across.norm() > kLeastSine))
+    given->fail("the direction of C = 0 has no length or lies along the aim", "Choose one across the aim.");
+  return across.normalized();
+}
+
+Eigen::Matrix3d orientation_of(const JsonCursor& at, const Vec3& position, double unit) {
+  const Vec3 nadir = nadir_of(at, position, unit);
+  const Vec3 up = -nadir;
+  Vec3 zero = plane_zero_of(at, nadir);
+  if (const auto turn = at.find("rotate_deg"))
+    zero = Eigen::AngleAxisd(turn->number() * std::numbers::pi / 180, up) * zero;
+  Eigen::Matrix3d axes;
+  axes.col(0) = zero;
+  axes.col(1) = up.cross(zero);
+  axes.col(2) = up;
+  return axes;
+}
+
+}  // namespace
+
+PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& name) {
+  at.expect_object({"type", "name", "file", "position", "direction", "look_at", "c0", "rotate_deg", "color",
+                    "scale", "flux_lm", "opening"});
+  const JsonCursor path = at.at("file");
+  const IesLuminaire* file = nullptr;
+  try {
+    file = &library_.load(folder_ / path.string(), scene_.warnings, scene_.notes);
+  } catch (const InputError& error) {
+    throw InputError(path.where(), std::string("the luminaire cannot be read: ") + error.what(), "");
+  }
+  PhotometricLight light;
+  light.name = name;
+  light.position = at.at("position").vec3() * unit_;
+  light.orientation = orientation_of(at, light.position, unit_);
+  light.table = file->table;
+  const auto opening = at.find("opening");
+  if (!opening || opening->choice({"file", "point"}) == "file") light.opening = file->opening;
+  const auto scale = at.find("scale");
+  const auto flux = at.find("flux_lm");
+  if (scale && flux) flux->fail("\"scale\" is given already", "Keep one of the two.");
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const double dimming = scale ? scale->number_in(0, kMost)
+                               : (flux ? flux->number_in(0, kMost) / light.table->total_flux() : 1.0);
+  if (!(dimming > 0)) (scale ? *scale : *flux).fail("the light emits nothing", "Remove it or give it power.");
+  light.intensity_per_candela = dimming * photometric_emission(1, at.find("color"), scene_.bands);
+  return light;
+}
+
+}  // namespace reemit

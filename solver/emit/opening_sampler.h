@@ -1,0 +1,18 @@
+#pragma once
+#include "scenes/model/photometry.h"
+
+namespace reemit {
+
+/// A point of the opening in luminaire coordinates [m], relative to its centre, for two uniform numbers in
+/// [0,1): uniform over the area of flat openings (or the length of those that are only long), else over the
+/// surface. Ellipsoids and elliptic cylinders take the image of a uniform sphere or circle, which is uniform
+/// where they are round.
+Vec3 sample_opening(const LuminousOpening& opening, double u0, double u1);
+
+/// Largest value of n.p over the points p of the opening [m]; n is a unit vector in luminaire coordinates.
+double opening_reach(const LuminousOpening& opening, const Vec3& n);
+
+/// Greatest of length, width and height [m]; 0 for a point.
+double opening_extent(const LuminousOpening& opening);
+
+}  // namespace reemit
