@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Integrals over phi in [from, to] of 1, cos phi and sin phi over (a + b cos phi); 0 <= b < a, -pi <= from,
-/// to - from <= 2 pi.
+/// Integrals over phi in [from, to] of 1, cos phi and sin phi over (a + b cos phi); 0 <= b < a, -2 pi <=
+/// from, to - from < 2 pi.
 std::array<double, 3> rational_integrals(double a, double b, double from, double to) {
   const double s = std::sqrt((a - b) * (a + b));
   // Half angle form of the antiderivative of 1/(a + b cos): phi/s plus a periodic part.
@@ -66,20 +66,26 @@ double DiskSampler::irradiance() const {
   const double nu = n_.dot(u);
   const double nv = n_.dot(v);
   const double swing = r * std::hypot(nu, nv);
-  double from = -kPi;
-  double to = kPi;
-  double chord = 0;
-  if (level < swing) {
-    const double half = std::acos(std::clamp(-level / swing, -1.0, 1.0));
-    const double top = std::atan2(nv, nu);
-    from = top - half;
-    to = top + half;
-    const Vec3 p = c + r * (std::cos(to) * u + std::sin(to) * v);
-    const Vec3 q = c + r * (std::cos(from) * u + std::sin(from) * v);
-    const Vec3 cross = p.cross(q - p);
-    const double length = cross.norm();
-    if (length > 0) chord = n_.dot(cross) / length * std::atan2(length, p.dot(q));
+  if (level >= swing) {
+    // The light vector of the whole disk, along its axis and across, without differences.
+    const double h2 = height_ * height_;
+    const double l = frame.across;
+    const double s = std::sqrt((h2 + (l + r) * (l + r)) * (h2 + (l - r) * (l - r)));
+    const double k = h2 + (l - r) * (l + r);
+    const double axial = k > 0 ? 2 * kPi * r * r * h2 / (s * (s + k)) : 0.5 * kPi * (1 - k / s);
+    const double lateral = 2 * kPi * height_ * l * r * r / (s * (h2 + l * l + r * r + s));
+    return std::max(0.0, lateral * nu - axial * n_.dot(disk_.normal));
   }
+  double chord = 0;
+  const double half = std::acos(std::clamp(-level / swing, -1.0, 1.0));
+  const double top = std::atan2(nv, nu);
+  const double from = top - half;
+  const double to = top + half;
+  const Vec3 p = c + r * (std::cos(to) * u + std::sin(to) * v);
+  const Vec3 q = c + r * (std::cos(from) * u + std::sin(from) * v);
+  const Vec3 cross = p.cross(q - p);
+  const double length = cross.norm();
+  if (length > 0) chord = n_.dot(cross) / length * std::atan2(length, p.dot(q));
   // p x dp = r [cos (c x v) - sin (c x u) + r (u x v)] d phi and |p|^2 = a + b cos phi.
   const double a = height_ * height_ + frame.across * frame.across + r * r;
   const double b = 2 * frame.across * r;

@@ -25,6 +25,11 @@ ConvexPolygonSampler::ConvexPolygonSampler(std::span<const Vec3> corners, const 
     set_up_area(corners);
     return;
   }
+  Vec3 normal = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    normal += (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]);
+  constexpr double kLine = 1e-13;
+  if (!(normal.squaredNorm() > kLine * kLine * size2 * size2)) return;
   const ClippedPolygon clipped(corners, x, n);
   if (density_ == Density::kSolidAngle) {
     fan_.emplace(clipped);

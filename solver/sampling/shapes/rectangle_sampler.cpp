@@ -43,7 +43,7 @@ bool RectangleSampler::set_up_solid_angle() {
   const double beside_u = std::max({0.0, u_low_, -u_high_});
   const double beside_v = std::max({0.0, v_low_, -v_high_});
   const double beside2 = beside_u * beside_u + beside_v * beside_v;
-  constexpr double kGrazing = 1e-4;
+  constexpr double kGrazing = 0.03;  // the map loses digits with the fourth power of this
   if (height_ * height_ < kGrazing * kGrazing * beside2) return false;
   const double size2 = length_u * length_u + length_v * length_v;
   constexpr double kFar = 300;  // where the difference of two slabs keeps some 11 digits

@@ -46,15 +46,17 @@ Vec3 SphericalFan::sample(double u0, double u1) const {
 
   // Point c' of the arc a-c such that (a, b, c') has the solid angle wanted: with t the tangent of the arc at
   // a, c' = a cos s + t sin s, [VOS83] eq. 8 is linear in tan(s/2).
-  const double wanted = std::tan(0.5 * std::max(0.0, target - solid_angle_to_[i]));
+  const double half_angle = 0.5 * std::max(0.0, target - solid_angle_to_[i]);
+  const double wanted_s = std::sin(half_angle);
+  const double wanted_c = std::cos(half_angle);
   Vec3 t = c - a;
   t -= a.dot(t) * a;
   const double tangent_length = t.norm();
   if (tangent_length > 0) t /= tangent_length;
   const double volume = std::fabs(t.dot((b - a).cross(a)));
-  const double slope = volume - wanted * b.dot(t);
+  const double across = wanted_c * volume - wanted_s * b.dot(t);
   const double full = std::atan2(tangent_length, a.dot(c));
-  const double s = std::clamp(2 * std::atan2(wanted * (1 + a.dot(b)), slope), 0.0, full);
+  const double s = std::clamp(2 * std::atan2(wanted_s * (1 + a.dot(b)), across), 0.0, full);
   const Vec3 on_arc = std::cos(s) * a + std::sin(s) * t;
 
   // Uniform in 1 - cos along the arc b-c'.

@@ -88,4 +88,103 @@ SampleStatistics statistics(const Sampler& sampler, const Vec3& x, const Vec3& n
   return r;
 }
 
+/// Density per area [1/m2] times the area of the shape, at the point u of a sampler that is uniform in area.
+template <class Sampler>
+double relative_density(const Sampler& sampler, const Sampler& by_area, double area, const Vec3& x,
+                        const std::array<double, 2>& u) {
+  const ShapePoint s = by_area.sample(u[0], u[1]);
+  const double pdf = sampler.pdf_per_sr(s.point);
+  return pdf > 0 ? pdf * s.cos_emit / (s.point - x).squaredNorm() * area : 0.0;
+}
+
+struct Fit {
+  double odds;      ///< Of a deviation as large as the one seen, if the density is right.
+  double integral;  ///< Of the density over the shape.
+};
+
+inline std::size_t cell_of(const std::array<double, 2>& u, int grid) {
+  const int a = std::clamp(static_cast<int>(u[0] * grid), 0, grid - 1);
+  const int b = std::clamp(static_cast<int>(u[1] * grid), 0, grid - 1);
+  return static_cast<std::size_t>(a * grid + b);
+}
+
+/// Points drawn for a fit, and for a fit that has to see a planted bias.
+inline constexpr int kDraws = 100'000;
+inline constexpr int kManyDraws = 600'000;
+
+/// Do points drawn follow the density? Histogram over the parameters of the area sampler against the midpoint
+/// rule. `planted_bias`: first uniform number to the power 1 + bias.
+template <class Sampler>
+Fit fit_of_samples(const Sampler& sampler, const Sampler& by_area, double area, const Vec3& x,
+                   int draws = kDraws, double planted_bias = 0) {
+  constexpr int kGrid = 8;
+  constexpr int kFine = 32;
+  std::vector<double> expected(kGrid * kGrid);
+  std::vector<double> counts(kGrid * kGrid);
+  constexpr double kStep = 1.0 / (kGrid * kFine);
+  double integral = 0;
+  for (int i = 0; i < kGrid * kFine; ++i)
+    for (int k = 0; k < kGrid * kFine; ++k) {
+      const std::array<double, 2> u{(i + 0.5) * kStep, (k + 0.5) * kStep};
+      const double share = relative_density(sampler, by_area, area, x, u) * kStep * kStep;
+      expected[cell_of(u, kGrid)] += share;
+      integral += share;
+    }
+  const Pairs pairs(7);
+  double hits = 0;
+  for (int i = 0; i < draws; ++i) {
+    auto u = pairs(static_cast<std::uint64_t>(i));
+    u[0] = std::pow(u[0], 1 + planted_bias);
+    const ShapePoint s = sampler.sample(u[0], u[1]);
+    if (!(s.pdf_per_sr > 0)) continue;  // on the far side of a shape drawn by area
+    counts[cell_of(by_area.invert(s.point), kGrid)] += 1;
+    hits += 1;
+  }
+  for (double& e : expected) e *= hits / integral;
+  double drawn = 0;  // share of the unit square that is given to points with density
+  for (int i = 0; i < kGrid * kFine; ++i)
+    for (int k = 0; k < kGrid * kFine; ++k)
+      if (sampler.sample((i + 0.5) * kStep, (k + 0.5) * kStep).pdf_per_sr > 0) drawn += kStep * kStep;
+  return {chi_square_of_counts(counts, expected), integral / drawn};
+}
+
+/// Is invert() uniform over points that follow the density? They are area samples, thinned in proportion to
+/// the density: no sample() of the density under test is involved, other than to find which of the unit
+/// square it gives to points without density, such as those on the far side of a shape drawn by area.
+template <class Sampler>
+double fit_of_inverse(const Sampler& sampler, const Sampler& by_area, double area, const Vec3& x,
+                      int draws = kDraws, double planted_bias = 0) {
+  constexpr int kGrid = 8;
+  constexpr int kFine = 24;
+  std::vector<double> expected(kGrid * kGrid);
+  double whole = 0;
+  for (int i = 0; i < kGrid * kFine; ++i)
+    for (int k = 0; k < kGrid * kFine; ++k) {
+      const std::array<double, 2> u{(i + 0.5) / (kGrid * kFine), (k + 0.5) / (kGrid * kFine)};
+      if (!(sampler.sample(u[0], u[1]).pdf_per_sr > 0)) continue;
+      expected[cell_of(u, kGrid)] += 1;
+      whole += 1;
+    }
+  const Pairs pairs(8);
+  const Pairs thinning(9);
+  std::vector<double> density(static_cast<std::size_t>(draws));
+  for (int i = 0; i < draws; ++i)
+    density[static_cast<std::size_t>(i)] =
+        relative_density(sampler, by_area, area, x, pairs(static_cast<std::uint64_t>(i)));
+  const double highest = *std::max_element(density.begin(), density.end());
+  std::vector<double> counts(kGrid * kGrid);
+  double kept = 0;
+  for (int i = 0; i < draws; ++i) {
+    if (thinning(static_cast<std::uint64_t>(i))[0] * highest >= density[static_cast<std::size_t>(i)])
+      continue;
+    const auto u = pairs(static_cast<std::uint64_t>(i));
+    auto v = sampler.invert(by_area.sample(u[0], u[1]).point);
+    v[0] = std::pow(v[0], 1 + planted_bias);
+    counts[cell_of(v, kGrid)] += 1;
+    kept += 1;
+  }
+  for (double& e : expected) e *= kept / whole;
+  return chi_square_of_counts(counts, expected);
+}
+
 }  // namespace reemit::test
