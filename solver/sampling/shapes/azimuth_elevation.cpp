@@ -10,8 +10,8 @@ namespace reemit {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kCellsAcross = 16;
-constexpr std::size_t kCellsAround = 24;
+constexpr std::size_t kCellsAcross = 12;
+constexpr std::size_t kCellsAround = 16;
 /// Share of the largest node that every node gets where the horizon cuts the region, so that what lies
 /// between two nodes that see nothing is still drawn.
 constexpr double kFloor = 1.0 / 128;

@@ -66,7 +66,7 @@ class AzimuthElevation {
   double cosine_to(double n_r, const Span& e, double c, double s, double angle) const;
   double density(double parameter) const;
 
-  static constexpr std::size_t kMostNodes = 25;
+  static constexpr std::size_t kMostNodes = 17;
   RoundRegion region_;
   Vec3 axis_, e1_, e2_;
   double n1_, n2_, n3_;  // n in the frame (e1, e2, axis)

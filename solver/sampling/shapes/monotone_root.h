@@ -28,11 +28,11 @@ double monotone_root(const F& f, double target, double total, double end, double
     const ValueAndSlope v = f(t);
     const double miss = v.value - target;
     (miss > 0 ? high : low) = t;
-    double next = v.slope > 0 ? t - miss / v.slope : low;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    const double moved = std::fabs(next - t);
-    t = next;
-    if (!(moved > 1e-13 * end)) break;
+    const double newton = v.slope > 0 ? t - miss / v.slope : low;
+    const bool inside = newton > low && newton < high;
+    const double moved = std::fabs(newton - t);
+    t = inside ? newton : 0.5 * (low + high);
+    if (inside ? !(moved > 1e-7 * end) : !(high - low > 1e-14 * end)) break;
   }
   return t;
 }

@@ -76,7 +76,7 @@ TEST(DiskSampler, NearlyProportionalDensitiesHaveLittleVariance) {
   for (const ShapeCase<Disk>& c : cases()) {
     const DiskSampler s = make(c.shape, c.x, c.n.normalized(), Density::kCosine);
     const auto r = test::statistics(s, c.x, c.n.normalized(), 20'000);
-    EXPECT_LT(r.error * std::sqrt(20'000) / c.irradiance, 0.12) << c.name;
+    EXPECT_LT(r.error * std::sqrt(20'000) / c.irradiance, 0.15) << c.name;
   }
 }
 
