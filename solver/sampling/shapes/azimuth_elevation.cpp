@@ -12,6 +12,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kCellsAcross = 12;
 constexpr std::size_t kCellsAround = 16;
+constexpr std::size_t kCellsSlim = 4;
+/// Distance in radii from which a mantle counts as slim: what it sends varies little across it.
+constexpr double kSlim = 2.5;
 /// Share of the largest node that every node gets where the horizon cuts the region, so that what lies
 /// between two nodes that see nothing is still drawn.
 constexpr double kFloor = 1.0 / 128;
@@ -28,9 +31,10 @@ AzimuthElevation::AzimuthElevation(const RoundRegion& region, const Vec3& axis, 
       n2_(n.dot(e2_)),
       n3_(n.dot(axis)),
       cosine_(cosine),
-      around_(region.offset <= region.radius) {
-  cells_ = around_ ? kCellsAround : kCellsAcross;
-  start_ = around_ ? -kPi : -0.5 * kPi;
+      around_(region.offset <= region.radius),
+      slim_(region.kind == RoundRegion::Kind::kNearSide && region.offset > kSlim * region.radius) {
+  cells_ = around_ ? kCellsAround : slim_ ? kCellsSlim : kCellsAcross;
+  start_ = around_ ? -kPi : slim_ ? -1 : -0.5 * kPi;
   step_ = -2 * start_ / static_cast<double>(cells_);
   double c = around_ ? -1 : 0;
   double s = around_ ? 0 : -1;
@@ -39,7 +43,8 @@ AzimuthElevation::AzimuthElevation(const RoundRegion& region, const Vec3& axis, 
   bool cut = false;
   double largest = 0;
   for (std::size_t i = 0; i <= cells_; ++i) {
-    const Azimuth a = azimuth(std::max(c, around_ ? -1.0 : 0.0), s);
+    const Azimuth a = slim_ ? azimuth(start_ + static_cast<double>(i) * step_)
+                            : azimuth(std::max(c, around_ ? -1.0 : 0.0), s);
     node_[i] = weight(a, span(a, cut)) * a.jacobian;
     if (!(node_[i] > 0)) node_[i] = 0;
     largest = std::max(largest, node_[i]);
@@ -54,6 +59,12 @@ AzimuthElevation::AzimuthElevation(const RoundRegion& region, const Vec3& axis, 
   for (std::size_t i = 0; i < cells_; ++i)
     up_to_[i + 1] = up_to_[i] + 0.5 * step_ * (node_[i] + node_[i + 1]);
   total_ = up_to_[cells_];
+}
+
+AzimuthElevation::Azimuth AzimuthElevation::azimuth(double parameter) const {
+  if (slim_) return azimuth(std::sqrt(std::max(0.0, (1 - parameter) * (1 + parameter))), parameter);
+  const double c = std::cos(parameter);
+  return azimuth(around_ ? c : std::max(0.0, c), std::sin(parameter));
 }
 
 AzimuthElevation::Azimuth AzimuthElevation::azimuth(double pc, double ps) const {
@@ -73,7 +84,7 @@ AzimuthElevation::Azimuth AzimuthElevation::azimuth(double pc, double ps) const 
   // Sine of the azimuth r/l times that of the parameter: takes the square root out of the ends.
   a.s = r / l * ps;
   a.c = std::sqrt((l - r) * (l + r) + r * r * pc * pc) / l;
-  a.jacobian = r / l * pc / a.c;
+  a.jacobian = r / l * (slim_ ? 1 : pc) / a.c;
   a.far = l * a.c + r * pc;
   a.near = (l - r) * (l + r) / a.far;
   return a;
@@ -84,7 +95,9 @@ double AzimuthElevation::parameter_of(const Vec3& d) const {
   const double y = d.dot(e2_);
   if (around_) return std::atan2(y, x);
   const double across = std::hypot(x, y);
-  return across > 0 ? std::asin(std::clamp(region_.offset * y / (region_.radius * across), -1.0, 1.0)) : 0.0;
+  if (!(across > 0)) return 0;
+  const double sine = std::clamp(region_.offset * y / (region_.radius * across), -1.0, 1.0);
+  return slim_ ? sine : std::asin(sine);
 }
 
 AzimuthElevation::Span AzimuthElevation::span(const Azimuth& a, bool& cut) const {
@@ -183,7 +196,7 @@ AzimuthElevation::Direction AzimuthElevation::sample(double u0, double u1) const
   const double parameter = start_ + step_ * (static_cast<double>(i) + f);
   const double drawn = (v0 + f * (v1 - v0)) / total_;
 
-  const Azimuth a = azimuth(std::max(std::cos(parameter), around_ ? -1.0 : 0.0), std::sin(parameter));
+  const Azimuth a = azimuth(parameter);
   bool cut = false;
   const Span e = span(a, cut);
   const double whole = weight(a, e);
@@ -249,7 +262,7 @@ AzimuthElevation::Direction AzimuthElevation::sample(double u0, double u1) const
 
 double AzimuthElevation::pdf_per_sr(const Vec3& d) const {
   const double parameter = parameter_of(d);
-  const Azimuth a = azimuth(std::max(std::cos(parameter), around_ ? -1.0 : 0.0), std::sin(parameter));
+  const Azimuth a = azimuth(parameter);
   bool cut = false;
   const Span e = span(a, cut);
   const double whole = weight(a, e);
@@ -269,7 +282,7 @@ std::array<double, 2> AzimuthElevation::invert(const Vec3& d) const {
   const double f = t - static_cast<double>(i);
   const double u0 = (up_to_[i] + step_ * f * (node_[i] + 0.5 * f * (node_[i + 1] - node_[i]))) / total_;
 
-  const Azimuth a = azimuth(std::max(std::cos(parameter), around_ ? -1.0 : 0.0), std::sin(parameter));
+  const Azimuth a = azimuth(parameter);
   bool cut = false;
   const Span e = span(a, cut);
   const double whole = weight(a, e);

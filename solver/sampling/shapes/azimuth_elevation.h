@@ -58,6 +58,7 @@ class AzimuthElevation {
     double near, far;  // distances of the circle, near = 0 where x is inside it
   };
 
+  Azimuth azimuth(double parameter) const;
   Azimuth azimuth(double parameter_c, double parameter_s) const;
   double parameter_of(const Vec3& direction) const;
   double radial_part(const Azimuth& a) const { return a.c * n1_ + a.s * n2_; }
@@ -71,7 +72,8 @@ class AzimuthElevation {
   Vec3 axis_, e1_, e2_;
   double n1_, n2_, n3_;  // n in the frame (e1, e2, axis)
   bool cosine_;
-  bool around_;                  // x is inside the circle: all azimuths
+  bool around_;  // x is inside the circle: the parameter is the azimuth
+  bool slim_;    // a mantle that is slim as seen from x: the parameter is the place across it, -1 to 1
   double start_ = 0, step_ = 0;  // of the parameter
   std::size_t cells_ = 0;
   double total_ = 0;

@@ -37,7 +37,8 @@ CylinderSampler::CylinderSampler(const Cylinder& cylinder, const Vec3& x, const 
 
   const double size = std::max(length_, 2 * cylinder.radius);
   const double beside = std::max({0.0, low_, -high});
-  if (density != Density::kArea && beside * beside + offset_ * offset_ > kFarSizes * kFarSizes * size * size)
+  if (density != Density::kArea &&
+      beside * beside + offset_ * offset_ > kFarCylinder * kFarCylinder * size * size)
     density_ = Density::kVisibleArea;
   if (density_ == Density::kSolidAngle || density_ == Density::kCosine) {
     const RoundRegion region{cylinder.inward ? RoundRegion::Kind::kFarSide : RoundRegion::Kind::kNearSide,

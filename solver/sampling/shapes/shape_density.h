@@ -16,10 +16,10 @@ namespace reemit {
 //   std::array<double, 2> invert(const Vec3& p)   (u0, u1) of a point that sample() returns
 //   Density density() const;                 what is really drawn from, see below
 //
-// Lengths are in metres, but only ratios matter. Where x is farther than kFarSizes sizes of the shape away,
-// planar shapes, disks and cylinders are drawn from uniformly in (visible) area: the relative standard
-// deviation of a sample is then below 1/kFarSizes unless the horizon of x cuts the shape, while the
-// differences that the other densities are made of lose their digits.
+// Lengths are in metres, but only ratios matter. The farther a shape, the fewer digits are left in the
+// differences that solid angles are made of: beyond kFarSizes sizes polygons and disks are drawn from
+// uniformly in (visible) area, where the relative standard deviation of a sample is below 1/kFarSizes unless
+// the horizon of x cuts them; cylinders beyond kFarCylinder. Spheres keep their digits at any distance.
 
 /// What a point on a luminaire is uniform in.
 enum class Density {
@@ -31,6 +31,7 @@ enum class Density {
 };
 
 inline constexpr double kFarSizes = 2000;
+inline constexpr double kFarCylinder = 1e5;
 
 struct ShapePoint {
   Vec3 point{0, 0, 0};

@@ -58,6 +58,24 @@ TEST(CylinderSampler, DensitiesAgreeWhereNoClosedFormIsKnown) {
   }
 }
 
+TEST(CylinderSampler, FarCylindersAreTheirProjectedArea) {
+  // 2 r L sin(gamma) cos(theta) / d^2 to first order in 1/d.
+  const Cylinder tube{{0, 0, -0.5}, {0, 0, 0.5}, 0.02};
+  for (const double d : {1e3, 1e4, 5e4})
+    for (const Vec3& to : {Vec3(1, 0, 0), Vec3(1, 2, -2), Vec3(0.01, 0, 1), Vec3(-3, 1, 20)}) {
+      const Vec3 direction = to.normalized();
+      const Vec3 n = (-direction + Vec3(0.1, 0.2, 0.3)).normalized();
+      const double sine = std::hypot(direction.x(), direction.y());
+      const double truth = 2 * 0.02 * sine * n.dot(-direction) / (d * d);
+      const Vec3 x = d * direction;
+      for (const Density density : {Density::kSolidAngle, Density::kCosine}) {
+        const auto s = test::statistics(make(tube, x, n, density), x, n, 2000);
+        EXPECT_NEAR(s.mean / truth, 1, 4 / d + 4 * s.error / truth) << d << ", " << to.transpose();
+        EXPECT_LT(s.error / truth * std::sqrt(2000), 0.05);
+      }
+    }
+}
+
 TEST(CylinderSampler, BothFitsRejectAPlantedBias) {
   const ShapeCase<Cylinder>& c = cases()[1];
   const CylinderSampler by_area(c.shape, c.x, c.n, Density::kArea);
