@@ -150,6 +150,7 @@ AzimuthElevation::Span AzimuthElevation::span(const Azimuth& a, bool& cut) const
     (up0 <= 0 ? e.s0 : e.s1) = s;
   }
   e.empty = !(e.c0 * e.s1 - e.s0 * e.c1 > 0);
+  if (e.empty && region_.kind == RoundRegion::Kind::kFarSide) cut = true;  // by the near side
   return e;
 }
 

@@ -39,7 +39,7 @@ class AzimuthElevation {
   AzimuthElevation(const RoundRegion& region, const Vec3& axis, const Vec3& towards, const Vec3& n,
                    bool cosine);
 
-  /// The integral [sr] by the trapezoidal rule; 0 if no node sees anything.
+  /// About the integral [sr], by the trapezoidal rule; 0 if no node sees anything.
   double total() const { return total_; }
   Direction sample(double u0, double u1) const;
   /// Density at a unit direction that meets the region.
@@ -62,6 +62,7 @@ class AzimuthElevation {
   Azimuth azimuth(double parameter_c, double parameter_s) const;
   double parameter_of(const Vec3& direction) const;
   double radial_part(const Azimuth& a) const { return a.c * n1_ + a.s * n2_; }
+  /// Sets `cut` where the horizon, or the shape itself, takes something away.
   Span span(const Azimuth& a, bool& cut) const;
   double weight(const Azimuth& a, const Span& e) const;
   double cosine_to(double n_r, const Span& e, double c, double s, double angle) const;
