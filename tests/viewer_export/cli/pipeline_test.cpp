@@ -187,7 +187,7 @@ TEST_F(Pipeline, InfoOfASolution) {
 }
 
 TEST_F(Pipeline, WarningsGoToStandardErrorAndQuietSilencesThem) {
-  folder_.write("dark.json", replaced(small_json_room(), "[30, 25, 20]", "[0, 0, 0]"));
+  folder_.write("dark.json", replaced(small_json_room(), R"(, "exitance": [30, 25, 20])", ""));
   const std::vector<std::string> solve{"solve",         path("dark.json"), "-o",
                                        path("dark.h5"), "--packets",       "1000"};
   EXPECT_THAT(run_reemit(solve).err, HasSubstr("reemit: warning: "));
