@@ -14,7 +14,8 @@ RectangleSampler::RectangleSampler(const Vec3& corner, const Vec3& edge_u, const
   const double highest = low + std::max(0.0, n.dot(edge_u)) + std::max(0.0, n.dot(edge_v));
   if (!(highest > 0)) return;
   const double area2 = edge_u.squaredNorm() * edge_v.squaredNorm();
-  if (density == Density::kSolidAngle && set_up_solid_angle()) {
+  const double lowest = low + std::min(0.0, n.dot(edge_u)) + std::min(0.0, n.dot(edge_v));
+  if (density == Density::kSolidAngle && lowest >= 0 && set_up_solid_angle()) {
     lights_ = true;
     return;
   }
