@@ -57,7 +57,7 @@ bool RectangleSampler::set_up_solid_angle() {
 }
 
 /// Signed solid angle between the planes u = 0 and that of `sine` = u / hypot(u, height). The two terms are
-/// the angles of [URE13] sec. 4 less a right angle each, in a form without trigonometry of their sum.
+/// the angles of [URE13] less a right angle each, in a form without trigonometry of their sum.
 double RectangleSampler::slab_angle(double sine) const {
   return std::asin(std::clamp(sine * b_high_, -1.0, 1.0)) - std::asin(std::clamp(sine * b_low_, -1.0, 1.0));
 }
