@@ -8,7 +8,7 @@
 
 namespace reemit {
 
-/// Mantle of a cylinder [SWZ96] sec. 3.6: uniform in area, in the area of the side turned towards x
+/// Mantle of a cylinder [SWZ96] sec. 3.4: uniform in area, in the area of the side turned towards x
 /// (kVisibleArea), and by azimuth and elevation about its axis the part that x sees above its horizon
 /// (kSolidAngle, kCosine). From outside, the inside of a mantle is seen through its ends; what the mantle
 /// hides of itself counts as not lighting, whatever the density.

@@ -8,7 +8,7 @@
 
 namespace reemit {
 
-/// Disk, front side emitting: p4 of [SWZ96] sec. 3.3 (kArea and kVisibleArea), and by azimuth and elevation
+/// Disk, front side emitting: p4 of [SWZ96] sec. 3.3.2 (kArea and kVisibleArea), and by azimuth and elevation
 /// about its normal the part above the horizon (kSolidAngle, kCosine).
 class DiskSampler {
  public:

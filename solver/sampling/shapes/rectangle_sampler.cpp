@@ -14,7 +14,8 @@ RectangleSampler::RectangleSampler(const Vec3& corner, const Vec3& edge_u, const
   const double highest = low + std::max(0.0, n.dot(edge_u)) + std::max(0.0, n.dot(edge_v));
   if (!(highest > 0)) return;
   const double area2 = edge_u.squaredNorm() * edge_v.squaredNorm();
-  if (density == Density::kSolidAngle && set_up_solid_angle()) {
+  const double lowest = low + std::min(0.0, n.dot(edge_u)) + std::min(0.0, n.dot(edge_v));
+  if (density == Density::kSolidAngle && lowest >= 0 && set_up_solid_angle()) {
     lights_ = true;
     return;
   }
@@ -56,7 +57,7 @@ bool RectangleSampler::set_up_solid_angle() {
 }
 
 /// Signed solid angle between the planes u = 0 and that of `sine` = u / hypot(u, height). The two terms are
-/// the angles of [URE13] sec. 4 less a right angle each, in a form without trigonometry of their sum.
+/// the angles of [URE13] less a right angle each, in a form without trigonometry of their sum.
 double RectangleSampler::slab_angle(double sine) const {
   return std::asin(std::clamp(sine * b_high_, -1.0, 1.0)) - std::asin(std::clamp(sine * b_low_, -1.0, 1.0));
 }

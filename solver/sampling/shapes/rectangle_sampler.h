@@ -8,8 +8,8 @@
 namespace reemit {
 
 /// Rectangle, front side emitting: p5 (kArea), p6 (kSolidAngle, the map of [URE13]) and p7 (kCosine) of
-/// [SWZ96] sec. 3.4. kVisibleArea and kCosine, and kSolidAngle seen from so near its plane that the map loses
-/// its digits, are those of ConvexPolygonSampler.
+/// [SWZ96] sec. 3.3.3. kVisibleArea and kCosine, and kSolidAngle where the horizon cuts the rectangle or x is
+/// so near its plane that the map loses its digits, are those of ConvexPolygonSampler.
 class RectangleSampler {
  public:
   /// `edge_u` and `edge_v` leave `corner` at right angles; `front`: unit normal of the emitting side.

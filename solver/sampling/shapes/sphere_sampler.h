@@ -20,8 +20,8 @@ class SphereSampler {
   ShapePoint sample(double u0, double u1) const;
   double pdf_per_sr(const Vec3& point) const;
   std::array<double, 2> invert(const Vec3& point) const;
-  /// Closed form [sr]: [SWZ96] eq. 4 integrated; Howell's catalogue for spheres that the horizon cuts. pi
-  /// inside.
+  /// Closed form [sr]: pi (R/d)^2 cos(theta) above the horizon, that of ProjectedCap where it cuts the
+  /// sphere, pi inside.
   double irradiance() const;
 
  private:
