@@ -10,13 +10,14 @@
 #include <exception>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "solver/emit/area_luminaire.h"
 #include "solver/emit/selection.h"
-#include "solver/emit/triangle_light.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/warp.h"
 
@@ -40,16 +41,15 @@ class Numbers {
 
 /// A square panel or, without corners, a sphere small enough that its irradiance is that of its middle.
 struct Lamp {
-  std::array<TriangleLight, 2> halves;
+  std::optional<AreaLuminaire> panel;
   Vec3f middle{0, 0, 0};
-  float radius = 0;  // 0 for a panel.
+  float radius = 0;  // Of a sphere.
   float radiance = 1;
   LuminaireBounds bounds;
 
   double irradiance(const Vec3f& x, const Vec3f& n) const {
-    if (radius == 0)
-      return static_cast<double>(radiance) * static_cast<double>(unoccluded_irradiance(halves[0], x, n) +
-                                                                 unoccluded_irradiance(halves[1], x, n));
+    if (panel)
+      return static_cast<double>(radiance) * panel->expected_irradiance(x.cast<double>(), n.cast<double>());
     const Vec3f to = middle - x;
     const float distance2 = to.squaredNorm();
     return static_cast<double>(bounds.intensity * std::max(0.0F, n.dot(to)) /
@@ -86,8 +86,9 @@ std::vector<Lamp> random_lamps(std::size_t count, bool panels, bool clustered, s
     const std::array corners{Vec3f(lamp.middle - 0.5F * (u + v)), Vec3f(lamp.middle + 0.5F * (u - v)),
                              Vec3f(lamp.middle + 0.5F * (u + v)), Vec3f(lamp.middle - 0.5F * (u - v))};
     const float area = size * size;
-    lamp.halves[0] = {corners[0], corners[1], corners[2], normal, area / 2, 2 * area};
-    lamp.halves[1] = {corners[0], corners[2], corners[3], normal, area / 2, 2 * area};
+    std::vector<Vec3> exact;
+    for (const Vec3f& c : corners) exact.push_back(c.cast<double>());
+    lamp.panel.emplace(exact, normal.cast<double>(), 0.0);
     lamp.bounds = flat_bounds(corners, normal, lamp.radiance * area);
   }
   return lamps;

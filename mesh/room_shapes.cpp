@@ -79,6 +79,7 @@ RoomShapes separate_shapes(const Scene& room, bool exact_shapes, const MeshToler
   const std::vector<bool> faceted =
       exact_shapes ? find_pierced(room, all, tolerances) : std::vector<bool>(all.exact.size(), true);
   RoomShapes result;
+  result.all = !exact_shapes;
   for (std::size_t i = 0; i < all.exact.size(); ++i) {
     if (!faceted[i]) {
       result.exact.push_back(all.exact[i]);
@@ -88,7 +89,7 @@ RoomShapes separate_shapes(const Scene& room, bool exact_shapes, const MeshToler
     }
     if (!result.faceted) result.faceted = room;
     append_faces(all.exact[i], kFacetSegments, result.faceted->surfaces[all.surface[i].index()]);
-    if (exact_shapes) ++result.pierced;
+    ++result.replaced;
   }
   return result;
 }
@@ -111,10 +112,12 @@ void append_patches(const Scene& scene, const RoomShapes& shapes, BaseMesh& mesh
     areas.meshed += shape_area(shapes.exact[i]);
   }
   mesh.shapes = shapes.exact;
-  if (shapes.pierced > 0)
+  if (shapes.replaced > 0)
     report.warnings.push_back(fmt::format(
-        "{} round shape(s) that faces pass through were replaced by flat faces with {} sides to a circle",
-        shapes.pierced, kFacetSegments));
+        "{} round shape(s) were replaced by flat faces with {} sides to a circle, {}; they have up to 1.5 % "
+        "less area and, as luminaires, power",
+        shapes.replaced, kFacetSegments,
+        shapes.all ? "because this method needs flat zones" : "because other faces pass through them"));
 }
 
 }  // namespace reemit

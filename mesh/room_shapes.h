@@ -14,7 +14,8 @@ struct RoomShapes {
   std::vector<SurfaceId> surface;    ///< Of each.
   std::vector<std::uint32_t> index;  ///< Of each, in Surface::shapes.
   std::optional<Scene> faceted;      ///< The room with flat faces in place of the other shapes, if any.
-  std::size_t pierced = 0;           ///< Shapes that became faces because others pass through them.
+  std::size_t replaced = 0;          ///< Shapes that became faces.
+  bool all = false;                  ///< All of them had to.
 
   bool is_two_sided(const Scene& scene, std::size_t i) const {
     return scene.material_of(scene.surfaces[surface[i].index()]).two_sided;

@@ -197,6 +197,9 @@ FormFactors compute_form_factors(const ZoneMesh& mesh, const RayScene& rays,
                                  const std::function<void(double)>& progress,
                                  const std::atomic<bool>& interrupt) {
   refuse_too_many(mesh.zone_count());
+  if (mesh.flat_count() != mesh.triangle_count())
+    throw InputError("form factors", "the room has round zones, and form factors are those of flat ones",
+                     "Solve it with --method matrix, which puts flat faces in place of round shapes.");
   return FormFactorBuilder(mesh, rays, settings).build(progress, interrupt);
 }
 

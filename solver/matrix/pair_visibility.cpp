@@ -6,8 +6,8 @@
 #include <cmath>
 #include <span>
 
-#include "solver/emit/triangle_light.h"
 #include "solver/matrix/zone_points.h"
+#include "solver/sampling/shapes/polygon_sampler.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"
 
@@ -28,6 +28,18 @@ std::uint32_t ray_count(double wanted, std::uint32_t least, std::uint32_t most) 
   return std::bit_ceil(static_cast<std::uint32_t>(std::clamp(wanted, double{1} * least, double{1} * most)));
 }
 
+/// From this many times its longest edge on, points of a triangle are drawn by area: its solid angle gains
+/// nothing there.
+constexpr float kFarEdges = 2;
+
+struct FanTriangle {
+  Vec3f a, b, c;
+  float area = 0;
+  float longest_edge2 = 0;
+
+  Vec3f middle() const { return (a + b + c) / 3.0F; }
+};
+
 /// A facing part as a fan of triangles in the space of rays.
 class Fan {
  public:
@@ -40,11 +52,10 @@ class Fan {
       near_corner_[k] = p[k] + kCornerInset * (middle - p[k]);
     }
     for (std::size_t k = 2; k < part.count; ++k) {
-      TriangleLight& t = triangle_[count_++];
+      FanTriangle& t = triangle_[count_++];
       t.a = p[0];
       t.b = p[k - 1];
       t.c = p[k];
-      t.normal = zone.normal();
       t.area = 0.5F * (t.b - t.a).cross(t.c - t.a).norm();
       t.longest_edge2 =
           std::max({(t.b - t.a).squaredNorm(), (t.c - t.b).squaredNorm(), (t.a - t.c).squaredNorm()});
@@ -60,7 +71,7 @@ class Fan {
     return RayScene::lifted(point, zone_->normal(), zone_->triangle_middle());
   }
   /// Triangle chosen in proportion to its area; `u` is then uniform again.
-  const TriangleLight& pick(float& u) const {
+  const FanTriangle& pick(float& u) const {
     float left = u * area_;
     for (std::size_t k = 0; k + 1 < count_; ++k) {
       if (left < triangle_[k].area) {
@@ -69,21 +80,21 @@ class Fan {
       }
       left -= triangle_[k].area;
     }
-    const TriangleLight& last = triangle_[count_ - 1];
+    const FanTriangle& last = triangle_[count_ - 1];
     u = std::clamp(left / last.area, 0.0F, 0x1.fffffep-1F);
     return last;
   }
-  float probability(const TriangleLight& t) const { return t.area / area_; }
+  float probability(const FanTriangle& t) const { return t.area / area_; }
   /// Uniform point.
   Vec3f point(float u0, float u1) const {
-    const TriangleLight& t = pick(u0);
+    const FanTriangle& t = pick(u0);
     const auto [u, v] = sample_triangle(u0, u1);
     return (1 - u - v) * t.a + u * t.b + v * t.c;
   }
 
  private:
   const ZonePoints* zone_;
-  std::array<TriangleLight, ConvexPolygon::kMostCorners - 2> triangle_;
+  std::array<FanTriangle, ConvexPolygon::kMostCorners - 2> triangle_;
   std::array<Vec3f, ConvexPolygon::kMostCorners> near_corner_;
   std::size_t corners_ = 0;
   std::size_t count_ = 0;
@@ -106,12 +117,17 @@ WeightedRay look_in_solid_angle(const RayScene& rays, const Fan& from, const Fan
                                 const SobolSequence& numbers, std::uint32_t index) {
   const Vec3f x = from.point(numbers.sample(index, 0), numbers.sample(index, 1));
   float u = numbers.sample(index, 2);
-  const TriangleLight& target = to.pick(u);
-  TriangleLightSample sample;
-  if (!sample_triangle_light(target, x, from.zone().normal(), u, numbers.sample(index, 3), sample)) return {};
-  const Vec3f y = (1 - sample.u - sample.v) * target.a + sample.u * target.b + sample.v * target.c;
-  return {static_cast<double>(sample.factor / to.probability(target)),
-          rays.visible(from.lifted(x), to.lifted(y))};
+  const FanTriangle& target = to.pick(u);
+  const bool near = (target.middle() - x).squaredNorm() < kFarEdges * kFarEdges * target.longest_edge2;
+  const TriangleSampler sampler({target.a.cast<double>(), target.b.cast<double>(), target.c.cast<double>()},
+                                to.zone().normal().cast<double>(), x.cast<double>(),
+                                from.zone().normal().cast<double>(),
+                                near ? Density::kSolidAngle : Density::kArea);
+  if (!sampler.lights()) return {};
+  const ShapePoint y = sampler.sample(static_cast<double>(u), static_cast<double>(numbers.sample(index, 3)));
+  if (!(y.irradiance > 0)) return {};
+  return {y.irradiance / static_cast<double>(to.probability(target)),
+          rays.visible(from.lifted(x), to.lifted(y.point.cast<float>()))};
 }
 
 /// A ratio of weighted sums and the variance that follows from how independent parts of it differ.

@@ -236,6 +236,14 @@ void add_quality_options(CLI::App& render, RenderOptions& options) {
   add_integer_option(render, "--spp", options.still.spp, 1, 1048576,
                      "Camera rays per pixel, rounded up to whole passes")
       ->excludes(error);
+  using Chosen = std::optional<Selection>;
+  add_choice_option<Chosen>(render, "--light-selection", options.still.light_selection,
+                            {{"auto", Chosen()},
+                             {"constant", Chosen(Selection::kConstant)},
+                             {"linear", Chosen(Selection::kLinear)},
+                             {"spatial", Chosen(Selection::kSpatial)}},
+                            "How a shadow ray chooses among luminaires: all alike, by what each sends if\n"
+                            "nothing is in the way, or by a tree of them; auto: linear for few");
   add_seed_and_threads(render, options.still.seed, options.still.threads);
 
   render.option_defaults()->group("Picture");

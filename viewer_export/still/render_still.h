@@ -2,10 +2,12 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
+#include "solver/emit/selection.h"
 #include "solver/solution/solution.h"
 #include "solver/trace/ray_scene.h"
 #include "viewer_export/still/film.h"
@@ -29,6 +31,8 @@ struct StillSettings {
                     ///< [1, 1048576].
   int gathers = 4;  ///< Gather rays per camera ray [1, 1024]; kPath always follows one.
   int light_samples = 1;  ///< Shadow rays per camera ray [1, 1024].
+  /// How shadow rays choose their luminaire; unset: as DirectLight finds best.
+  std::optional<Selection> light_selection;
   /// Relative error to reach as a fraction [0, 1): rms over pixels of s/(L + floor), worst band, with s the
   /// standard error of radiance L. 0 = stop by spp; else spp is ignored.
   double error_target = 0;

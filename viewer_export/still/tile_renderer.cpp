@@ -29,7 +29,7 @@ TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const R
       camera_(&camera),
       settings_(&settings),
       field_(scene, solution, rays, settings.integrator == Integrator::kPath ? 1 : replicates),
-      direct_(scene, rays),
+      direct_(scene, rays, {settings.light_selection}),
       gather_(rays, field_, direct_, GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
       path_(rays, field_, direct_, settings.seed) {}
 

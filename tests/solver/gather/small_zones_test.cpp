@@ -73,15 +73,18 @@ TEST(SmallZones, keep_all_other_zones) {
   EXPECT_TRUE(after.audit.balanced());
 }
 
-/// Squared deviations from the truth in standard errors over all small zones, as chi-square.
+/// Squared deviations from the truth in standard errors as chi-square, over one small zone of each screen:
+/// the others of a screen see the same noise of the same walls and would count it again.
 double fit(double truth) {
   std::vector<test::Measured> measured;
   std::vector<test::Measured> expected;
   const VariableFurnace furnace = room_of_many_sizes();
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const Solution s = run(furnace, true, seed);
+    SurfaceId last;
     for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
-      if (!is_small(s, z)) continue;
+      if (!is_small(s, z) || s.mesh.zone_surface(ZoneId(z)) == last) continue;
+      last = s.mesh.zone_surface(ZoneId(z));
       const Estimate e = s.irradiance(ZoneId(z), 0);
       measured.push_back({e.mean, e.stderr_of_mean});
       expected.push_back({truth, 0});
