@@ -31,11 +31,7 @@ double rms_relative_error(const PointValues& values, const PointValues& referenc
 /// The same of the reference's own standard errors.
 double rms_relative_error(const PointValues& reference);
 
-/// sum(E - R)/sum(R), and its standard error: 0 within it, unless one of the two is biased.
-struct MeanDifference {
-  double share = 0;
-  double standard_error = 0;
-};
-MeanDifference mean_difference(const PointValues& values, const PointValues& reference);
+/// sum(E - R)/sum(R): 0 but for chance, unless one of the two is biased.
+double mean_difference(const PointValues& values, const PointValues& reference);
 
 }  // namespace reemit::bench

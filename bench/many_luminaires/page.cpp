@@ -76,7 +76,7 @@ std::string sphereflake_times(const Figures& figures) {
 
 std::string sphereflake_errors(const Figures& figures) {
   std::string text =
-      "| points | selection | error [%] | variance of a sample | mean off by [standard errors] | reference's "
+      "| points | selection | error [%] | variance of a sample | mean off by [%] | reference's "
       "own error "
       "[%] | error of constant over this at equal time |\n|---|---|---|---|---|---|---|\n";
   for (const std::string& subject : kSubjects)
@@ -88,7 +88,7 @@ std::string sphereflake_errors(const Figures& figures) {
         return cell(find(figures, "sphereflake", subject, name, quantity), factor);
       };
       text += fmt::format("| {} | {}, {} | {} | {} | {} | {} | {} |\n", subject, name,
-                          error->quantity.substr(9), cell(error, 100), at("variance"), at("mean off"),
+                          error->quantity.substr(9), cell(error, 100), at("variance"), at("mean off", 100),
                           cell(find(figures, "sphereflake", subject, "reference", "its own"), 100),
                           at("error of constant"));
     }

@@ -68,10 +68,11 @@ Deviation deviation(const DirectPicture& picture, const DirectPicture& reference
   return d;
 }
 
-/// Of both of an error's kinds the seeds' values, and of the time.
+/// Times and errors of one number of samples, one value per seed.
 struct LevelRuns {
   std::vector<double> seconds, rms, median, mean;
 };
+using LevelOfAll = std::array<LevelRuns, kSelections.size()>;
 
 class Panels {
  public:
@@ -102,6 +103,7 @@ class Panels {
         kCamera, effort_.width, effort_.height, settings_.threads, settings_.threads == 1 ? "" : "s",
         effort_.reference_samples, 100 * reference_error_.median, 100 * reference_error_.rms));
     for (const int samples : effort_.samples) measure(samples);
+    compare();
     write_side_by_side({shown_[0], shown_[1], shown_[2], reference_}, settings_.folder / "images" / kPicture);
   }
 
@@ -112,7 +114,7 @@ class Panels {
   }
 
   void measure(int samples) {
-    std::array<LevelRuns, kSelections.size()> runs;
+    LevelOfAll runs;
     for (int seed = 1; seed <= settings_.seeds; ++seed)
       for (std::size_t k = 0; k < kSelections.size(); ++k) {
         DirectPicture picture = render(kSelections[k], samples, static_cast<std::uint64_t>(seed));
@@ -123,33 +125,48 @@ class Panels {
         runs[k].mean.push_back(d.mean);
         if (samples == static_cast<int>(kShownSamples) && seed == 1) shown_[k] = std::move(picture);
       }
-    const LevelRuns& spatial = runs[static_cast<std::size_t>(Selection::kSpatial)];
     for (std::size_t k = 0; k < kSelections.size(); ++k) {
-      const Selection s = kSelections[k];
-      add(samples, s, "wall time [s]", spread_of(runs[k].seconds));
-      add(samples, s, "rms error", spread_of(runs[k].rms));
-      add(samples, s, "median error", spread_of(runs[k].median));
-      add(samples, s, "mean off by", spread_of(runs[k].mean));
-      if (s == Selection::kSpatial) continue;
-      add(samples, s, "rms error over that of spatial at equal time",
-          spread_of(at_equal_time(runs[k].rms, runs[k].seconds, spatial.rms, spatial.seconds)));
-      add(samples, s, "median error over that of spatial at equal time",
-          spread_of(at_equal_time(runs[k].median, runs[k].seconds, spatial.median, spatial.seconds)));
+      add(samples, kSelections[k], "wall time [s]", spread_of(runs[k].seconds));
+      add(samples, kSelections[k], "rms error", spread_of(runs[k].rms));
+      add(samples, kSelections[k], "median error", spread_of(runs[k].median));
+      add(samples, kSelections[k], "mean off by", spread_of(runs[k].mean));
     }
+    levels_.push_back(std::move(runs));
+  }
+
+  /// What spatial selection does better in the time that another one takes.
+  void compare() {
+    constexpr auto kSpatial = static_cast<std::size_t>(Selection::kSpatial);
+    for (std::size_t level = 0; level < levels_.size(); ++level)
+      for (const Selection s : {Selection::kConstant, Selection::kLinear}) {
+        const LevelRuns& other = levels_[level][static_cast<std::size_t>(s)];
+        std::vector<double> rms, median;
+        for (std::size_t seed = 0; seed < other.seconds.size(); ++seed) {
+          std::vector<double> seconds, spatial_rms, spatial_median;
+          for (const auto& runs : levels_) {
+            seconds.push_back(runs[kSpatial].seconds[seed]);
+            spatial_rms.push_back(runs[kSpatial].rms[seed]);
+            spatial_median.push_back(runs[kSpatial].median[seed]);
+          }
+          rms.push_back(other.rms[seed] / error_at(other.seconds[seed], seconds, spatial_rms));
+          median.push_back(other.median[seed] / error_at(other.seconds[seed], seconds, spatial_median));
+        }
+        add(effort_.samples[level], s, "rms error over that of spatial at equal time", spread_of(rms));
+        add(effort_.samples[level], s, "median error over that of spatial at equal time", spread_of(median));
+      }
+  }
+
+  /// Error at a time, straight in log-log between levels, and on beyond the first and last two. Pre: two
+  /// levels at least.
+  static double error_at(double time, const std::vector<double>& seconds, const std::vector<double>& error) {
+    std::size_t next = 1;
+    while (next + 1 < seconds.size() && seconds[next] < time) ++next;
+    const double share = std::log(time / seconds[next - 1]) / std::log(seconds[next] / seconds[next - 1]);
+    return error[next - 1] * std::pow(error[next] / error[next - 1], share);
   }
 
   static double without(double measured, double of_reference) {
     return std::sqrt(std::max(0.0, measured * measured - of_reference * of_reference));
-  }
-
-  /// Errors fall with the square root of time.
-  static std::vector<double> at_equal_time(const std::vector<double>& error, const std::vector<double>& time,
-                                           const std::vector<double>& other_error,
-                                           const std::vector<double>& other_time) {
-    std::vector<double> factors;
-    for (std::size_t i = 0; i < error.size(); ++i)
-      factors.push_back(error[i] / other_error[i] * std::sqrt(time[i] / other_time[i]));
-    return factors;
   }
 
   void add(int samples, Selection s, const std::string& quantity, const Spread& value) {
@@ -166,6 +183,7 @@ class Panels {
   DirectPicture reference_;
   Deviation reference_error_;
   std::array<DirectPicture, kSelections.size()> shown_;
+  std::vector<LevelOfAll> levels_;  // as Effort::samples
 };
 
 }  // namespace

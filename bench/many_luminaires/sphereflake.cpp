@@ -1,4 +1,5 @@
 // The room whose luminaires are 7,381 spheres against the same room with one of them.
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -20,6 +21,9 @@ namespace {
 
 constexpr const char* kPart = "sphereflake";
 constexpr const char* kCamera = "floor";
+/// Constant selection scatters so much more than linear that the same few points need this many times its
+/// samples.
+constexpr int kConstantAtFew = 64;
 
 struct Effort {
   int width = 96;  // of the picture whose pixels are the points
@@ -144,12 +148,15 @@ class Sphereflake {
 
   void measure_errors() {
     for (std::size_t i = 0; i < subjects_.size(); ++i)
-      errors_at(subjects_[i], Selection::kSpatial, effort_.samples, spatial_over_constant_[i]);
-    errors_at(few_, Selection::kLinear, effort_.linear_samples, linear_over_constant_);
+      errors_at(subjects_[i], Selection::kSpatial, {effort_.samples, effort_.samples},
+                spatial_over_constant_[i]);
+    errors_at(few_, Selection::kLinear, {kConstantAtFew * effort_.linear_samples, effort_.linear_samples},
+              linear_over_constant_);
   }
 
-  /// Errors of constant selection and of another one at the same points.
-  void errors_at(const Subject& subject, Selection other, int samples, double time_over_constant) {
+  /// Errors of constant selection and of another one at the same points, with so many samples at each.
+  void errors_at(const Subject& subject, Selection other, const std::array<int, 2>& samples_of,
+                 double time_over_constant) {
     const std::vector<float> weights = illuminance_weights(all_lamps_.scene());
     const PointValues reference =
         reference_values(light(Selection::kSpatial), subject.all_lamps, weights, effort_.reference_samples,
@@ -160,6 +167,7 @@ class Sphereflake {
     std::vector<std::vector<double>> variances(2);
     for (std::size_t k = 0; k < 2; ++k) {
       const Selection selection = k == 0 ? Selection::kConstant : other;
+      const int samples = samples_of[k];
       std::vector<double> errors;
       std::vector<double> biases;
       for (int seed = 1; seed <= settings_.seeds; ++seed) {
@@ -169,12 +177,11 @@ class Sphereflake {
         const double variance = samples * (measured * measured - own * own);
         variances[k].push_back(variance);
         errors.push_back(std::sqrt(std::max(0.0, variance / samples)));
-        const MeanDifference difference = mean_difference(values, reference);
-        biases.push_back(difference.share / difference.standard_error);
+        biases.push_back(mean_difference(values, reference));
       }
       add(subject.name, name_of(selection), fmt::format("error of {} samples", samples), spread_of(errors));
       add(subject.name, name_of(selection), "variance of a sample", spread_of(variances[k]));
-      add(subject.name, name_of(selection), "mean off by [standard errors]", spread_of(biases));
+      add(subject.name, name_of(selection), "mean off by", spread_of(biases));
     }
     for (std::size_t s = 0; s < variances[0].size(); ++s)
       factors.push_back(std::sqrt(variances[0][s] / (variances[1][s] * time_over_constant)));
