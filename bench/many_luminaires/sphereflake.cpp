@@ -21,9 +21,10 @@ namespace {
 
 constexpr const char* kPart = "sphereflake";
 constexpr const char* kCamera = "floor";
-/// Constant selection scatters so much more than linear that the same few points need this many times its
-/// samples.
-constexpr int kConstantAtFew = 64;
+/// Constant selection scatters so much more than the others that its error at the same points takes this many
+/// times their samples to measure; at few points even more.
+constexpr int kForConstant = 16;
+constexpr int kForConstantAtFew = 64;
 
 struct Effort {
   int width = 96;  // of the picture whose pixels are the points
@@ -148,9 +149,9 @@ class Sphereflake {
 
   void measure_errors() {
     for (std::size_t i = 0; i < subjects_.size(); ++i)
-      errors_at(subjects_[i], Selection::kSpatial, {effort_.samples, effort_.samples},
+      errors_at(subjects_[i], Selection::kSpatial, {kForConstant * effort_.samples, effort_.samples},
                 spatial_over_constant_[i]);
-    errors_at(few_, Selection::kLinear, {kConstantAtFew * effort_.linear_samples, effort_.linear_samples},
+    errors_at(few_, Selection::kLinear, {kForConstantAtFew * effort_.linear_samples, effort_.linear_samples},
               linear_over_constant_);
   }
 
