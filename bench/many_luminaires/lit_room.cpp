@@ -10,7 +10,7 @@ namespace reemit::bench {
 
 LitRoom::LitRoom(Scene scene) : scene_(std::move(scene)), mesh_(build_mesh(scene_)), rays_(mesh_.mesh) {}
 
-DirectLight LitRoom::light(Selection selection) const {
+DirectLight LitRoom::light(std::optional<Selection> selection) const {
   return {scene_, rays_, DirectLightSettings{.selection = selection}};
 }
 

@@ -21,7 +21,8 @@ class LitRoom {
 
   const Scene& scene() const { return scene_; }
   const RayScene& rays() const { return rays_; }
-  DirectLight light(Selection selection) const;
+  /// Unset: the selection that the program takes by default.
+  DirectLight light(std::optional<Selection> selection) const;
 
  private:
   Scene scene_;

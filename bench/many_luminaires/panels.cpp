@@ -33,7 +33,7 @@ struct Effort {
 
 Effort effort_of(const RunSettings& settings) {
   if (!settings.quick) return {};
-  return {.width = 240, .height = 160, .samples = {4, 16, kShownSamples}, .reference_samples = 512};
+  return {.width = 240, .height = 160, .samples = {4, 16, kShownSamples, 98}, .reference_samples = 512};
 }
 
 /// How far the reflected light of two pictures is apart, in luminance.

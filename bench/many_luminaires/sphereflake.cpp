@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -118,7 +119,7 @@ class Sphereflake {
   const DirectLight& light(Selection s) const { return lights_[static_cast<std::size_t>(s)]; }
 
   void measure_times() {
-    const DirectLight one = one_lamp_.light(Selection::kSpatial);
+    const DirectLight one = one_lamp_.light(std::nullopt);
     std::vector<Candidate> candidates;
     for (const Subject& s : subjects_) {
       candidates.push_back({&one, &s.one_lamp, effort_.samples_timed});
