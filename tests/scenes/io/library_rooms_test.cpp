@@ -36,7 +36,9 @@ TEST_P(LibraryRoom, ReadsWithoutWarnings) {
 
 TEST_P(LibraryRoom, CamerasStandInside) {
   const Scene scene = read_room(GetParam());
-  const Box box = bounds(scene);
+  Box box = bounds(scene);
+  if (std::string(GetParam()).starts_with("sphereflake"))  // Nothing is above the flake.
+    box.max.y() = std::numeric_limits<double>::infinity();
   for (const Camera& camera : scene.cameras) {
     if (camera.name == "published") continue;  // Looks into the Cornell box through its open front.
     EXPECT_TRUE((camera.eye.array() > box.min.array()).all() && (camera.eye.array() < box.max.array()).all())
