@@ -33,7 +33,7 @@ struct Effort {
 
 Effort effort_of(const RunSettings& settings) {
   if (!settings.quick) return {};
-  return {.width = 240, .height = 160, .samples = {4, 16, kShownSamples, 98}, .reference_samples = 512};
+  return {.width = 240, .height = 160, .samples = {4, 16, kShownSamples, 196}, .reference_samples = 512};
 }
 
 /// How far the reflected light of two pictures is apart, in luminance.
@@ -134,7 +134,7 @@ class Panels {
     levels_.push_back(std::move(runs));
   }
 
-  /// What spatial selection does better in the time that another one takes.
+  /// What spatial selection does better in the time that another one takes, where that lies between levels.
   void compare() {
     constexpr auto kSpatial = static_cast<std::size_t>(Selection::kSpatial);
     for (std::size_t level = 0; level < levels_.size(); ++level)
@@ -143,21 +143,23 @@ class Panels {
         std::vector<double> rms, median;
         for (std::size_t seed = 0; seed < other.seconds.size(); ++seed) {
           std::vector<double> seconds, spatial_rms, spatial_median;
-          for (const auto& runs : levels_) {
+          for (const LevelOfAll& runs : levels_) {
             seconds.push_back(runs[kSpatial].seconds[seed]);
             spatial_rms.push_back(runs[kSpatial].rms[seed]);
             spatial_median.push_back(runs[kSpatial].median[seed]);
           }
-          rms.push_back(other.rms[seed] / error_at(other.seconds[seed], seconds, spatial_rms));
-          median.push_back(other.median[seed] / error_at(other.seconds[seed], seconds, spatial_median));
+          const double time = other.seconds[seed];
+          if (time < seconds.front() || time > seconds.back()) continue;
+          rms.push_back(other.rms[seed] / error_at(time, seconds, spatial_rms));
+          median.push_back(other.median[seed] / error_at(time, seconds, spatial_median));
         }
+        if (rms.empty()) continue;
         add(effort_.samples[level], s, "rms error over that of spatial at equal time", spread_of(rms));
         add(effort_.samples[level], s, "median error over that of spatial at equal time", spread_of(median));
       }
   }
 
-  /// Error at a time, straight in log-log between levels, and on beyond the first and last two. Pre: two
-  /// levels at least.
+  /// Error at a time, straight in log-log between levels. Pre: the time lies between the first and the last.
   static double error_at(double time, const std::vector<double>& seconds, const std::vector<double>& error) {
     std::size_t next = 1;
     while (next + 1 < seconds.size() && seconds[next] < time) ++next;
