@@ -1,8 +1,9 @@
 #include "bench/many_luminaires/direct_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
+#include <functional>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

@@ -1,5 +1,6 @@
 // Time per sample over the number of luminaires.
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
