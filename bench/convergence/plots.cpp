@@ -1,24 +1,14 @@
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "bench/convergence/gnuplot.h"
 #include "bench/convergence/report.h"
 #include "bench/convergence/summary.h"
 
 namespace reemit::bench {
 namespace {
-
-/// Commands for a gnuplot of their own. Throws std::runtime_error when it does not start or ends with an
-/// error.
-void run_gnuplot(const std::string& commands) {
-  std::FILE* pipe = popen("gnuplot", "w");
-  if (pipe == nullptr) throw std::runtime_error("gnuplot does not start");
-  std::fputs(commands.c_str(), pipe);
-  if (pclose(pipe) != 0) throw std::runtime_error("gnuplot ended with an error");
-}
 
 /// Methods keep their colour and marker from room to room: the number of a style in plot.gp.
 int style_of(const std::string& method) {
@@ -60,7 +50,7 @@ std::string plot_name(const std::string& quantity, const std::string& room) {
 }
 
 bool draw_plots(const Table& table, const std::filesystem::path& folder) {
-  if (std::system("gnuplot --version > /dev/null 2>&1") != 0) return false;
+  if (!gnuplot_runs()) return false;
   std::filesystem::create_directories(folder / "images");
   struct Quantity {
     const char* name;
