@@ -2,138 +2,123 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
+#include "scenes/model/photometry.h"
+#include "solver/emit/luminaire_faces.h"
 #include "solver/shoot/emission.h"
 
 namespace reemit {
-namespace {
-
-double band_sum(const Spectrum& s) {
-  return s.sum();
-}
-
-}  // namespace
 
 LuminaireTable::LuminaireTable(const Scene& scene, const RayScene& rays)
     : rays_(&rays), bands_(scene.bands.count()) {
-  add_triangles(scene);
-  add_punctual(scene);
+  add_surfaces(scene);
+  add_lights(scene);
+  build_tree();
 }
 
-void LuminaireTable::add_emission(const Spectrum& emission, double power) {
+void LuminaireTable::add_emission(const Spectrum& emission) {
   for (std::size_t b = 0; b < bands_; ++b)
     emission_.push_back(static_cast<float>(emission[static_cast<Eigen::Index>(b)]));
-  brightness_.push_back(static_cast<float>(band_sum(emission)));
-  cumulative_power_.push_back((cumulative_power_.empty() ? 0.0 : cumulative_power_.back()) + power);
+  brightness_.push_back(static_cast<float>(emission.sum()));
 }
 
-void LuminaireTable::add_triangles(const Scene& scene) {
+void LuminaireTable::add_area(AreaLuminaire luminaire, const Material& material) {
+  areas_.push_back(std::move(luminaire));
+  add_emission(material.emitted_radiance);
+}
+
+void LuminaireTable::add_surfaces(const Scene& scene) {
   const ZoneMesh& mesh = rays_->mesh();
-  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
-    const TriangleId t(i);
-    const Material& material = scene.material_of(scene.surfaces[mesh.triangle(t).surface.index()]);
-    if (!material.emits() || !(mesh.triangle_area(t) > 0)) continue;
-    const double metres = rays_->metres_per_unit();
-    const double power = std::numbers::pi * mesh.triangle_area(t) * band_sum(material.emitted_radiance);
-    for (const bool front : {true, false}) {
-      if (!front && !(material.emits_both_sides && mesh.triangle(t).two_sided)) continue;
-      TriangleLight light;
-      light.a = rays_->corner(t, 0);
-      light.b = rays_->corner(t, 1);
-      light.c = rays_->corner(t, 2);
-      light.normal = front ? rays_->normal(t) : Vec3f(-rays_->normal(t));
-      light.area = static_cast<float>(mesh.triangle_area(t) / (metres * metres));
-      light.longest_edge2 = std::max({(light.b - light.a).squaredNorm(), (light.c - light.b).squaredNorm(),
-                                      (light.a - light.c).squaredNorm()});
-      triangles_.push_back({light, t, front});
-      add_emission(material.emitted_radiance, power);
-    }
+  const double metres = rays_->metres_per_unit();
+  const auto both = [](const Material& m, bool two_sided) { return m.emits_both_sides && two_sided; };
+  for (const LuminaireFace& face : luminaire_faces(scene, mesh)) {
+    const Material& material = scene.material_of(scene.surfaces[face.surface.index()]);
+    std::vector<Vec3> corners;
+    for (const Vec3& c : face.corners) corners.push_back((c - rays_->centre()) / metres);
+    add_area({corners, face.normal, material.emission_exponent}, material);
+    if (both(material, face.two_sided))
+      add_area({corners, -face.normal, material.emission_exponent}, material);
+  }
+  for (std::size_t s = 0; s < mesh.curved().size(); ++s) {
+    const TriangleId patch = mesh.first_patch(s);
+    const BaseTriangle& triangle = mesh.triangle(patch);
+    const Material& material = scene.material_of(scene.surfaces[triangle.surface.index()]);
+    if (!material.emits()) continue;
+    const CurvedShape& shape = rays_->patches(patch).shape();
+    add_area({shape, material.emission_exponent}, material);
+    if (both(material, triangle.two_sided)) add_area({flipped(shape), material.emission_exponent}, material);
   }
 }
 
-void LuminaireTable::add_punctual(const Scene& scene) {
+void LuminaireTable::add_lights(const Scene& scene) {
   for (const PunctualLight& light : scene.lights) {
-    const double power = band_sum(light_power(light, *rays_));
-    if (!(power > 0)) continue;
+    if (!(light_power(light, *rays_).sum() > 0)) continue;
     punctual_.push_back(make_punctual_emitter(light, *rays_));
-    add_emission(emission_of(light), power);
+    lights_.push_back(&light);
+    add_emission(emission_of(light));
   }
+}
+
+LuminaireBounds LuminaireTable::bounds_of_light(std::size_t i) const {
+  const PunctualEmitter& emitter = punctual_[i];
+  const float strength = brightness_[areas_.size() + i];
+  if (const auto* spot = std::get_if<SpotLight>(lights_[i])) {
+    const double cos_outer = std::max(0.0, std::cos(spot->outer_angle));
+    return spot_bounds(emitter.position, emitter.direction, static_cast<float>(cos_outer), strength);
+  }
+  if (const auto* measured = std::get_if<PhotometricLight>(lights_[i])) {
+    const double reach = 0.5 * measured->opening.size().norm() / rays_->metres_per_unit();
+    return sphere_bounds(emitter.position, static_cast<float>(reach),
+                         strength * static_cast<float>(measured->table->greatest_intensity()));
+  }
+  return sphere_bounds(emitter.position, 0, strength);
+}
+
+void LuminaireTable::build_tree() {
+  const double metres = rays_->metres_per_unit();
+  std::vector<LuminaireBounds> bounds;
+  const auto add = [&](const LuminaireBounds& b, std::size_t entry) {
+    bounds.push_back(b);
+    tree_entry_.push_back(static_cast<std::uint32_t>(entry));
+  };
+  for (std::size_t i = 0; i < areas_.size(); ++i)
+    add(areas_[i].bounds(static_cast<double>(brightness_[i]) * metres * metres), i);
+  for (std::size_t i = 0; i < punctual_.size(); ++i) {
+    const std::size_t entry = areas_.size() + i;
+    if (punctual_[i].kind == PunctualEmitter::Kind::kDirectional)
+      at_infinity_.push_back(static_cast<std::uint32_t>(entry));
+    else
+      add(bounds_of_light(i), entry);
+  }
+  tree_ = LightTree(bounds);
 }
 
 float LuminaireTable::unoccluded(std::size_t entry, const Vec3f& x, const Vec3f& n) const {
-  if (entry < triangles_.size()) return unoccluded_irradiance(triangles_[entry].light, x, n);
-  return punctual_[entry - triangles_.size()].unoccluded_irradiance(
-      x, n, static_cast<float>(rays_->metres_per_unit()));
+  if (entry < areas_.size())
+    return static_cast<float>(areas_[entry].expected_irradiance(x.cast<double>(), n.cast<double>()));
+  return punctual_[entry - areas_.size()].unoccluded_irradiance(x, n,
+                                                                static_cast<float>(rays_->metres_per_unit()));
 }
 
 bool LuminaireTable::sample(std::size_t entry, const Vec3f& x, const Vec3f& n, float u0, float u1,
                             LuminaireSample& result) const {
-  if (entry < triangles_.size()) {
-    const TriangleEntry& e = triangles_[entry];
-    TriangleLightSample point;
-    if (!sample_triangle_light(e.light, x, n, u0, u1, point)) return false;
-    result.factor = point.factor;
+  if (entry < areas_.size()) {
+    AreaSample point;
+    if (!areas_[entry].sample(x.cast<double>(), n.cast<double>(), static_cast<double>(u0),
+                              static_cast<double>(u1), point))
+      return false;
+    result.factor = static_cast<float>(point.factor);
     result.at_infinity = false;
-    result.target = rays_->ray_origin(e.triangle, point.u, point.v, e.front);
+    result.target = (point.point + static_cast<double>(RayScene::kLift) * point.normal).cast<float>();
     return true;
   }
-  const PunctualEmitter& e = punctual_[entry - triangles_.size()];
+  const PunctualEmitter& e = punctual_[entry - areas_.size()];
   const PunctualSample point = e.sample(x, n, u0, u1, static_cast<float>(rays_->metres_per_unit()));
   result.factor = point.factor;
   result.at_infinity = point.at_infinity;
   result.target = point.target;
   return result.factor > 0;
-}
-
-std::size_t LuminaireTable::entry_at_power(float u, float& share) const {
-  const double total = cumulative_power_.back();
-  const auto found =
-      std::upper_bound(cumulative_power_.begin(), cumulative_power_.end(), static_cast<double>(u) * total);
-  const auto entry = std::min(static_cast<std::size_t>(found - cumulative_power_.begin()), size() - 1);
-  const double before = entry > 0 ? cumulative_power_[entry - 1] : 0.0;
-  share = static_cast<float>((cumulative_power_[entry] - before) / total);
-  return entry;
-}
-
-LuminaireChoice::LuminaireChoice(const LuminaireTable& table, const Vec3f& x, const Vec3f& n, float u) {
-  const bool all = table.size() <= kMost;
-  const std::size_t tried = all ? table.size() : kMost;
-  float total = 0;
-  for (std::size_t i = 0; i < tried; ++i) {
-    std::size_t entry = i;
-    float draw_weight = 1;
-    if (!all) {
-      constexpr auto kDraws = static_cast<float>(kMost);
-      float share = 0;
-      entry = table.entry_at_power((static_cast<float>(i) + u) / kDraws, share);
-      if (!(share > 0)) continue;
-      draw_weight = 1 / (kDraws * share);
-    }
-    const float weight = draw_weight * table.brightness(entry) * table.unoccluded(entry, x, n);
-    if (!(weight > 0) || !std::isfinite(weight)) continue;
-    entry_[count_] = static_cast<std::uint32_t>(entry);
-    draw_weight_[count_] = draw_weight;
-    total += weight;
-    cumulative_[count_++] = weight;
-  }
-  const float even = kEvenShare / static_cast<float>(std::max<std::size_t>(count_, 1));
-  float sum = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    sum += (1 - kEvenShare) * cumulative_[i] / total + even;
-    cumulative_[i] = sum;
-  }
-  if (count_ > 0) cumulative_[count_ - 1] = 1;
-}
-
-std::size_t LuminaireChoice::pick(float& u, float& inverse_probability) const {
-  std::size_t i = 0;
-  while (i + 1 < count_ && u >= cumulative_[i]) ++i;
-  const float low = i > 0 ? cumulative_[i - 1] : 0.0F;
-  const float probability = cumulative_[i] - low;
-  u = std::clamp((u - low) / probability, 0.0F, 0x1.fffffep-1F);
-  inverse_probability = draw_weight_[i] / probability;
-  return entry_[i];
 }
 
 }  // namespace reemit

@@ -2,15 +2,25 @@
 
 namespace reemit {
 
-DirectLight::DirectLight(const Scene& scene, const RayScene& rays) : rays_(&rays), table_(scene, rays) {}
+DirectLight::DirectLight(const Scene& scene, const RayScene& rays, const DirectLightSettings& settings)
+    : rays_(&rays),
+      table_(scene, rays),
+      selection_(settings.selection.value_or(LuminaireChoice::default_for(table_.size()))) {}
 
-const float* DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
+std::size_t DirectLight::luminaires_weighed() const {
+  // A walk down the tree costs about as much as weighing two luminaires.
+  if (selection_ == Selection::kSpatial) return 3 * LuminaireChoice::kCandidates;
+  return selection_ == Selection::kConstant ? 0 : table_.size();
+}
+
+const float* DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin,
                                    const std::array<float, kDimensions>& u, float& factor) const {
-  if (choice.empty()) return nullptr;
-  // u[0] chooses and is then used again; u[2] has placed the candidates where there are many luminaires.
+  // u[0] chooses and is then used again; u[2] places the candidates where there are many luminaires.
+  const LuminaireChoice choice(table_, selection_, origin, x.normal, u[2]);
   float u_choice = u[0];
   float inverse_probability = 0;
-  const std::size_t entry = choice.pick(u_choice, inverse_probability);
+  std::size_t entry = 0;
+  if (!choice.pick(u_choice, entry, inverse_probability)) return nullptr;
   LuminaireSample sample;
   if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return nullptr;
   const Vec3f towards = sample.at_infinity ? sample.target : Vec3f(sample.target - origin);
@@ -26,9 +36,8 @@ void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDim
                              const float* weight, float* sum) const {
   if (empty()) return;
   const Vec3f origin = rays_->ray_origin(x.triangle, x.u, x.v, x.front);
-  const LuminaireChoice choice(table_, origin, x.normal, u[2]);
   float factor = 0;
-  const float* emission = estimate(x, origin, choice, u, factor);
+  const float* emission = estimate(x, origin, u, factor);
   if (emission == nullptr) return;
   for (std::size_t b = 0; b < band_count(); ++b) sum[b] += weight[b] * factor * emission[b];
 }
@@ -41,9 +50,8 @@ void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequen
     const std::uint32_t index = first + static_cast<std::uint32_t>(i);
     const std::array<float, kDimensions> u{sequence.sample(index, 0), sequence.sample(index, 1),
                                            sequence.sample(index, 2)};
-    const LuminaireChoice choice(table_, origin, x.normal, u[2]);
     float factor = 0;
-    const float* emission = estimate(x, origin, choice, u, factor);
+    const float* emission = estimate(x, origin, u, factor);
     if (emission == nullptr) continue;
     for (std::size_t b = 0; b < band_count(); ++b) {
       const double e = static_cast<double>(factor) * static_cast<double>(emission[b]);

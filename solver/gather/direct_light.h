@@ -1,16 +1,22 @@
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "scenes/model/scene.h"
+#include "solver/emit/luminaire_choice.h"
 #include "solver/emit/luminaire_table.h"
 #include "solver/gather/surface_point.h"
 #include "solver/sampling/sobol.h"
 #include "solver/trace/ray_scene.h"
 
 namespace reemit {
+
+struct DirectLightSettings {
+  /// How one luminaire is chosen among many; unset: LuminaireChoice::default_for.
+  std::optional<Selection> selection;
+};
 
 /// Irradiance straight from the luminaires at a point, by shadow rays to sampled luminaire points [SWZ96].
 /// Const members may be called from any thread.
@@ -19,12 +25,13 @@ class DirectLight {
   static constexpr int kDimensions =
       3;  ///< Uniform numbers that one sample takes; the first two matter most.
 
-  DirectLight(const Scene& scene, const RayScene& rays);
+  DirectLight(const Scene& scene, const RayScene& rays, const DirectLightSettings& settings = {});
 
   std::size_t band_count() const { return table_.band_count(); }
   bool empty() const { return table_.empty(); }
-  /// Luminaires that one sample weighs against each other.
-  std::size_t luminaires_weighed() const { return std::min(table_.size(), LuminaireChoice::kMost); }
+  /// Luminaires that one sample weighs against each other, as a measure of its cost.
+  std::size_t luminaires_weighed() const;
+  Selection selection() const { return selection_; }
 
   /// One sample: adds weight[b] E_b to sum[b], E_b an unbiased estimate of the irradiance [W/m2]. Exactly
   /// nothing is added where no luminaire is visible.
@@ -38,11 +45,12 @@ class DirectLight {
 
  private:
   /// Estimates the irradiance as factor * emission; null if nothing arrives.
-  const float* estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
-                        const std::array<float, kDimensions>& u, float& factor) const;
+  const float* estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u,
+                        float& factor) const;
 
   const RayScene* rays_;
   LuminaireTable table_;
+  Selection selection_;
 };
 
 }  // namespace reemit

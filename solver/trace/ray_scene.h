@@ -50,6 +50,7 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
 
   double metres_per_unit() const { return metres_per_unit_; }
+  const Vec3& centre() const { return centre_; }  ///< The origin of the normalised space [m].
   Vec3f normalised(const Vec3& point) const { return ((point - centre_) / metres_per_unit_).cast<float>(); }
   Vec3 in_room(const Vec3f& point) const { return point.cast<double>() * metres_per_unit_ + centre_; }
 
