@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -81,11 +83,11 @@ double spot_solid_angle(double inner, double outer) {
   return 2 * pi * (1 - a + (a - b) / 3);
 }
 
-PhotometricLight measured_light(const LuminousOpening& o) {
+PhotometricLight measured_light(std::shared_ptr<const IntensityTable> table, const LuminousOpening& o) {
   PhotometricLight l;
   l.position = Vec3(0.1, -0.2, 0.3);
   l.orientation = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
-  l.table = test::lobed_table();
+  l.table = std::move(table);
   l.intensity_per_candela = red_green_blue(0.01);
   l.opening = o;
   return l;
@@ -103,33 +105,39 @@ std::vector<Kind> kinds() {
   const double height = (top - base).norm();
   const double slant = std::hypot(height, 0.2);
   using Opening = LuminousOpening::Shape;
-  const double flux = 0.01 * test::lobed_table()->total_flux();
+  const auto planes = test::lobed_table();
+  const auto axial = test::lambertian_table();
+  const Spectrum of_planes = red_green_blue(0.01 * planes->total_flux());
+  const Spectrum of_axial = red_green_blue(0.01 * axial->total_flux());
   const double rectangle_area = std::hypot(0.9, 0.3) * 0.6;
-  return {polygon_kind("rectangle", rectangle, {{0, 1, 2, 3}, {}, {}, 0}, rectangle_area),
-          polygon_kind("rectangle, cos^4", rectangle, {{0, 1, 2, 3}, {}, {}, 0}, rectangle_area, 4),
-          polygon_kind("triangle", triangle, {{0, 1, 2}, {}, {}, 0},
-                       0.5 * (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).norm()),
-          polygon_kind("polygon with a notch and a hole", notched, {{0, 1, 2, 3, 4}, {{5, 6, 7, 8}}, {}, 0},
-                       0.8 - 0.25 - 0.04),
-          shape_kind("disk", {Disk{base, tilted, 0.5, 0}}, pi * 0.25),
-          shape_kind("disk, cos^20", {Disk{base, tilted, 0.5, 0}}, pi * 0.25, 20),
-          shape_kind("disk of two sides", {Disk{base, tilted, 0.5, 0}}, 2 * pi * 0.25, 0, true),
-          shape_kind("ring", {Disk{base, tilted, 0.5, 0.2}}, pi * 0.21),
-          shape_kind("sphere", {Sphere{base, 0.4, false}}, 4 * pi * 0.16),
-          shape_kind("sphere, cos^2", {Sphere{base, 0.4, false}}, 4 * pi * 0.16, 2),
-          shape_kind("cylinder", {Cylinder{base, top, 0.3, false}}, 2 * pi * 0.3 * height),
-          shape_kind("cylinder with ends",
-                     {Cylinder{base, top, 0.3, false}, Disk{base, -axis, 0.3, 0}, Disk{top, axis, 0.3, 0}},
-                     2 * pi * 0.3 * (height + 0.3)),
-          shape_kind("cone", {Cone{base, top, 0.3, 0.1, false}}, pi * 0.4 * slant),
-          light_kind("point", PointLight{"p", base, red_green_blue(2)}, red_green_blue(8 * pi)),
-          light_kind("spot", SpotLight{"s", base, tilted, red_green_blue(3), 0.3, 0.9},
-                     red_green_blue(3 * spot_solid_angle(0.3, 0.9))),
-          light_kind("measured, point", measured_light({}), red_green_blue(flux)),
-          light_kind("measured, box", measured_light(test::opening(Opening::kBox, 1.2, 0.6, 0)),
-                     red_green_blue(flux)),
-          light_kind("measured, cylinder", measured_light(test::opening(Opening::kCylinder, 0.5, 0.5, 0.2)),
-                     red_green_blue(flux))};
+  return {
+      polygon_kind("rectangle", rectangle, {{0, 1, 2, 3}, {}, {}, 0}, rectangle_area),
+      polygon_kind("rectangle, cos^4", rectangle, {{0, 1, 2, 3}, {}, {}, 0}, rectangle_area, 4),
+      polygon_kind("triangle", triangle, {{0, 1, 2}, {}, {}, 0},
+                   0.5 * (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).norm()),
+      polygon_kind("polygon with a notch and a hole", notched, {{0, 1, 2, 3, 4}, {{5, 6, 7, 8}}, {}, 0},
+                   0.8 - 0.25 - 0.04),
+      shape_kind("disk", {Disk{base, tilted, 0.5, 0}}, pi * 0.25),
+      shape_kind("disk, cos^20", {Disk{base, tilted, 0.5, 0}}, pi * 0.25, 20),
+      shape_kind("disk of two sides", {Disk{base, tilted, 0.5, 0}}, 2 * pi * 0.25, 0, true),
+      shape_kind("ring", {Disk{base, tilted, 0.5, 0.2}}, pi * 0.21),
+      shape_kind("sphere", {Sphere{base, 0.4, false}}, 4 * pi * 0.16),
+      shape_kind("sphere, cos^2", {Sphere{base, 0.4, false}}, 4 * pi * 0.16, 2),
+      shape_kind("cylinder", {Cylinder{base, top, 0.3, false}}, 2 * pi * 0.3 * height),
+      shape_kind("cylinder with ends",
+                 {Cylinder{base, top, 0.3, false}, Disk{base, -axis, 0.3, 0}, Disk{top, axis, 0.3, 0}},
+                 2 * pi * 0.3 * (height + 0.3)),
+      shape_kind("cone", {Cone{base, top, 0.3, 0.1, false}}, pi * 0.4 * slant),
+      light_kind("point", PointLight{"p", base, red_green_blue(2)}, red_green_blue(8 * pi)),
+      light_kind("spot", SpotLight{"s", base, tilted, red_green_blue(3), 0.3, 0.9},
+                 red_green_blue(3 * spot_solid_angle(0.3, 0.9))),
+      light_kind("planes, point", measured_light(planes, {}), of_planes),
+      light_kind("planes, box", measured_light(planes, test::opening(Opening::kBox, 1.2, 0.6, 0)), of_planes),
+      light_kind("planes, cylinder", measured_light(planes, test::opening(Opening::kCylinder, 0.5, 0.5, 0.2)),
+                 of_planes),
+      light_kind("axial, point", measured_light(axial, {}), of_axial),
+      light_kind("axial, disk", measured_light(axial, test::opening(Opening::kCylinder, 0.5, 0.5, 0)),
+                 of_axial)};
 }
 
 /// The room of one kind; its first shape is the black sphere.
