@@ -72,7 +72,10 @@ ExitCode run_solve(const SolveOptions& options) {
   const Scene scene = read_scene(options.room, options.read);
   if (!options.style.quiet) print_warnings(scene.warnings);
   MeshSettings mesh_settings = options.mesh;
-  if (matrix) mesh_settings.default_zone_count = kMatrixZoneCount;
+  if (matrix) {
+    mesh_settings.default_zone_count = kMatrixZoneCount;
+    mesh_settings.exact_shapes = false;  // form factors are those of flat zones
+  }
   MeshResult meshed = build_mesh(scene, mesh_settings);
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
 
