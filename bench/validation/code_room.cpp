@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "mesh/room_shapes.h"
+
 namespace reemit::validation {
 
 CodeRoom::CodeRoom(BandSet bands) {
@@ -25,22 +27,28 @@ MaterialId CodeRoom::paint(double reflectance, double exitance) {
                Spectrum(Spectrum::Constant(bands, exitance)));
 }
 
-SurfaceId CodeRoom::add(const std::string& name, MaterialId material, const std::vector<Polygon>& polygons) {
+SurfaceId CodeRoom::add(const std::string& name, MaterialId material, const Body& body) {
   Surface& s = scene_.surfaces.emplace_back();
   s.name = name;
   s.material = material;
-  for (const Polygon& p : polygons) {
+  const SurfaceId id(scene_.surfaces.size() - 1);
+  if (const auto* shape = std::get_if<CurvedShape>(&body)) {
+    s.shapes.push_back(*shape);
+    return id;
+  }
+  for (const Polygon& p : std::get<std::vector<Polygon>>(body)) {
     Face& face = s.faces.emplace_back();
     for (const Vec3& corner : p) {
       face.outer.push_back(static_cast<std::uint32_t>(s.positions.size()));
       s.positions.push_back(corner);
     }
   }
-  return SurfaceId(scene_.surfaces.size() - 1);
+  return id;
 }
 
 MeshResult CodeRoom::exact_zones(std::uint32_t divisions) const {
   BaseMesh base;
+  RoomShapes shapes;
   for (std::size_t s = 0; s < scene_.surfaces.size(); ++s) {
     const Surface& surface = scene_.surfaces[s];
     const auto first = static_cast<std::uint32_t>(base.vertices.size());
@@ -56,8 +64,18 @@ MeshResult CodeRoom::exact_zones(std::uint32_t divisions) const {
         t.two_sided = scene_.material_of(surface).two_sided;
       }
     }
+    for (std::size_t i = 0; i < surface.shapes.size(); ++i) {
+      shapes.exact.push_back(surface.shapes[i]);
+      shapes.surface.emplace_back(s);
+      shapes.index.push_back(static_cast<std::uint32_t>(i));
+    }
   }
-  return {ZoneMesh(std::move(base)), MeshReport{}};
+  MeshReport report;
+  report.surfaces.resize(scene_.surfaces.size());
+  append_patches(scene_, shapes, base, report);
+  for (BaseTriangle& t : base.triangles)
+    if (t.is_curved()) t.divisions = divisions;
+  return {ZoneMesh(std::move(base)), std::move(report)};
 }
 
 MeshResult CodeRoom::meshed(double zone_area) const {

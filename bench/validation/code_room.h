@@ -17,8 +17,8 @@ class CodeRoom {
   MaterialId paint(const Spectrum& reflectance, const Spectrum& exitance);
   MaterialId paint(double reflectance, double exitance = 0);
 
-  /// Adds a surface of convex polygons.
-  SurfaceId add(const std::string& name, MaterialId material, const std::vector<Polygon>& polygons);
+  /// Adds a surface of convex polygons or of one round shape.
+  SurfaceId add(const std::string& name, MaterialId material, const Body& body);
   SurfaceId add(const std::string& name, MaterialId material, const Polygon& polygon) {
     return add(name, material, std::vector<Polygon>{polygon});
   }
@@ -26,8 +26,8 @@ class CodeRoom {
   Scene& scene() { return scene_; }
   const Scene& scene() const { return scene_; }
 
-  /// Every polygon as a fan of triangles around its first corner, each of divisions x divisions zones: no
-  /// repair, no splitting, so that zones are exactly what a reference means.
+  /// Every polygon as a fan of triangles around its first corner, each of divisions x divisions zones, as are
+  /// the patches of round shapes: no repair, no splitting, so that zones are exactly what a reference means.
   MeshResult exact_zones(std::uint32_t divisions = 1) const;
   /// As the program meshes a room, with zones of at most `zone_area` [m2].
   MeshResult meshed(double zone_area) const;

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 
 #include "bench/validation/code_room.h"
@@ -119,20 +120,19 @@ void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vec
   }
 }
 
-/// One facet of a sphere of triangles emits; the mean over the sphere follows from its area, which is that of
-/// the round sphere.
+/// A lamp off the middle of a sphere: after one reflection the light is the same everywhere, wherever its
+/// first light falls.
 void add_integrating_sphere(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
   const double rho = c.parameters.at("rho");
   const double flux = c.parameters.at("flux");
-  std::vector<Polygon> triangles = sphere({0, 0, 0}, c.parameters.at("radius"), 3, true);
-  const Polygon lamp = triangles.back();
-  triangles.pop_back();
+  const double radius = c.parameters.at("radius");
   CodeRoom room;
-  room.add("sphere", room.paint(rho), triangles);
-  room.add("lamp", room.paint(rho, flux / total_area({lamp})), lamp);
+  room.add("sphere", room.paint(rho), Sphere{{0, 0, 0}, radius, true});
+  room.scene().lights.push_back(PointLight{"lamp", radius * Vec3(0.5, 0.2, -0.3),
+                                           Spectrum::Constant(1, flux / (4 * std::numbers::pi))});
   for (const SolveMethod method : kMethods) {
     const double packets = packets_for(method, rho, effort);
-    const SolvedRoom solved(room.scene(), room.exact_zones(), method, packets, c.name);
+    const SolvedRoom solved(room.scene(), room.exact_zones(4), method, packets, c.name);
     const std::vector<SurfaceId> all = solved.all_surfaces();
     const double area = solved.area(all);
     const Estimates total = solved.mean(all);
@@ -170,16 +170,14 @@ void add_energy(const ReferenceCase& c, const Effort& effort, std::vector<Valida
   }
 }
 
-/// Concentric spheres of triangles: their areas are those of the round ones, so the factors between the
-/// whole spheres are exact; how unevenly triangles see each other changes means in second order only.
+/// Concentric spheres: every zone of one sees as much of the other.
 void add_concentric_spheres(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
-  constexpr double kBound = 1e-5;
   const auto& p = c.parameters;
   const std::array<double, 2> rho{p.at("rho1"), p.at("rho2")};
   const std::array<double, 2> emission{p.at("E1"), p.at("E2")};
   CodeRoom room;
-  room.add("1", room.paint(rho[0], emission[0]), sphere({0, 0, 0}, p.at("R1"), 3, false));
-  room.add("2", room.paint(rho[1], emission[1]), sphere({0, 0, 0}, p.at("R2"), 3, true));
+  room.add("1", room.paint(rho[0], emission[0]), Sphere{{0, 0, 0}, p.at("R1"), false});
+  room.add("2", room.paint(rho[1], emission[1]), Sphere{{0, 0, 0}, p.at("R2"), true});
   const auto rows_of = [&](const std::string& method, const std::array<Estimates, 2>& h, double bound) {
     add_rows(
         c, method, bound,
@@ -190,10 +188,10 @@ void add_concentric_spheres(const ReferenceCase& c, const Effort& effort, std::v
         rows);
   };
   for (const SolveMethod method : kMethods) {
-    const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kRays * 0.3, c.name);
+    const SolvedRoom solved(room.scene(), room.exact_zones(4), method, effort.work * kRays * 0.3, c.name);
     const SurfaceId inner = solved.surface("1");
     const SurfaceId outer = solved.surface("2");
-    rows_of(to_string(method), {solved.mean(inner), solved.mean(outer)}, kBound);
+    rows_of(to_string(method), {solved.mean(inner), solved.mean(outer)}, kSolveBound);
     if (method != SolveMethod::kShooting) continue;
     const PointGather gather(solved, seed_of(c.name));
     constexpr GatherEffort kOverSphere{2048, 8192};

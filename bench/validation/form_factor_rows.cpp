@@ -14,13 +14,11 @@ using nlohmann::json;
 constexpr double kPi = std::numbers::pi;
 /// Standard error aimed at, per value.
 constexpr double kTarget = 1.5e-3;
-/// Sides of circles: areas and perimeters are kept, what remains is of the order of (pi/sides)^2.
-constexpr int kSides = 512;
-constexpr double kRoundBound = 3e-5;
-constexpr int kSphereSubdivisions = 5;
+/// Bound of what single precision does to factors, relative.
+constexpr double kBound = 1e-6;
 
 /// Surfaces by name; the one called `emitter` shines, all are black.
-using Shapes = std::vector<std::pair<std::string, std::vector<Polygon>>>;
+using Shapes = std::vector<std::pair<std::string, Body>>;
 
 /// Packets for the standard error aimed at: hits are binomial at worst.
 double packets_for(double factor, const Effort& effort) {
@@ -47,7 +45,7 @@ class Count {
     CodeRoom room;
     const MaterialId black = room.paint(0);
     const MaterialId lamp = room.paint(0, 1);
-    for (const auto& [name, polygons] : shapes) room.add(name, name == emitter ? lamp : black, polygons);
+    for (const auto& [name, body] : shapes) room.add(name, name == emitter ? lamp : black, body);
     return room;
   }
 
@@ -64,7 +62,7 @@ struct FactorValue {
 
 /// Rows of values of one geometry, by both methods; each emitter is run once per method.
 void add_factor_rows(const ReferenceCase& c, const Shapes& shapes, const std::vector<FactorValue>& values,
-                     double bound, const Effort& effort, std::vector<ValidationRow>& rows) {
+                     const Effort& effort, std::vector<ValidationRow>& rows) {
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
     std::map<std::string, double> smallest;  // factor by emitter
     for (const FactorValue& v : values) {
@@ -75,9 +73,13 @@ void add_factor_rows(const ReferenceCase& c, const Shapes& shapes, const std::ve
       const Count count(shapes, from, packets_for(factor, effort), method, c.name);
       for (const FactorValue& v : values)
         if (v.from == from)
-          rows.push_back(make_row(c, *v.value, to_string(method), count.factor_to(v.to), bound));
+          rows.push_back(make_row(c, *v.value, to_string(method), count.factor_to(v.to), kBound));
     }
   }
+}
+
+Body one(const Polygon& polygon) {
+  return std::vector<Polygon>{polygon};
 }
 
 Polygon level_rectangle(const json& rect, double z, bool up) {
@@ -87,25 +89,21 @@ Polygon level_rectangle(const json& rect, double z, bool up) {
 Shapes shapes_of(const ReferenceCase& c) {
   const json& p = c.parameters;
   if (c.kind == "vf_parallel_rects")
-    return {{"1", {level_rectangle(p.at("rect1"), 0, true)}},
-            {"2", {level_rectangle(p.at("rect2"), p.at("z"), false)}}};
+    return {{"1", one(level_rectangle(p.at("rect1"), 0, true))},
+            {"2", one(level_rectangle(p.at("rect2"), p.at("z"), false))}};
   if (c.kind == "vf_perp_rects") {
     // Rectangle 1 lies in z = 0 with [distance from the edge, place along it], rectangle 2 in x = 0.
     const json& r = p.at("rect2");
-    return {{"1", {level_rectangle(p.at("rect1"), 0, true)}},
-            {"2", {axis_rectangle(0, 0, r[2], r[3], r[0], r[1], true)}}};
+    return {{"1", one(level_rectangle(p.at("rect1"), 0, true))},
+            {"2", one(axis_rectangle(0, 0, r[2], r[3], r[0], r[1], true))}};
   }
   if (c.kind == "vf_coaxial_disks")
-    return {{"1", disk({0, 0, 0}, Vec3::UnitZ(), p.at("r1"), kSides)},
-            {"2", disk({0, 0, p.at("h")}, -Vec3::UnitZ(), p.at("r2"), kSides)}};
+    return {{"1", Disk{{0, 0, 0}, {0, 0, 1}, p.at("r1"), 0}},
+            {"2", Disk{{0, 0, p.at("h")}, {0, 0, -1}, p.at("r2"), 0}}};
   if (c.kind == "vf_sphere_disk")
-    return {{"sphere", sphere({0, 0, 0}, p.at("r_sphere"), kSphereSubdivisions, false)},
-            {"disk", disk({0, 0, p.at("h")}, -Vec3::UnitZ(), p.at("r_disk"), kSides)}};
-  const double r = p.at("r");
-  const double h = p.at("h");
-  return {{"base", cylinder_cap({0, 0, 0}, Vec3::UnitZ(), r, kSides)},
-          {"top", cylinder_cap({0, 0, h}, -Vec3::UnitZ(), r, kSides)},
-          {"lateral", cylinder_side({0, 0, 0}, {0, 0, h}, r, kSides, true)}};
+    return {{"sphere", Sphere{{0, 0, 0}, p.at("r_sphere"), false}},
+            {"disk", Disk{{0, 0, p.at("h")}, {0, 0, -1}, p.at("r_disk"), 0}}};
+  return closed_cylinder(p.at("r"), p.at("h"));
 }
 
 /// Quantities are "F12", "F_base_top" or "F_sphere_to_disk".
@@ -116,6 +114,13 @@ FactorValue named_factor(const ReferenceValue& v) {
   return {&v, names.substr(0, cut), names.substr(names.rfind('_') + 1)};
 }
 
+Shapes l_shape(double x_arm, double y_arm, double height) {
+  Shapes shapes;
+  for (auto& [name, polygons] : l_room(x_arm, y_arm, height, 1))
+    shapes.emplace_back(name, std::move(polygons));
+  return shapes;
+}
+
 void add_l_room_factors(const std::vector<ReferenceCase>& cases, const Effort& effort,
                         std::vector<ValidationRow>& rows) {
   const ReferenceCase* whole = nullptr;
@@ -124,20 +129,20 @@ void add_l_room_factors(const std::vector<ReferenceCase>& cases, const Effort& e
     if (c.kind != "vf_obstructed") continue;
     const json& p = c.parameters;
     if (p.contains("L1")) {
-      add_factor_rows(c, l_room(p.at("L1"), p.at("L6"), p.at("H"), 1), {{&c.values.front(), "W1", "W6"}},
-                      1e-6, effort, rows);
+      add_factor_rows(c, l_shape(p.at("L1"), p.at("L6"), p.at("H")), {{&c.values.front(), "W1", "W6"}},
+                      effort, rows);
       continue;
     }
     whole = &c;
     values.push_back({&c.values.front(), p.at("from"), p.at("to")});
   }
-  if (whole != nullptr) add_factor_rows(*whole, l_room(2, 2, 1, 1), values, 1e-6, effort, rows);
+  if (whole != nullptr) add_factor_rows(*whole, l_shape(2, 2, 1), values, effort, rows);
 }
 
 void add_flux_split(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
   const Vec3 size = to_vec3(c.parameters.at("dims"));
-  Shapes shapes{{"opening", {level_rectangle(c.parameters.at("opening"), size.z(), false)}}};
-  for (const int face : {0, 1, 2, 3, 4}) shapes.push_back({kBoxFaces[face], {box_face(face, size)}});
+  Shapes shapes{{"opening", one(level_rectangle(c.parameters.at("opening"), size.z(), false))}};
+  for (const int face : {0, 1, 2, 3, 4}) shapes.push_back({kBoxFaces[face], one(box_face(face, size))});
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
     const Count count(shapes, "opening", packets_for(0.16, effort), method, c.name);
     Estimates sum(SolvedRoom::kReplicates, 0.0);
@@ -149,20 +154,20 @@ void add_flux_split(const ReferenceCase& c, const Effort& effort, std::vector<Va
       const std::string face = v.quantity == "F_floor" ? "z0" : v.quantity.substr(v.quantity.rfind('_') + 1);
       const Estimates share = count.factor_to(face);
       for (std::size_t r = 0; r < sum.size(); ++r) sum[r] += share[r];
-      rows.push_back(make_row(c, v, to_string(method), share, 1e-6));
+      rows.push_back(make_row(c, v, to_string(method), share, kBound));
     }
   }
 }
 
 void add_mean_irradiance(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
   const json& p = c.parameters;
-  const Shapes shapes{{"light", {level_rectangle(p.at("light_rect"), p.at("z"), false)}},
-                      {"floor", {level_rectangle(p.at("receiver_rect"), 0, true)}}};
+  const Shapes shapes{{"light", one(level_rectangle(p.at("light_rect"), p.at("z"), false))},
+                      {"floor", one(level_rectangle(p.at("receiver_rect"), 0, true))}};
   const double exitance = kPi * p.at("radiance").get<double>();
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
     const Count count(shapes, "light", packets_for(0.3, effort), method, c.name);
     rows.push_back(
-        make_row(c, c.values.front(), to_string(method), scaled(count.mean_on("floor"), exitance), 1e-6));
+        make_row(c, c.values.front(), to_string(method), scaled(count.mean_on("floor"), exitance), kBound));
   }
 }
 
@@ -180,8 +185,7 @@ std::vector<ValidationRow> evaluate_form_factors(const std::vector<ReferenceCase
     } else {
       std::vector<FactorValue> values;
       for (const ReferenceValue& v : c.values) values.push_back(named_factor(v));
-      const bool flat = c.kind == "vf_parallel_rects" || c.kind == "vf_perp_rects";
-      add_factor_rows(c, shapes_of(c), values, flat ? 1e-6 : kRoundBound, effort, rows);
+      add_factor_rows(c, shapes_of(c), values, effort, rows);
     }
   }
   add_l_room_factors(cases, effort, rows);

@@ -50,7 +50,7 @@ SurfacePoint point_on(const RayScene& rays, const Vec3& point, const Vec3& norma
   const ZoneMesh& mesh = rays.mesh();
   const Vec3 n = normal.normalized();
   const double tolerance = 1e-6 * rays.metres_per_unit();
-  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+  for (std::size_t i = 0; i < mesh.flat_count(); ++i) {
     const TriangleId t(i);
     const Vec3 edge1 = mesh.corner(t, 1) - mesh.corner(t, 0);
     const Vec3 edge2 = mesh.corner(t, 2) - mesh.corner(t, 0);

@@ -130,21 +130,6 @@ double total_area(const std::vector<Polygon>& polygons) {
   return area;
 }
 
-std::vector<Polygon> sphere(const Vec3& centre, double radius, int subdivisions, bool inward) {
-  std::vector<Polygon> triangles = unit_icosphere(subdivisions);
-  const double scale = radius * std::sqrt(4 * kPi / total_area(triangles));
-  for (Polygon& t : triangles) {
-    for (Vec3& p : t) p = centre + scale * p;
-    if (inward) t = flipped(t);
-  }
-  return triangles;
-}
-
-std::vector<Polygon> disk(const Vec3& centre, const Vec3& normal, double radius, int sides) {
-  const double corner = radius * std::sqrt(2 * kPi / (sides * std::sin(2 * kPi / sides)));
-  return fan(centre, ring(centre, normal, corner, sides));
-}
-
 std::vector<Polygon> cylinder_cap(const Vec3& centre, const Vec3& normal, double radius, int sides) {
   return fan(centre, ring(centre, normal, radius_of_same_perimeter(radius, sides), sides));
 }
@@ -160,6 +145,12 @@ std::vector<Polygon> cylinder_side(const Vec3& base, const Vec3& axis, double ra
     quads.push_back(inward ? flipped(quad) : quad);
   }
   return quads;
+}
+
+std::vector<std::pair<std::string, Body>> closed_cylinder(double radius, double height) {
+  return {{"base", Disk{{0, 0, 0}, {0, 0, 1}, radius, 0}},
+          {"top", Disk{{0, 0, height}, {0, 0, -1}, radius, 0}},
+          {"lateral", Cylinder{{0, 0, 0}, {0, 0, height}, radius, true}}};
 }
 
 std::vector<std::pair<std::string, std::vector<Polygon>>> l_room(double x_arm, double y_arm, double height,

@@ -2,14 +2,17 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
-#include "scenes/model/vec.h"
+#include "scenes/model/shape.h"
 
 namespace reemit::validation {
 
 /// Corners of a convex planar polygon, counter-clockwise seen from its front [m].
 using Polygon = std::vector<Vec3>;
+/// What a surface is made of: polygons, or one exact round shape.
+using Body = std::variant<std::vector<Polygon>, CurvedShape>;
 
 /// Rectangle or parallelogram whose front looks along u x v.
 Polygon parallelogram(const Vec3& corner, const Vec3& u, const Vec3& v);
@@ -31,14 +34,13 @@ Polygon box_face(int face, const Vec3& size);
 /// first of the four parts of a triangle is the one at its first corner.
 std::vector<Polygon> unit_icosphere(int subdivisions);
 double total_area(const std::vector<Polygon>& polygons);
-/// Sphere of triangles whose area is exactly that of the sphere: 20 * 4^subdivisions triangles.
-std::vector<Polygon> sphere(const Vec3& centre, double radius, int subdivisions, bool inward);
-/// Regular polygon of the area of the disk, as triangles around the centre; the front looks along `normal`.
-std::vector<Polygon> disk(const Vec3& centre, const Vec3& normal, double radius, int sides);
 /// Side of a prism of the lateral area of the cylinder. `axis`: from base to top [m].
 std::vector<Polygon> cylinder_side(const Vec3& base, const Vec3& axis, double radius, int sides, bool inward);
 /// Base or top that fits the prism: the regular polygon of its perimeter.
 std::vector<Polygon> cylinder_cap(const Vec3& centre, const Vec3& normal, double radius, int sides);
+
+/// The inside of a closed cylinder about the z axis: base at z = 0, top and side.
+std::vector<std::pair<std::string, Body>> closed_cylinder(double radius, double height);
 
 /// A room of the plan [0,x_arm] x [0,1] and [0,1] x [0,y_arm] with height `height`: faces by name, inward.
 /// W1 y=0, W2 x=x_arm, W3 y=1, W4 x=1, W5 y=y_arm, W6 x=0, F floor, C ceiling, each cut into squares of side

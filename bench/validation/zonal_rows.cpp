@@ -23,7 +23,7 @@ constexpr double kFactorPackets = 2e6;
 /// from packets of one emitter each, so replicates are independent.
 class CountedFactors {
  public:
-  CountedFactors(const std::vector<std::pair<std::string, std::vector<Polygon>>>& zones, double packets,
+  CountedFactors(const std::vector<std::pair<std::string, Body>>& zones, double packets,
                  const std::string& seed)
       : count_(zones.size()), factors_(SolvedRoom::kReplicates) {
     const auto n = static_cast<Eigen::Index>(count_);
@@ -65,10 +65,10 @@ class CountedFactors {
 void add_boxes(const std::vector<ReferenceCase>& cases, const Effort& effort,
                std::vector<ValidationRow>& rows) {
   if (cases.empty()) return;
-  std::vector<std::pair<std::string, std::vector<Polygon>>> faces;
+  std::vector<std::pair<std::string, Body>> faces;
   for (int face = 0; face < 6; ++face)
-    faces.push_back({kBoxFaces[static_cast<std::size_t>(face)],
-                     {box_face(face, to_vec3(cases.front().parameters.at("dims")))}});
+    faces.emplace_back(kBoxFaces[static_cast<std::size_t>(face)],
+                       std::vector<Polygon>{box_face(face, to_vec3(cases.front().parameters.at("dims")))});
   for (const ReferenceCase& c : cases) {
     const CountedFactors factors(faces, effort.work * kFactorPackets, c.name);
     Eigen::VectorXd rho(6);
@@ -91,14 +91,7 @@ void add_boxes(const std::vector<ReferenceCase>& cases, const Effort& effort,
 
 /// Base, top and side of a cylinder as three zones. Quantities "H_base" ...
 void add_cylinder(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
-  constexpr double kRoundBound = 3e-5;
-  constexpr int kSides = 512;
-  const double r = c.parameters.at("r");
-  const double h = c.parameters.at("h");
-  const std::vector<std::pair<std::string, std::vector<Polygon>>> zones{
-      {"base", cylinder_cap({0, 0, 0}, Vec3::UnitZ(), r, kSides)},
-      {"top", cylinder_cap({0, 0, h}, -Vec3::UnitZ(), r, kSides)},
-      {"lateral", cylinder_side({0, 0, 0}, {0, 0, h}, r, kSides, true)}};
+  const auto zones = closed_cylinder(c.parameters.at("r"), c.parameters.at("h"));
   const CountedFactors factors(zones, effort.work * kFactorPackets, c.name);
   Eigen::VectorXd rho(3);
   Eigen::VectorXd exitance(3);
@@ -110,7 +103,7 @@ void add_cylinder(const ReferenceCase& c, const Effort& effort, std::vector<Vali
   for (const ReferenceValue& v : c.values)
     for (std::size_t i = 0; i < 3; ++i)
       if (v.quantity.substr(2) == zones[i].first)
-        rows.push_back(make_row(c, v, "counted factors", irradiances[i], kRoundBound));
+        rows.push_back(make_row(c, v, "counted factors", irradiances[i], kSolveBound));
 }
 
 /// Twelve triangles of a cube: every value names the corners of its zone.

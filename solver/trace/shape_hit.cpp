@@ -12,6 +12,7 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kRim = 2e-7;
 /// A disk in the plane of a face is hit first: it is what was put there.
 constexpr double kProud = 1e-6;
+constexpr double kRimBand = 4 * kProud;
 
 double nearest_of(double a, double b, double near, double far) {
   if (a > near && a < far) return a;
@@ -60,7 +61,12 @@ double ShapeTarget::nearest_on_mantle(const Vec3& p, const Vec3& d, double near,
   const double a = rd.squaredNorm() - slope * slope * hd * hd;
   const auto reaches = [&](double t) {
     const double h = hp + t * hd;
-    return h >= -kRim && h <= f.height + kRim;
+    if (h >= 0 && h <= f.height) return true;
+    if (h < -kRim || h > f.height + kRim) return false;
+    // From the inside only on the way out: a ray that comes in over the rim has met what closes the end, or
+    // passes the body.
+    const bool from_inside = rd.dot(rp + t * rd) + slope * hd * (f.r0 - slope * h) > 0;
+    return !from_inside || (h < 0) == (hd < 0);
   };
   double t0 = kNone;
   double t1 = kNone;
@@ -92,13 +98,21 @@ double ShapeTarget::on_disk(const Vec3& p, const Vec3& d, double near, double fa
   const Frustum& f = frustum_;
   const double hd = f.axis.dot(d);
   if (hd == 0) return kNone;
-  const double t = -f.axis.dot(p) / hd * (1 - kProud);
-  if (!(t > near && t < far)) return kNone;
-  const Vec3 at = p + t * d;
-  const double r2 = (at - f.axis.dot(at) * f.axis).squaredNorm();
-  const double outer = f.r0 + kRim;
-  const double inner = f.r1 > 0 ? f.r1 - kRim : 0;
-  return r2 <= outer * outer && r2 >= inner * inner ? t : kNone;
+  const double plane = -f.axis.dot(p) / hd;
+  const Vec3 at = p + plane * d;
+  const Vec3 radial = at - f.axis.dot(at) * f.axis;
+  const double r2 = radial.squaredNorm();
+  const bool front = hd < 0;
+  // Beyond the rims a back is met from within the body that the disk closes, not by rays that pass outside.
+  const double way = d.dot(radial);
+  const bool from_within = way > 0 && r2 - way * way / (d - hd * f.axis).squaredNorm() <= f.r0 * f.r0;
+  const double outer = f.r0 + (front || from_within ? kRim : 0);
+  const double inner = f.r1 > 0 ? f.r1 - (front || way < 0 ? kRim : 0) : 0;
+  if (r2 > outer * outer || r2 < inner * inner) return kNone;
+  // Close to the rims a back lies behind the mantle that hides it from outside.
+  const bool at_rim = r2 > std::pow(f.r0 - kRimBand, 2) || (f.r1 > 0 && r2 < std::pow(f.r1 + kRimBand, 2));
+  const double t = plane * (front || !at_rim ? 1 - kProud : 1 + kProud);
+  return t > near && t < far ? t : kNone;
 }
 
 }  // namespace reemit
