@@ -85,7 +85,7 @@ AreaLuminaire::AreaLuminaire(const CurvedShape& shape, double exponent)
   else if (const auto* cylinder = std::get_if<Cylinder>(&shape))
     shape_ = *cylinder;
   else
-    shape_ = Mantle{CurvedPatches(shape)};
+    shape_ = Mantle{std::make_shared<const CurvedPatches>(shape)};
 }
 
 LuminaireBounds AreaLuminaire::bounds(double radiance) const {
@@ -160,7 +160,7 @@ double AreaLuminaire::expected_near(const Vec3& x, const Vec3& n) const {
   // Mantles: rings of the surface, each as far as its middle or as near as its wall.
   const CurvedShape& shape = [&]() -> CurvedShape {
     if (const auto* c = std::get_if<Cylinder>(&shape_)) return *c;
-    return std::get<Mantle>(shape_).patches.shape();
+    return std::get<Mantle>(shape_).patches->shape();
   }();
   const Frustum f = frustum_of(shape);
   constexpr int kRings = 4;
@@ -197,25 +197,25 @@ double AreaLuminaire::expected_irradiance(const Vec3& x, const Vec3& n) const {
 }
 
 bool AreaLuminaire::sample(const Vec3& x, const Vec3& n, double u0, double u1, AreaSample& result) const {
-  const double ratio = (centre_ - x).norm() / (2 * reach_);
+  const auto ratio = [&] { return (centre_ - x).norm() / (2 * reach_); };
   const auto drawn_from = [&](const auto& sampler) {
     return sampler.lights() ? sampler.sample(u0, u1) : ShapePoint{};
   };
   const auto draw = [&]() -> ShapePoint {
     if (const auto* r = std::get_if<Rectangle>(&shape_))
       return drawn_from(
-          RectangleSampler(r->corner, r->edge_u, r->edge_v, front_, x, n, density_of_polygon(ratio)));
+          RectangleSampler(r->corner, r->edge_u, r->edge_v, front_, x, n, density_of_polygon(ratio())));
     if (const auto* t = std::get_if<Triangle>(&shape_))
-      return drawn_from(TriangleSampler(t->corners, front_, x, n, density_of_polygon(ratio)));
+      return drawn_from(TriangleSampler(t->corners, front_, x, n, density_of_polygon(ratio())));
     if (const auto* p = std::get_if<Polygon>(&shape_))
-      return drawn_from(ConvexPolygonSampler(p->corners, front_, x, n, density_of_polygon(ratio)));
+      return drawn_from(ConvexPolygonSampler(p->corners, front_, x, n, density_of_polygon(ratio())));
     if (const auto* s = std::get_if<Sphere>(&shape_))
       return drawn_from(SphereSampler(*s, x, n, density_of_sphere()));
     if (const auto* d = std::get_if<Disk>(&shape_))
-      return drawn_from(DiskSampler(*d, x, n, density_of_disk(ratio)));
+      return drawn_from(DiskSampler(*d, x, n, density_of_disk(ratio())));
     if (const auto* c = std::get_if<Cylinder>(&shape_))
-      return drawn_from(CylinderSampler(*c, x, n, density_of_cylinder(ratio)));
-    return sample_mantle(std::get<Mantle>(shape_).patches, x, n, u0, u1);
+      return drawn_from(CylinderSampler(*c, x, n, density_of_cylinder(ratio())));
+    return sample_mantle(*std::get<Mantle>(shape_).patches, x, n, u0, u1);
   };
   const ShapePoint drawn = draw();
   if (!(drawn.irradiance > 0)) return false;

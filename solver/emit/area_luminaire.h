@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <variant>
 #include <vector>
 
@@ -55,7 +56,7 @@ class AreaLuminaire {
   };
   /// Cones and rings: drawn by area.
   struct Mantle {
-    CurvedPatches patches;
+    std::shared_ptr<const CurvedPatches> patches;  // aside: it is large, and the table should stay in cache
   };
   using Shape = std::variant<Rectangle, Triangle, Polygon, Sphere, Disk, Cylinder, Mantle>;
 

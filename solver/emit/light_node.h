@@ -15,7 +15,7 @@ struct Receiver {
   Receiver(const Vec3f& point, const Vec3f& normal) : x(point), n(normal), abs_n(normal.cwiseAbs()) {}
 };
 
-/// Up to four children of a node of a light tree with their bounds side by side: 56 bytes each, fetched at
+/// Up to four children of a node of a light tree with their bounds side by side: 64 bytes each, fetched at
 /// once, and looked at with one instruction for all four.
 struct alignas(32) LightNode {
   static constexpr int kWidth = 4;
@@ -29,8 +29,11 @@ struct alignas(32) LightNode {
   float cos_emission[kWidth];
   float intensity[kWidth];      ///< Share of all luminaires; 0 where there is no child.
   std::uint32_t child[kWidth];  ///< Index of a node, or kLeaf + index of a luminaire.
+  /// First and behind the last of its luminaires in LightTree::order_, where it is a ball of lamps that shine
+  /// to all sides; else both 0.
+  std::uint32_t begin[kWidth], end[kWidth];
 };
-static_assert(sizeof(LightNode) == 224);
+static_assert(sizeof(LightNode) == 256);
 
 using Importance = std::array<float, LightNode::kWidth>;
 

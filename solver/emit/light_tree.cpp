@@ -41,6 +41,8 @@ struct Shares {
   }
 };
 
+constexpr std::size_t kNodesInCache = 8192;  // 2 MB
+
 /// Starts to load the children while their parent is looked at: saves a quarter of the time of a pick among a
 /// million luminaires. Inlined by force: a function that does nothing else is taken for one without effect.
 #if defined(__GNUC__)
@@ -56,6 +58,27 @@ struct Shares {
 void fetch_children(const std::vector<LightNode>&, std::uint32_t) {}
 #endif
 
+/// A clump of lamps that shine to all sides is far from this many of its radii on: then what its lamps send
+/// differs little but for their strength, and no more steps are needed to choose among them.
+constexpr float kFarRadii = 2;
+
+bool is_far_clump(const LightNode& node, std::size_t lane, const Receiver& at) {
+  if (node.begin[lane] == node.end[lane]) return false;
+  float distance2 = 0;
+  float radius2 = 0;
+  float height = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float d = node.centre[axis][lane] - at.x[axis];
+    const float h = node.half[axis][lane];
+    distance2 += d * d;
+    radius2 += h * h;
+    height += at.n[axis] * d;
+  }
+  // Well above the horizon, or at a point without one.
+  return distance2 > kFarRadii * kFarRadii * radius2 && (height * height > radius2 || at.abs_n.isZero()) &&
+         height >= 0;
+}
+
 /// A product of many shares can be less than a float holds; 0 would mean that it cannot happen.
 float as_probability(double product) {
   return std::max(static_cast<float>(product), std::numeric_limits<float>::min());
@@ -65,14 +88,17 @@ float as_probability(double product) {
 class Widener {
  public:
   Widener(std::vector<LightSplit> splits, std::size_t luminaires, std::vector<LightNode>& nodes,
-          std::vector<std::uint64_t>& trails)
-      : splits_(std::move(splits)), nodes_(nodes), trails_(trails) {
+          std::vector<std::uint64_t>& trails, std::vector<std::uint32_t>& order)
+      : splits_(std::move(splits)), nodes_(nodes), trails_(trails), order_(order) {
     trails_.resize(luminaires);
+    order_.reserve(luminaires);
     if (splits_[0].is_luminaire()) {
       nodes_.push_back({});
       set_child(nodes_[0], 0, splits_[0].bounds, LightNode::kLeaf + splits_[0].right);
+      order_.push_back(splits_[0].right);
     } else {
-      widen(0, 0, 0);
+      bool all_round = true;
+      widen(0, 0, 0, all_round);
     }
   }
 
@@ -81,7 +107,8 @@ class Widener {
     return std::max(static_cast<double>(splits_[0].bounds.intensity), 1e-300);
   }
 
-  std::uint32_t widen(std::uint32_t split, std::uint64_t trail, int level) {
+  /// `all_round` becomes false if any luminaire below shines to some sides only.
+  std::uint32_t widen(std::uint32_t split, std::uint64_t trail, int level, bool& all_round) {
     assert(level < kMostLevels);
     std::array<std::uint32_t, LightNode::kWidth> child{splits_[split].left, splits_[split].right};
     std::size_t count = 2;
@@ -107,12 +134,21 @@ class Widener {
       const LightSplit& part = splits_[child[i]];
       const std::uint64_t on = trail | std::uint64_t{i} << (2 * level);
       std::uint32_t target = LightNode::kLeaf + part.right;
+      const auto begin = static_cast<std::uint32_t>(order_.size());
+      bool part_all_round = true;
       if (part.is_luminaire()) {
         trails_[part.right] = on;
+        order_.push_back(part.right);
+        part_all_round = part.bounds.cos_normals <= -1;
       } else {
-        target = widen(child[i], on, level + 1);
+        target = widen(child[i], on, level + 1, part_all_round);
       }
       set_child(nodes_[index], i, part.bounds, target);
+      if (part_all_round && !part.is_luminaire()) {
+        nodes_[index].begin[i] = begin;
+        nodes_[index].end[i] = static_cast<std::uint32_t>(order_.size());
+      }
+      all_round = all_round && part_all_round;
     }
     return static_cast<std::uint32_t>(index);
   }
@@ -137,6 +173,7 @@ class Widener {
   std::vector<LightSplit> splits_;
   std::vector<LightNode>& nodes_;
   std::vector<std::uint64_t>& trails_;
+  std::vector<std::uint32_t>& order_;
 };
 
 }  // namespace
@@ -154,8 +191,43 @@ LightTree::LightTree(std::span<const LuminaireBounds> luminaires) {
   std::vector<LuminaireBounds> shares(luminaires.begin(), luminaires.end());
   for (LuminaireBounds& bounds : shares)
     bounds.intensity = std::max(static_cast<float>(static_cast<double>(bounds.intensity) / total), 1e-30F);
-  Widener(split_luminaires(shares), shares.size(), nodes_, trails_);
+  Widener(split_luminaires(shares), shares.size(), nodes_, trails_, order_);
   nodes_.shrink_to_fit();
+  intensity_to_.assign(1, 0.0);
+  place_.resize(order_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const LuminaireBounds& bounds = shares[order_[i]];
+    place_[order_[i]] = static_cast<std::uint32_t>(i);
+    intensity_to_.push_back(intensity_to_.back() + static_cast<double>(bounds.intensity));
+    all_round_ = all_round_ && bounds.cos_normals <= -1;
+  }
+  guide_.resize(order_.size());
+  std::uint32_t place = 0;
+  for (std::size_t k = 0; k < guide_.size(); ++k) {
+    const double position =
+        intensity_to_.back() * static_cast<double>(k) / static_cast<double>(guide_.size());
+    while (place + 1 < order_.size() && intensity_to_[place + 1] <= position) ++place;
+    guide_[k] = place;
+  }
+}
+
+double LightTree::share_of(std::size_t place, std::uint32_t begin, std::uint32_t end) const {
+  return (intensity_to_[place + 1] - intensity_to_[place]) / (intensity_to_[end] - intensity_to_[begin]);
+}
+
+std::uint32_t LightTree::pick_in_clump(std::uint32_t begin, std::uint32_t end, double& u,
+                                       double& product) const {
+  const double first = intensity_to_[begin];
+  const double position = first + u * (intensity_to_[end] - first);
+  // The guide says where to begin to look; there are as many entries as luminaires, so a step or two follow.
+  const double scaled = position / intensity_to_.back() * static_cast<double>(guide_.size());
+  std::size_t place = guide_[std::min(static_cast<std::size_t>(scaled), guide_.size() - 1)];
+  while (place + 1 < end && intensity_to_[place + 1] <= position) ++place;
+  while (place > begin && intensity_to_[place] > position) --place;
+  const double width = intensity_to_[place + 1] - intensity_to_[place];
+  u = std::clamp((position - intensity_to_[place]) / width, 0.0, kBelowOne);
+  product *= share_of(place, begin, end);
+  return order_[place];
 }
 
 bool LightTree::pick(const Vec3f& x, const Vec3f& n, double& u, Pick& result) const {
@@ -164,13 +236,20 @@ bool LightTree::pick(const Vec3f& x, const Vec3f& n, double& u, Pick& result) co
   double product = 1;
   double rest = u;
   for (std::uint32_t node = 0;;) {
-    fetch_children(nodes_, node);
+    if (nodes_.size() > kNodesInCache) fetch_children(nodes_, node);
     const Shares shares(nodes_[node], at);
     if (shares.dead_end()) return false;
     const double position = shares.position(rest);
     const std::size_t lane = shares.lane_at(position);
     rest = shares.stretched(position, lane);
     product *= shares.probability(lane);
+    if (is_far_clump(nodes_[node], lane, at)) {
+      const std::uint32_t luminaire =
+          pick_in_clump(nodes_[node].begin[lane], nodes_[node].end[lane], rest, product);
+      result = {luminaire, as_probability(product)};
+      u = rest;
+      return true;
+    }
     node = nodes_[node].child[lane];
     if (node & LightNode::kLeaf) {
       result = {node - LightNode::kLeaf, as_probability(product)};
@@ -189,6 +268,9 @@ float LightTree::probability(std::uint32_t luminaire, const Vec3f& x, const Vec3
     const auto lane = static_cast<std::size_t>(trail & 3);
     if (!(shares.weight[lane] > 0)) return 0;
     product *= shares.probability(lane);
+    if (is_far_clump(nodes_[node], lane, at))
+      return as_probability(product *
+                            share_of(place_[luminaire], nodes_[node].begin[lane], nodes_[node].end[lane]));
     node = nodes_[node].child[lane];
   }
   return as_probability(product);
@@ -230,7 +312,11 @@ std::size_t LightTree::pick_many(const Vec3f& x, const Vec3f& n, double u, std::
         const std::size_t lane = shares.lane_at(position);
         left[i] = shares.stretched(position, lane);
         product[i] *= shares.probability(lane);
-        node[i] = nodes_[node[i]].child[lane];
+        const LightNode& here = nodes_[node[i]];
+        node[i] =
+            is_far_clump(here, lane, at)
+                ? LightNode::kLeaf + pick_in_clump(here.begin[lane], here.end[lane], left[i], product[i])
+                : here.child[lane];
       }
     }
     for (std::size_t i = 0; i < many; ++i) {

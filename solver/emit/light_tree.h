@@ -17,7 +17,8 @@ struct Pick {
 
 /// Chooses a luminaire for a shading point with a probability near its share of the unoccluded irradiance, in
 /// a time that grows with the logarithm of their number: a tree of bounds, walked down from the root, where
-/// every step chooses one of up to four children by their importance [CON18, sec. 4].
+/// every step chooses one of up to four children by their importance [CON18, sec. 4]. Lamps that shine to all
+/// sides and are a far clump are chosen by intensity at once.
 ///
 /// A luminaire that can light a point has a probability above 0 there: importance 0 is proof that a box lies
 /// below the horizon or that nothing in it faces the point. The reverse does not hold, as the bounds of a
@@ -38,6 +39,8 @@ class LightTree {
 
   std::size_t size() const { return trails_.size(); }
   bool empty() const { return trails_.empty(); }
+  /// True if all luminaires shine to all sides: then a pick alone is close to the best choice.
+  bool all_round() const { return all_round_; }
 
   /// Picks by u in [0,1) for a point x with unit normal n (normalised; n = 0 for a point without a horizon)
   /// and stretches u over the interval that was hit, so that it can be used again ([SWZ96] Fig. 8): it is
@@ -58,8 +61,16 @@ class LightTree {
                         std::span<double> rest) const;
 
  private:
+  std::uint32_t pick_in_clump(std::uint32_t begin, std::uint32_t end, double& u, double& product) const;
+  double share_of(std::size_t place, std::uint32_t begin, std::uint32_t end) const;
+
   std::vector<LightNode> nodes_;       // The root is the first.
   std::vector<std::uint64_t> trails_;  // Per luminaire: the children to take from the root on, 2 bits each.
+  std::vector<std::uint32_t> order_;   // Luminaires so that those below a node are neighbours.
+  std::vector<std::uint32_t> place_;   // Of each in order_.
+  std::vector<double> intensity_to_;   // Of those before a place, and of all.
+  std::vector<std::uint32_t> guide_;   // Place of the k-th part of the whole intensity.
+  bool all_round_ = true;
 };
 
 /// A number in [0,1) with 53 bits out of two random words; the upper ones come first, so that points that are

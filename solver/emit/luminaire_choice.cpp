@@ -17,7 +17,13 @@ float stretched(float u, float low, float width) {
 LuminaireChoice::LuminaireChoice(const LuminaireTable& table, Selection selection, const Vec3f& x,
                                  const Vec3f& n, float u)
     : table_(table), selection_(selection), x_(x), n_(n) {
-  if (selection == Selection::kLinear && table.size() <= kMostLinear) weigh_all();
+  if (selection == Selection::kLinear && table.size() == 1) {
+    entry_[0] = 0;
+    draw_weight_[0] = weight_[0] = total_ = 1;
+    count_ = 1;
+  } else if (selection == Selection::kLinear && table.size() <= kMostLinear) {
+    weigh_all();
+  }
   if (selection == Selection::kSpatial) weigh_tree(u);
 }
 
@@ -35,6 +41,16 @@ void LuminaireChoice::weigh_all() {
 }
 
 void LuminaireChoice::weigh_tree(float u) {
+  if (!needs_candidates(table_)) {
+    double rest = static_cast<double>(u);
+    Pick pick;
+    if (!table_.tree().pick(x_, n_, rest, pick)) return;
+    entry_[0] = static_cast<std::uint32_t>(table_.entry_of_tree(pick.luminaire));
+    draw_weight_[0] = 1 / pick.probability;
+    weight_[0] = total_ = 1;
+    count_ = 1;
+    return;
+  }
   std::array<Pick, kCandidates> picks;
   std::array<double, kCandidates> rest;
   const std::size_t found = table_.tree().pick_many(x_, n_, static_cast<double>(u), picks, rest);

@@ -48,7 +48,7 @@ void check_room(const fs::path& file) {
     EXPECT_GE(a.removed, -1e-6 * a.input);
   }
   EXPECT_LT(removed, 0.1 * input);
-  EXPECT_LT(r.mesh.triangle_count(), 300 + 12 * faces) << "the traced mesh must stay coarse";
+  EXPECT_LT(r.mesh.flat_count(), 300 + 12 * faces) << "the traced mesh must stay coarse";
   EXPECT_LT(r.report.warnings.size(), 8U);
   for (const std::string& w : r.report.warnings) EXPECT_LT(w.size(), 1000U);
   for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i) {
