@@ -16,7 +16,7 @@ inline Density density_of_disk(double distance) {
   return distance < 0.6 ? Density::kCosine : distance < 2 ? Density::kSolidAngle : Density::kArea;
 }
 inline Density density_of_cylinder(double distance) {
-  return distance < 0.3 ? Density::kCosine : Density::kSolidAngle;
+  return distance < 0.6 ? Density::kCosine : Density::kSolidAngle;
 }
 
 }  // namespace reemit
