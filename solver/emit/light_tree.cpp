@@ -41,6 +41,9 @@ struct Shares {
   }
 };
 
+/// Of its even share, what a lamp weighs at least when its clump is chosen from.
+constexpr double kLeastShare = 1e-4;
+
 constexpr std::size_t kNodesInCache = 8192;  // 2 MB
 
 /// Starts to load the children while their parent is looked at: saves a quarter of the time of a pick among a
@@ -193,13 +196,14 @@ LightTree::LightTree(std::span<const LuminaireBounds> luminaires) {
     bounds.intensity = std::max(static_cast<float>(static_cast<double>(bounds.intensity) / total), 1e-30F);
   Widener(split_luminaires(shares), shares.size(), nodes_, trails_, order_);
   nodes_.shrink_to_fit();
+  // The weakest lamp of a clump must not vanish in the running sum, or it would never be picked.
+  const double least = kLeastShare / static_cast<double>(order_.size());
   intensity_to_.assign(1, 0.0);
   place_.resize(order_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const LuminaireBounds& bounds = shares[order_[i]];
     place_[order_[i]] = static_cast<std::uint32_t>(i);
-    intensity_to_.push_back(intensity_to_.back() + static_cast<double>(bounds.intensity));
-    all_round_ = all_round_ && bounds.cos_normals <= -1;
+    intensity_to_.push_back(intensity_to_.back() + std::max(static_cast<double>(bounds.intensity), least));
   }
   guide_.resize(order_.size());
   std::uint32_t place = 0;

@@ -39,8 +39,6 @@ class LightTree {
 
   std::size_t size() const { return trails_.size(); }
   bool empty() const { return trails_.empty(); }
-  /// True if all luminaires shine to all sides: then a pick alone is close to the best choice.
-  bool all_round() const { return all_round_; }
 
   /// Picks by u in [0,1) for a point x with unit normal n (normalised; n = 0 for a point without a horizon)
   /// and stretches u over the interval that was hit, so that it can be used again ([SWZ96] Fig. 8): it is
@@ -70,7 +68,6 @@ class LightTree {
   std::vector<std::uint32_t> place_;   // Of each in order_.
   std::vector<double> intensity_to_;   // Of those before a place, and of all.
   std::vector<std::uint32_t> guide_;   // Place of the k-th part of the whole intensity.
-  bool all_round_ = true;
 };
 
 /// A number in [0,1) with 53 bits out of two random words; the upper ones come first, so that points that are

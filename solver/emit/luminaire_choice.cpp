@@ -41,16 +41,6 @@ void LuminaireChoice::weigh_all() {
 }
 
 void LuminaireChoice::weigh_tree(float u) {
-  if (!needs_candidates(table_)) {
-    double rest = static_cast<double>(u);
-    Pick pick;
-    if (!table_.tree().pick(x_, n_, rest, pick)) return;
-    entry_[0] = static_cast<std::uint32_t>(table_.entry_of_tree(pick.luminaire));
-    draw_weight_[0] = 1 / pick.probability;
-    weight_[0] = total_ = 1;
-    count_ = 1;
-    return;
-  }
   std::array<Pick, kCandidates> picks;
   std::array<double, kCandidates> rest;
   const std::size_t found = table_.tree().pick_many(x_, n_, static_cast<double>(u), picks, rest);

@@ -9,8 +9,7 @@ DirectLight::DirectLight(const Scene& scene, const RayScene& rays, const DirectL
 
 std::size_t DirectLight::luminaires_weighed() const {
   // A walk down the tree costs about as much as weighing two luminaires.
-  if (selection_ == Selection::kSpatial)
-    return LuminaireChoice::needs_candidates(table_) ? 3 * LuminaireChoice::kCandidates : 2;
+  if (selection_ == Selection::kSpatial) return 3 * LuminaireChoice::kCandidates;
   return selection_ == Selection::kConstant ? 0 : table_.size();
 }
 

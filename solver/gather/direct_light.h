@@ -15,7 +15,7 @@ namespace reemit {
 
 struct DirectLightSettings {
   /// How one luminaire is chosen among many; unset: LuminaireChoice::default_for.
-  std::optional<Selection> selection;
+  std::optional<Selection> selection = std::nullopt;
 };
 
 /// Irradiance straight from the luminaires at a point, by shadow rays to sampled luminaire points [SWZ96].

@@ -125,7 +125,9 @@ WeightedRay look_in_solid_angle(const RayScene& rays, const Fan& from, const Fan
                                 near ? Density::kSolidAngle : Density::kArea);
   if (!sampler.lights()) return {};
   const ShapePoint y = sampler.sample(static_cast<double>(u), static_cast<double>(numbers.sample(index, 3)));
-  if (!(y.irradiance > 0)) return {};
+  // A ray this close to the plane of either zone is nothing that single precision can follow.
+  constexpr double kGrazing = 1e-6;
+  if (!(y.irradiance * y.pdf_per_sr > kGrazing && y.cos_emit > kGrazing)) return {};
   return {y.irradiance / static_cast<double>(to.probability(target)),
           rays.visible(from.lifted(x), to.lifted(y.point.cast<float>()))};
 }
@@ -199,7 +201,12 @@ VisibleShare PairVisibility::look(ZoneId i, ZoneId j, const FacingPair& pair, do
   const Fan a(pair.a, *rays_, zone_a);
   const Fan b(pair.b, *rays_, zone_b);
   VisibleShare result;
-  if (a.empty() || b.empty()) return result;
+  // Slivers that are left where planes meet: rays between them follow nothing but rounding.
+  constexpr double kNegligible = 1e-12;
+  if (a.empty() || b.empty() || factor < kNegligible) {
+    result.share = 0;
+    return result;
+  }
   const std::uint64_t index = i.index() * mesh.zone_count() + j.index();
 
   std::uint32_t clear = 0;

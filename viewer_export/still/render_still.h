@@ -32,7 +32,7 @@ struct StillSettings {
   int gathers = 4;  ///< Gather rays per camera ray [1, 1024]; kPath always follows one.
   int light_samples = 1;  ///< Shadow rays per camera ray [1, 1024].
   /// How shadow rays choose their luminaire; unset: as DirectLight finds best.
-  std::optional<Selection> light_selection;
+  std::optional<Selection> light_selection = std::nullopt;
   /// Relative error to reach as a fraction [0, 1): rms over pixels of s/(L + floor), worst band, with s the
   /// standard error of radiance L. 0 = stop by spp; else spp is ignored.
   double error_target = 0;
