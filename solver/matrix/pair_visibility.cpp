@@ -45,11 +45,11 @@ class Fan {
  public:
   Fan(const ConvexPolygon& part, const RayScene& rays, const ZonePoints& zone) : zone_(&zone) {
     std::array<Vec3f, ConvexPolygon::kMostCorners> p;
-    const Vec3f middle = rays.normalised(part.middle());
+    middle_ = rays.normalised(part.middle());
     corners_ = part.count;
     for (std::size_t k = 0; k < part.count; ++k) {
       p[k] = rays.normalised(part.corner[k]);
-      near_corner_[k] = p[k] + kCornerInset * (middle - p[k]);
+      near_corner_[k] = p[k] + kCornerInset * (middle_ - p[k]);
     }
     for (std::size_t k = 2; k < part.count; ++k) {
       FanTriangle& t = triangle_[count_++];
@@ -67,9 +67,7 @@ class Fan {
   std::size_t corners() const { return corners_; }
   const Vec3f& near_corner(std::size_t k) const { return near_corner_[k]; }
   const ZonePoints& zone() const { return *zone_; }
-  Vec3f lifted(const Vec3f& point) const {
-    return RayScene::lifted(point, zone_->normal(), zone_->triangle_middle());
-  }
+  Vec3f lifted(const Vec3f& point) const { return RayScene::lifted(point, zone_->normal(), middle_); }
   /// Triangle chosen in proportion to its area; `u` is then uniform again.
   const FanTriangle& pick(float& u) const {
     float left = u * area_;
@@ -96,6 +94,7 @@ class Fan {
   const ZonePoints* zone_;
   std::array<FanTriangle, ConvexPolygon::kMostCorners - 2> triangle_;
   std::array<Vec3f, ConvexPolygon::kMostCorners> near_corner_;
+  Vec3f middle_{0, 0, 0};  // rays are drawn towards it, which keeps them on this side of what parts the room
   std::size_t corners_ = 0;
   std::size_t count_ = 0;
   float area_ = 0;
@@ -125,9 +124,7 @@ WeightedRay look_in_solid_angle(const RayScene& rays, const Fan& from, const Fan
                                 near ? Density::kSolidAngle : Density::kArea);
   if (!sampler.lights()) return {};
   const ShapePoint y = sampler.sample(static_cast<double>(u), static_cast<double>(numbers.sample(index, 3)));
-  // A ray this close to the plane of either zone is nothing that single precision can follow.
-  constexpr double kGrazing = 1e-6;
-  if (!(y.irradiance * y.pdf_per_sr > kGrazing && y.cos_emit > kGrazing)) return {};
+  if (!(y.irradiance > 0)) return {};
   return {y.irradiance / static_cast<double>(to.probability(target)),
           rays.visible(from.lifted(x), to.lifted(y.point.cast<float>()))};
 }
@@ -201,12 +198,7 @@ VisibleShare PairVisibility::look(ZoneId i, ZoneId j, const FacingPair& pair, do
   const Fan a(pair.a, *rays_, zone_a);
   const Fan b(pair.b, *rays_, zone_b);
   VisibleShare result;
-  // Slivers that are left where planes meet: rays between them follow nothing but rounding.
-  constexpr double kNegligible = 1e-12;
-  if (a.empty() || b.empty() || factor < kNegligible) {
-    result.share = 0;
-    return result;
-  }
+  if (a.empty() || b.empty()) return result;
   const std::uint64_t index = i.index() * mesh.zone_count() + j.index();
 
   std::uint32_t clear = 0;

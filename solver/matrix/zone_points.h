@@ -33,7 +33,6 @@ class ZonePoints {
   }
 
   const Vec3f& normal() const { return normal_; }
-  const Vec3f& triangle_middle() const { return middle_; }  ///< Of the base triangle, for RayScene::lifted.
   /// Start of a ray at barycentric point (u,v) of the zone [normalised units].
   Vec3f origin(float u, float v) const {
     return RayScene::lifted((1 - u - v) * corner_[0] + u * corner_[1] + v * corner_[2], normal_, middle_);
