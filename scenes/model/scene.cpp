@@ -118,6 +118,7 @@ void warn_of_units(Scene& scene) {
 void finish_scene(Scene& scene) {
   check_materials(scene);
   check_geometry(scene);
+  check_luminous_surfaces(scene);
   check_lights(scene);
   check_cameras(scene);
   const std::vector<bool> used = used_materials(scene);

@@ -1,5 +1,6 @@
 #include "scenes/model/scene_checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -231,6 +232,29 @@ void check_geometry(Scene& scene) {
   if (flattened > 0)
     scene.warnings.push_back(fmt::format(
         "{} face(s) have a shading normal that is zero or not a number and are shown flat.", flattened));
+}
+
+void check_luminous_surfaces(const Scene& scene) {
+  constexpr double kFlat = 1e-12;  // area over the square of the size of a face whose corners lie on a line
+  for (const Surface& surface : scene.surfaces) {
+    if (!scene.material_of(surface).emits() || !surface.shapes.empty()) continue;
+    const bool has_area = std::any_of(surface.faces.begin(), surface.faces.end(), [&](const Face& face) {
+      const Vec3& first = surface.positions[face.outer[0]];
+      Vec3 twice = Vec3::Zero();
+      double size2 = 0;
+      for (std::size_t i = 1; i < face.outer.size(); ++i) {
+        const Vec3 a = surface.positions[face.outer[i]] - first;
+        const Vec3 b = surface.positions[face.outer[(i + 1) % face.outer.size()]] - first;
+        twice += a.cross(b);
+        size2 = std::max(size2, a.squaredNorm());
+      }
+      return twice.norm() > kFlat * size2;
+    });
+    if (!has_area)
+      throw InputError(in_file(scene, fmt::format("surface '{}'", surface.name)),
+                       "it is a luminaire without an area: the corners of its faces lie on a line",
+                       "Give it an area, use a point light, or remove it.");
+  }
 }
 
 void check_lights(Scene& scene) {

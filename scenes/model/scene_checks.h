@@ -13,6 +13,9 @@ void check_materials(Scene& scene);
 /// unusable becomes flat, with one warning for the room.
 void check_geometry(Scene& scene);
 
+/// Refuses emitting surfaces that have no area at all: their power would be lost.
+void check_luminous_surfaces(const Scene& scene);
+
 /// Intensities finite, >= 0 and not 0 in all bands, cone angles in order; directions become unit vectors.
 void check_lights(Scene& scene);
 

@@ -63,6 +63,23 @@ TEST(FinishScene, AcceptsASoundRoomWithoutWarnings) {
   EXPECT_EQ(bounds(scene).size(), Vec3(2, 2, 1));
 }
 
+TEST(FinishScene, RefusesALuminaireWithoutAnArea) {
+  const std::string line = refusal([](Scene& s) {
+    for (Vec3& p : s.surfaces[1].positions) p.y() = 0;
+  });
+  EXPECT_THAT(line, HasSubstr("'light'"));
+  EXPECT_THAT(line, HasSubstr("without an area"));
+  EXPECT_EQ(refusal([](Scene& s) {
+              for (Vec3& p : s.surfaces[0].positions) p.y() = 0;
+            }),
+            "accepted")
+      << "what does not emit may be degenerate: the mesher reports it";
+  EXPECT_THAT(refusal([](Scene& s) {
+                s.surfaces[1].shapes = {Sphere{{0, 0, 0}, 0, false}};
+              }),
+              HasSubstr("no area"));
+}
+
 TEST(FinishScene, NamesTheMaterialWithBadValues) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
