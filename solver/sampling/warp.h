@@ -99,17 +99,6 @@ inline std::array<float, 2> invert_sphere(const Vec3f& d) {
   return {(1 - d.z()) / 2, phi / (2 * std::numbers::pi_v<float>)};
 }
 
-/// Uniform in the cone about +z with the given cosine of its half angle; density cone_pdf_per_sr.
-inline Vec3f sample_cone(float u0, float u1, float cos_half_angle) {
-  const float z = 1 - u0 * (1 - cos_half_angle);
-  const float r = std::sqrt(std::max(0.0F, 1 - z * z));
-  const float phi = 2 * std::numbers::pi_v<float> * u1;
-  return {r * std::cos(phi), r * std::sin(phi), z};
-}
-inline float cone_pdf_per_sr(float cos_half_angle) {
-  return 1 / (2 * std::numbers::pi_v<float> * (1 - cos_half_angle));
-}
-
 /// Orthonormal frame about a unit normal without a branch on its direction [DUF17].
 struct Frame {
   Vec3f tangent, bitangent, normal;

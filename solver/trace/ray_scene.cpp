@@ -110,11 +110,6 @@ void occlude_shape(const RTCOccludedFunctionNArguments* args) {
       RTCRayN_tfar(args->ray, args->N, i) = -kInfinity;
 }
 
-void throw_out_of_memory(std::size_t count, const char* what) {
-  throw ResourceError("ray tracing", "out of memory for " + std::to_string(count) + " " + what,
-                      "Free memory or use a coarser room.");
-}
-
 }  // namespace
 
 struct RayScene::EmbreeScene {
@@ -187,7 +182,8 @@ void RayScene::add_triangles() {
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), flat_count_));
   if ((vertices == nullptr && !base.vertices.empty()) || (indices == nullptr && flat_count_ > 0)) {
     rtcReleaseGeometry(geometry);
-    throw_out_of_memory(flat_count_, "triangles");
+    throw ResourceError("ray tracing", "out of memory for " + std::to_string(flat_count_) + " triangles",
+                        "Free memory or use a coarser room.");
   }
   for (std::size_t i = 0; i < base.vertices.size(); ++i) {
     const Vec3f p = normalised(base.vertices[i]);

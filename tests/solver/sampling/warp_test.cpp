@@ -80,12 +80,14 @@ const std::vector<Row>& rows() {
          return std::array<double, 2>{(1 + d.z()) / 2, azimuth(d)};
        },
        [](double, double) { return 4 * std::numbers::pi * kSpherePdfPerSr; }},
-      {"cone in ((z-c)/(1-c), phi)",
+      {"power of the cosine in (cos, phi)",
        [](float u, float v) {
-         const Vec3f d = sample_cone(u, v, 0.3F);
-         return std::array<double, 2>{(d.z() - 0.3) / 0.7, azimuth(d)};
+         const Vec3f d = sample_cosine_power(u, v, 2.5F);
+         return std::array<double, 2>{d.z(), azimuth(d)};
        },
-       [](double, double) { return 0.7 * 2 * std::numbers::pi * cone_pdf_per_sr(0.3F); }},
+       [](double z, double) {
+         return 2 * std::numbers::pi * cosine_power_pdf_per_sr(static_cast<float>(z), 2.5F);
+       }},
   };
   return all;
 }
