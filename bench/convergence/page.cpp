@@ -1,12 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <optional>
-#include <sstream>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "bench/convergence/page_template.h"
 #include "bench/convergence/report.h"
 #include "bench/convergence/summary.h"
 
@@ -97,12 +95,6 @@ std::string factor_table(const std::vector<Curve>& vertices, const std::vector<C
   return text;
 }
 
-std::string note_list(const Table& table) {
-  std::string text;
-  for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
-  return text;
-}
-
 std::string pictures(const std::vector<Curve>& curves) {
   std::string text;
   std::string last;
@@ -115,42 +107,27 @@ std::string pictures(const std::vector<Curve>& curves) {
   return text;
 }
 
-void replace(std::string& text, const std::string& mark, const std::string& with) {
-  const std::size_t at = text.find(mark);
-  if (at == std::string::npos) throw std::runtime_error(fmt::format("page.md.in has no {}", mark));
-  text.replace(at, mark.size(), with);
-}
-
 }  // namespace
 
 void write_page(const Table& table, const std::filesystem::path& folder) {
-  const std::filesystem::path source =
-      std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/convergence/page.md.in";
-  std::ifstream in(source);
-  if (!in) throw std::runtime_error(fmt::format("{} cannot be read", source.string()));
-  std::ostringstream buffer;
-  buffer << in.rdbuf();
-  std::string text = buffer.str();
+  PageTemplate page(std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/convergence/page.md.in");
   const std::vector<Curve> zones = make_curves(table, "zones", Metric::kRms);
   const std::vector<Curve> vertices = make_curves(table, "vertices", Metric::kRms);
   const std::vector<Curve> stills = make_curves(table, "still", Metric::kMedian);
   const std::vector<Curve> stills_rms = make_curves(table, "still", Metric::kRms);
-  replace(text, "@notes@\n", note_list(table));
-  replace(text, "@factors@\n", factor_table(vertices, stills));
-  replace(text, "@zone_pictures@\n", pictures(zones));
-  replace(text, "@zone_times@\n", time_table(zones));
-  replace(text, "@zone_rates@\n", rate_table(zones));
-  replace(text, "@vertex_pictures@\n", pictures(vertices));
-  replace(text, "@vertex_times@\n", time_table(vertices));
-  replace(text, "@vertex_rates@\n", rate_table(vertices));
-  replace(text, "@still_pictures@\n", pictures(stills));
-  replace(text, "@still_times@\n", time_table(stills));
-  replace(text, "@still_times_rms@\n", time_table(stills_rms));
-  replace(text, "@still_rates@\n", rate_table(stills));
-  const std::filesystem::path file = folder / "convergence.md";
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(fmt::format("{} cannot be written", file.string()));
+  page.put_notes("notes", table.notes);
+  page.put("factors", factor_table(vertices, stills));
+  page.put("zone_pictures", pictures(zones));
+  page.put("zone_times", time_table(zones));
+  page.put("zone_rates", rate_table(zones));
+  page.put("vertex_pictures", pictures(vertices));
+  page.put("vertex_times", time_table(vertices));
+  page.put("vertex_rates", rate_table(vertices));
+  page.put("still_pictures", pictures(stills));
+  page.put("still_times", time_table(stills));
+  page.put("still_times_rms", time_table(stills_rms));
+  page.put("still_rates", rate_table(stills));
+  page.write(folder / "convergence.md");
 }
 
 }  // namespace reemit::bench

@@ -1,13 +1,11 @@
 #include "bench/many_luminaires/page.h"
 
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "bench/convergence/page_template.h"
 #include "bench/many_luminaires/parts.h"
 
 namespace reemit::bench {
@@ -141,39 +139,18 @@ std::string exponents(const Figures& figures) {
   return text;
 }
 
-std::string note_list(const Figures& figures) {
-  std::string text;
-  for (const std::string& note : figures.notes) text += fmt::format("- {}\n", note);
-  return text;
-}
-
-void replace(std::string& text, const std::string& mark, const std::string& with) {
-  const std::size_t at = text.find(mark);
-  if (at == std::string::npos) throw std::runtime_error(fmt::format("page.md.in has no {}", mark));
-  text.replace(at, mark.size(), with);
-}
-
 }  // namespace
 
 void write_many_luminaires_page(const Figures& figures, const std::filesystem::path& folder) {
-  const std::filesystem::path source =
-      std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/many_luminaires/page.md.in";
-  std::ifstream in(source);
-  if (!in) throw std::runtime_error(fmt::format("{} cannot be read", source.string()));
-  std::ostringstream buffer;
-  buffer << in.rdbuf();
-  std::string text = buffer.str();
-  replace(text, "@notes@\n", note_list(figures));
-  replace(text, "@sphereflake_targets@\n", sphereflake_targets(figures));
-  replace(text, "@sphereflake_times@\n", sphereflake_times(figures));
-  replace(text, "@sphereflake_errors@\n", sphereflake_errors(figures));
-  replace(text, "@panels@\n", panels(figures));
-  replace(text, "@growth@\n", growth(figures));
-  replace(text, "@exponents@\n", exponents(figures));
-  const std::filesystem::path file = folder / "many_luminaires.md";
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(fmt::format("{} cannot be written", file.string()));
+  PageTemplate page(std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/many_luminaires/page.md.in");
+  page.put_notes("notes", figures.notes);
+  page.put("sphereflake_targets", sphereflake_targets(figures));
+  page.put("sphereflake_times", sphereflake_times(figures));
+  page.put("sphereflake_errors", sphereflake_errors(figures));
+  page.put("panels", panels(figures));
+  page.put("growth", growth(figures));
+  page.put("exponents", exponents(figures));
+  page.write(folder / "many_luminaires.md");
 }
 
 }  // namespace reemit::bench

@@ -20,12 +20,6 @@ constexpr double kFarRadii = 4;
 /// Least weight of what the formulas say is 0 although a point of it may light x.
 constexpr double kLeast = 1e-9;
 
-struct Corners {
-  std::array<Vec3, 16> at;
-  std::size_t count = 0;
-  std::span<const Vec3> span() const { return {at.data(), count}; }
-};
-
 bool is_rectangle(const std::vector<Vec3>& c) {
   if (c.size() != 4) return false;
   const Vec3 u = c[1] - c[0];
@@ -95,8 +89,7 @@ LuminaireBounds AreaLuminaire::bounds(double radiance) const {
     return sphere_bounds(sphere->centre.cast<float>(), static_cast<float>(sphere->radius),
                          strength(kPi * sphere->radius * sphere->radius));
   const Vec3f front = front_.cast<float>();
-  if (flat_ && !std::holds_alternative<Rectangle>(shape_) && !std::holds_alternative<Triangle>(shape_) &&
-      !std::holds_alternative<Polygon>(shape_))
+  if (flat_ && (std::holds_alternative<Disk>(shape_) || std::holds_alternative<Mantle>(shape_)))
     return disk_bounds(centre_.cast<float>(), front, static_cast<float>(reach_), strength(area_));
   if (!flat_) {
     LuminaireBounds b;
