@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSlack = 1e-6;
 
+/// Half the sum of cross products around the corners: its length is the area (Newell); 0 for no corners.
 Vec3 vector_area(const std::vector<Vec3>& corners) {
   Vec3 twice = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
@@ -41,7 +42,19 @@ std::vector<Vec3> convex_corners(const Surface& surface, const Face& face) {
 struct Pieces {
   std::vector<TriangleId> triangles;
   double area = 0;
+  Vec3 vector_area = Vec3::Zero();  // sum of area * front normal
 };
+
+/// Front of one triangle of a face. A sliver beside a vertex that welding has moved may be tilted by any angle;
+/// such a triangle takes the front of the whole face. Where a face is bent, its triangles keep their own.
+Vec3 front_of_piece(const ZoneMesh& mesh, TriangleId t, const Pieces& pieces) {
+  constexpr double kLeastAltitude = 1e-4;  // of a triangle over its longest edge, for its own normal to count
+  double longest2 = 0;
+  for (int k = 0; k < 3; ++k)
+    longest2 = std::max(longest2, (mesh.corner(t, (k + 1) % 3) - mesh.corner(t, k)).squaredNorm());
+  if (2 * mesh.triangle_area(t) >= kLeastAltitude * longest2) return mesh.triangle_normal(t);
+  return pieces.vector_area.norm() > 0 ? Vec3(pieces.vector_area.normalized()) : mesh.triangle_normal(t);
+}
 
 }  // namespace
 
@@ -55,23 +68,27 @@ std::vector<LuminaireFace> luminaire_faces(const Scene& scene, const ZoneMesh& m
     Pieces& pieces = by_face[{triangle.surface, triangle.face}];
     pieces.triangles.push_back(t);
     pieces.area += mesh.triangle_area(t);
+    pieces.vector_area += mesh.triangle_area(t) * mesh.triangle_normal(t);
   }
   std::vector<LuminaireFace> faces;
   for (const auto& [key, pieces] : by_face) {
     const Surface& surface = scene.surfaces[key.first.index()];
-    const TriangleId first = pieces.triangles.front();
+    const bool two_sided = mesh.triangle(pieces.triangles.front()).two_sided;
     std::vector<Vec3> corners;
     if (key.second < surface.faces.size()) corners = convex_corners(surface, surface.faces[key.second]);
-    if (!corners.empty() && std::abs(vector_area(corners).norm() - pieces.area) <= kSlack * pieces.area) {
-      faces.push_back(
-          {std::move(corners), mesh.triangle_normal(first), key.first, mesh.triangle(first).two_sided});
+    const Vec3 outline_area = vector_area(corners);
+    if (!corners.empty() && std::abs(outline_area.norm() - pieces.area) <= kSlack * pieces.area) {
+      // The outline knows the plane, the mesh which of its sides is the front.
+      const Vec3 normal = outline_area.normalized();
+      const bool reversed = normal.dot(pieces.vector_area) < 0;
+      faces.push_back({std::move(corners), reversed ? Vec3(-normal) : normal, key.first, two_sided});
       continue;
     }
     for (const TriangleId t : pieces.triangles)
       faces.push_back({{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)},
-                       mesh.triangle_normal(t),
+                       front_of_piece(mesh, t, pieces),
                        key.first,
-                       mesh.triangle(t).two_sided});
+                       two_sided});
   }
   return faces;
 }
