@@ -39,12 +39,19 @@ double mean_zone_area(const ZoneMesh& mesh) {
   return area / static_cast<double>(mesh.zone_count());
 }
 
+/// Zones that are small, or those that are not, by number.
+std::vector<ZoneId> zones_by_size(const ZoneMesh& mesh, bool small) {
+  std::vector<ZoneId> zones;
+  if (mesh.zone_count() == 0) return zones;
+  const double limit = mean_zone_area(mesh) / kFewerPackets;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z)
+    if ((mesh.zone_area(ZoneId(z)) < limit) == small) zones.push_back(ZoneId(z));
+  return zones;
+}
+
 /// Small zones, smallest first.
 std::vector<ZoneId> small_zones(const ZoneMesh& mesh) {
-  const double limit = mean_zone_area(mesh) / kFewerPackets;
-  std::vector<ZoneId> zones;
-  for (std::size_t z = 0; z < mesh.zone_count(); ++z)
-    if (mesh.zone_area(ZoneId(z)) < limit) zones.push_back(ZoneId(z));
+  std::vector<ZoneId> zones = zones_by_size(mesh, true);
   std::stable_sort(zones.begin(), zones.end(),
                    [&](ZoneId a, ZoneId b) { return mesh.zone_area(a) < mesh.zone_area(b); });
   return zones;
@@ -159,7 +166,11 @@ bool is_worthwhile(const PilotResult& pilot, double gain, double area, double wa
 }  // namespace
 
 std::size_t small_zone_count(const ZoneMesh& mesh) {
-  return mesh.zone_count() == 0 ? 0 : small_zones(mesh).size();
+  return zones_by_size(mesh, true).size();
+}
+
+std::vector<ZoneId> zones_left_to_packets(const ZoneMesh& mesh) {
+  return zones_by_size(mesh, false);
 }
 
 void gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,

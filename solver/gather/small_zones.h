@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "scenes/model/scene.h"
 #include "solver/solution/solution.h"
@@ -12,6 +13,8 @@ namespace reemit {
 /// How many zones are so small that packets leave them clearly noisier than the rest: less than a ninth of
 /// the mean zone area, which at equal light means more than three times the error.
 std::size_t small_zone_count(const ZoneMesh& mesh);
+/// All others, by number.
+std::vector<ZoneId> zones_left_to_packets(const ZoneMesh& mesh);
 
 /// How much work gathering on small zones may be.
 struct SmallZoneLimits {

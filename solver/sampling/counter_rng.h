@@ -20,6 +20,7 @@ enum class RngPurpose : std::uint32_t {
   kSmallZonePilot,
   kDiscretisation,
   kFormFactor,
+  kDirectAudit,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

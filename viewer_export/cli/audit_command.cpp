@@ -1,43 +1,85 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "solver/gather/direct_audit.h"
+#include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/audit_report.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/direct_audit_report.h"
+#include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/progress.h"
 
 namespace reemit::cli {
 namespace {
 
 struct AuditOptions {
   std::filesystem::path solution;
+  std::optional<std::filesystem::path> room;
+  bool direct = false;
+  DirectAuditSettings settings;
   OutputStyle style;
 };
 
+/// Nothing if it was interrupted.
+std::optional<DirectAudit> compare_direct_light(const AuditOptions& options, const Solution& solution) {
+  const Scene scene = read_room_of(solution, options.solution, options.room);
+  const RayScene rays(solution.mesh);
+  const InterruptGuard interrupt;
+  Progress progress("comparing direct light", progress_style(options.style.quiet, options.style.verbose));
+  DirectAudit audit = audit_direct_light(
+      scene, rays, solution, options.settings, [&progress](double done) { progress.update(done); },
+      interrupt.requested());
+  progress.finish();
+  if (interrupt.requested()) return std::nullopt;
+  return audit;
+}
+
 ExitCode run_audit(const AuditOptions& options) {
   const Solution solution = load_solution(options.solution);
+  std::optional<DirectAudit> direct;
+  if (options.direct) {
+    direct = compare_direct_light(options, solution);
+    if (!direct) return ExitCode::kInterrupted;
+  }
   if (options.style.json) {
-    fmt::print("{}\n", audit_json(solution.audit, solution.surface_names).dump(2));
+    nlohmann::ordered_json document = audit_json(solution.audit, solution.surface_names);
+    if (direct) document["direct"] = direct_audit_json(*direct, solution);
+    fmt::print("{}\n", document.dump(2));
   } else {
     fmt::print("{}", audit_text(solution.audit, solution.surface_names));
+    if (direct) fmt::print("\n{}", direct_audit_text(*direct, solution));
   }
-  return solution.audit.balanced() ? ExitCode::kDone : ExitCode::kCheckFailed;
+  const bool sound = solution.audit.balanced() && (!direct || direct->agrees());
+  return sound ? ExitCode::kDone : ExitCode::kCheckFailed;
 }
 
 }  // namespace
 
 void add_audit_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<AuditOptions>();
-  CLI::App& audit = *program.add_subcommand("audit", "Say where every watt went");
+  CLI::App& audit = *program.add_subcommand("audit", "Say where every watt went, and check the direct light");
   audit.footer(
-      "Exit code 1 if the books do not balance: emitted = absorbed + escaped + unshot + roulette, to the "
-      "quantum.\n"
-      "Example:\n"
-      "  reemit audit room.h5 --json");
+      "Exit code 1 if the books do not balance: emitted = absorbed + escaped + unshot + roulette, to the\n"
+      "quantum; or if --direct finds zones that differ.\n"
+      "Examples:\n"
+      "  reemit audit room.h5 --json\n"
+      "  reemit audit room.h5 --direct");
   audit.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
+  auto* direct =
+      audit.add_flag("--direct", options->direct,
+                     "Compare the direct light of every zone, which packets brought, with shadow rays\n"
+                     "to the luminaires, which stills and exports use");
+  add_integer_option(audit, "--points", options->settings.points, 32, 1 << 20,
+                     "Shadow rays per zone, rounded up")
+      ->needs(direct);
+  add_room_option(audit, options->room);
+  add_progress_options(audit, options->style);
   add_json_option(audit, options->style);
   audit.callback([options, &action] { action = [options] { return run_audit(*options); }; });
 }

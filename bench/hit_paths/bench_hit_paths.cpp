@@ -1,0 +1,102 @@
+// Stills, block by block, against paths that sample no luminaire, on generated rooms and rooms of one's own.
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/hit_paths/block_comparison.h"
+#include "bench/hit_paths/touching_lamps.h"
+#include "scenes/io/scene_reader.h"
+#include "viewer_export/still/default_cameras.h"
+
+namespace {
+
+using namespace reemit;
+using namespace reemit::hit_paths;
+
+void print(const std::string& room, const Comparison& c) {
+  double largest = 0;
+  for (const BlockDeviation& b : c.blocks)
+    if (std::abs(b.errors()) > kMostErrors) largest = std::max(largest, std::abs(b.relative()));
+  fmt::print("| {} | {} | {} | {:.2f} / {:.2f} | {:.1f} | {:+.2f} | {:.1f} | {:.1f} | {} |\n", room, c.camera,
+             c.blocks.size(), 100 * c.reference_error, 100 * c.largest_reference_error,
+             1e-6 * static_cast<double>(c.paths), 100 * c.mean_deviation,
+             c.blocks.empty() ? 0.0 : std::abs(c.blocks[0].errors()), 100 * largest, c.different());
+  std::size_t shown = 0;
+  for (const BlockDeviation& b : c.blocks)
+    if (b.differs() && shown++ < 8)
+      fmt::print(
+          "<!-- block at pixel ({}, {}): {:.4g} against {:.4g}, {:+.1f} %, {:+.1f} standard errors -->\n",
+          b.x, b.y, b.checked, b.reference, 100 * b.relative(), b.errors());
+  std::fflush(stdout);
+}
+
+std::vector<Camera> cameras_of(const Scene& scene, std::size_t most) {
+  std::vector<Camera> cameras = scene.cameras;
+  if (cameras.empty()) {
+    const ZoneMesh mesh = build_mesh(scene).mesh;
+    cameras = default_cameras(scene, RayScene(mesh));
+  }
+  cameras.resize(std::min(cameras.size(), most));
+  return cameras;
+}
+
+std::size_t compare(const std::string& name, const Scene& scene, const ComparisonSettings& settings,
+                    std::size_t most_cameras) {
+  std::size_t different = 0;
+  for (const Camera& camera : cameras_of(scene, most_cameras)) {
+    try {
+      const Comparison c = compare_blocks(scene, camera, settings);
+      print(name, c);
+      different += c.different();
+    } catch (const std::invalid_argument& e) {
+      fmt::print("| {} | not compared: {} |\n", name, e.what());
+      break;
+    }
+  }
+  return different;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Compares 16 x 16 blocks of stills with paths that only hit luminaires.\n"
+      "Exit code 1 if a block differs by more than 5 standard errors and 3 %.");
+  std::vector<std::filesystem::path> rooms;
+  bool generated = false;
+  std::size_t cameras = 1;
+  ComparisonSettings settings;
+  app.add_option("rooms", rooms, "Room files")->check(CLI::ExistingFile);
+  app.add_flag("--generated", generated, "Compare the 20 generated rooms with touching lamps");
+  app.add_option("--cameras", cameras, "Cameras of each room");
+  app.add_option("--seconds", settings.seconds, "For the reference of one picture [s]")
+      ->capture_default_str();
+  app.add_option("--packets", settings.packets, "Of the zone solution")->capture_default_str();
+  app.add_option("--spp", settings.spp, "Of the checked still")->capture_default_str();
+  app.add_option("--zone-area", settings.zone_area, "[m2]");
+  app.add_option("--bias", settings.planted_bias, "Planted in the checked still, as a share");
+  app.add_flag("--path", settings.by_path, "Check the path tracer instead of the gathered still");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    fmt::print(
+        "| room | camera | blocks | reference error, median / largest [%] | paths [1e6] | mean [%] | largest "
+        "[std. err.] | "
+        "largest beyond 5 [%] | blocks that differ |\n|---|---|---|---|---|---|---|---|---|\n");
+    std::size_t different = 0;
+    if (generated)
+      for (const std::uint32_t i : kTouchingLampsRooms)
+        different += compare(fmt::format("touching lamps {}", i), touching_lamps_room(i), settings, cameras);
+    for (const auto& file : rooms)
+      different += compare(file.stem().string(), read_scene(file), settings, cameras);
+    return different == 0 ? 0 : 1;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "bench_hit_paths: {}\n", e.what());
+    return 2;
+  }
+}

@@ -1,0 +1,123 @@
+#include "bench/hit_paths/hit_path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <Eigen/Geometry>
+
+namespace reemit::hit_paths {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+/// Bounces before chance may end a path, and the largest probability of going on.
+constexpr int kSafeBounces = 4;
+constexpr double kLongestSurvival = 0.98;
+
+double uniform(HitPathTracer::Random& random) {
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+Vec3 cosine_direction(const Vec3& normal, HitPathTracer::Random& random) {
+  const double r = std::sqrt(uniform(random));
+  const double phi = 2 * kPi * uniform(random);
+  const Vec3 tangent = normal.unitOrthogonal();
+  return (r * std::cos(phi) * tangent + r * std::sin(phi) * normal.cross(tangent) +
+          std::sqrt(std::max(0.0, 1 - r * r)) * normal)
+      .normalized();
+}
+
+/// What a light that no path can hit sends to a point.
+struct Arriving {
+  Vec3 from;            // the light, or far away towards it
+  Spectrum irradiance;  // [W/m2] on a plane across the way
+};
+
+struct Arrive {
+  const Vec3& x;
+  double far;
+
+  Arriving operator()(const PointLight& l) const {
+    return {l.position, l.intensity / (l.position - x).squaredNorm()};
+  }
+  Arriving operator()(const SpotLight& l) const {
+    const Vec3 way = x - l.position;
+    const double cosine = way.normalized().dot(l.direction);
+    const double inner = std::cos(l.inner_angle);
+    const double outer = std::cos(l.outer_angle);
+    const double share = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
+    return {l.position, share * share * l.intensity / way.squaredNorm()};
+  }
+  Arriving operator()(const DirectionalLight& l) const { return {x - far * l.direction, l.irradiance}; }
+  Arriving operator()(const PhotometricLight& l) const {
+    const Vec3 way = x - l.position;
+    return {l.position, l.table->intensity(l.orientation.transpose() * way) * l.intensity_per_candela /
+                            way.squaredNorm()};
+  }
+};
+
+}  // namespace
+
+HitPathTracer::HitPathTracer(const Scene& scene, const Camera& camera, int width, int height)
+    : scene_(&scene), room_(scene), eye_(camera.eye) {
+  for (const PunctualLight& light : scene.lights) {
+    const auto* measured = std::get_if<PhotometricLight>(&light);
+    if (measured != nullptr && measured->opening.shape != LuminousOpening::Shape::kPoint)
+      throw std::invalid_argument("measured luminaires with an opening are not in the reference");
+  }
+  const Vec3 forward = (camera.look_at - camera.eye).normalized();
+  const Vec3 right = forward.cross(camera.up).normalized();
+  const double step = 2 * std::tan(camera.vertical_fov_deg * kPi / 360) / height;
+  right_ = step * right;
+  down_ = step * forward.cross(right);
+  corner_ = forward - 0.5 * width * right_ - 0.5 * height * down_;
+}
+
+void HitPathTracer::add_emission(const RoomHit& hit, const Vec3& direction, const Spectrum& weight,
+                                 double* sum) const {
+  const Material& m = *hit.material;
+  if (!m.emits() || !(hit.front || (m.two_sided && m.emits_both_sides))) return;
+  const double cosine = -hit.normal.dot(direction);
+  const double shape = m.emission_exponent > 0 ? std::pow(cosine, m.emission_exponent) : 1.0;
+  for (Eigen::Index b = 0; b < weight.size(); ++b) sum[b] += weight[b] * shape * m.emitted_radiance[b];
+}
+
+void HitPathTracer::add_lights(const RoomHit& hit, const Spectrum& weight, double* sum) const {
+  for (const PunctualLight& light : scene_->lights) {
+    const Arriving arriving = std::visit(Arrive{hit.point, 10 * room_.diagonal()}, light);
+    const Vec3 way = arriving.from - hit.point;
+    const double cosine = hit.normal.dot(way.normalized());
+    if (!(cosine > 0) || !(arriving.irradiance > 0).any()) continue;
+    if (!room_.visible({hit.point, hit.part}, arriving.from)) continue;
+    for (Eigen::Index b = 0; b < weight.size(); ++b)
+      sum[b] += weight[b] * hit.material->reflectance[b] / kPi * cosine * arriving.irradiance[b];
+  }
+}
+
+void HitPathTracer::add_path(int x, int y, Random& random, double* sum) const {
+  const double px = x + uniform(random);
+  const double py = y + uniform(random);
+  Vec3 direction = (corner_ + px * right_ + py * down_).normalized();
+  RayStart start{eye_, RayStart::kFree};
+  Spectrum weight = Spectrum::Ones(static_cast<Eigen::Index>(scene_->bands.count()));
+  for (int bounce = 0;; ++bounce) {
+    const auto hit = room_.closest(start, direction, bounce == 0);
+    if (!hit) return;
+    add_emission(*hit, direction, weight, sum);
+    if (!hit->front && !hit->material->two_sided) return;
+    add_lights(*hit, weight, sum);
+    weight *= hit->material->reflectance;
+    const double largest = weight.maxCoeff();
+    if (!(largest > 0)) return;
+    if (bounce >= kSafeBounces) {
+      const double survival = std::min(largest, kLongestSurvival);
+      if (uniform(random) >= survival) return;
+      weight /= survival;
+    }
+    start = {hit->point, hit->part};
+    direction = cosine_direction(hit->normal, random);
+  }
+}
+
+}  // namespace reemit::hit_paths

@@ -1,0 +1,132 @@
+#include "solver/gather/direct_audit.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include <tbb/parallel_for.h>
+
+#include "scenes/model/error.h"
+#include "solver/gather/replicate_gather.h"
+#include "solver/gather/small_zones.h"
+#include "solver/tally/replicates.h"
+
+namespace reemit {
+namespace {
+
+constexpr int kReplicates = 32;
+constexpr std::size_t kChunk = 64;
+/// What float arithmetic and the drawing of ray starts towards the middle of their triangles may shift.
+constexpr double kRounding = 0.003;
+
+/// Zones whose direct light is that of packets.
+std::vector<ZoneId> zones_to_compare(const Solution& solution) {
+  if (solution.record.gathered_zones > 0) return zones_left_to_packets(solution.mesh);
+  std::vector<ZoneId> zones;
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) zones.emplace_back(z);
+  return zones;
+}
+
+/// Mean over a zone of the irradiance from sampled luminaires, all bands together, and its standard error
+/// [W/m2].
+ReplicateMean sampled_irradiance(const DirectLight& light, const RayScene& rays, ZoneId zone, int points,
+                                 std::uint64_t seed) {
+  const int per_replicate = (points + kReplicates - 1) / kReplicates;
+  const auto log2_points = std::countr_zero(std::bit_ceil(static_cast<unsigned>(per_replicate)));
+  const std::vector<float> weight(light.band_count(), 1.0F / static_cast<float>(per_replicate));
+  std::vector<float> found(light.band_count());
+  return mean_of_replicates(kReplicates, kReplicates, [&](std::size_t r) {
+    const PointSampler sampler(seed, RngPurpose::kDirectAudit, zone.index(), static_cast<int>(r),
+                               log2_points);
+    std::fill(found.begin(), found.end(), 0.0F);
+    for (int i = 0; i < per_replicate; ++i)
+      light.add_sample(point_in_zone(rays, zone, sampler.place(i)), sampler.light(i, 0, 1), weight.data(),
+                       found.data());
+    return static_cast<double>(std::reduce(found.begin(), found.end()));
+  });
+}
+
+}  // namespace
+
+DirectAudit audit_direct_light(const Scene& scene, const RayScene& rays, const Solution& solution,
+                               const DirectAuditSettings& settings,
+                               const std::function<void(double)>& progress,
+                               const std::atomic<bool>& interrupt) {
+  if (solution.record.packets == 0 || solution.sums.batches == 0)
+    throw InputError("solution", "it holds no packets whose first hits could be compared",
+                     "solve the room with --method shooting or walk");
+  const ZoneMesh& mesh = solution.mesh;
+  const std::vector<ZoneId> zones = zones_to_compare(solution);
+  const DirectLight light(scene, rays);
+
+  const double emitted =
+      std::transform_reduce(solution.audit.bands.begin(), solution.audit.bands.end(), 0.0, std::plus<>(),
+                            [&](const BandAudit& band) { return solution.audit.watts(band, band.emitted); });
+  const double watts_per_packet = emitted / static_cast<double>(solution.record.packets);
+  // P(count - mean >= k sqrt(mean) + k^2/3) <= exp(-k^2/2), and the same below [BLM13, cor. 2.11].
+  const double k = std::sqrt(
+      2 * std::log(2 * static_cast<double>(std::max<std::size_t>(1, zones.size())) / settings.false_alarm));
+
+  // What chance explains of a mean number of packets, with a variance of the samples on top, both in packets.
+  const auto chance = [&](double packets, double variance) {
+    return k * std::sqrt(packets + variance) + k * k / 3 + kRounding * packets;
+  };
+
+  struct Found {
+    DirectDifference difference;
+    double variance = 0;  // of by_samples
+  };
+  std::vector<Found> found(zones.size());
+  std::atomic<std::size_t> done{0};
+  const std::size_t chunks = (zones.size() + kChunk - 1) / kChunk;
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
+    const std::size_t last = std::min(zones.size(), (c + 1) * kChunk);
+    for (std::size_t i = c * kChunk; i < last; ++i) {
+      if (interrupt) return;
+      DirectDifference& d = found[i].difference;
+      for (std::size_t b = 0; b < scene.bands.count(); ++b)
+        d.by_packets += solution.direct_irradiance(zones[i], b).mean;
+      const ReplicateMean samples = sampled_irradiance(light, rays, zones[i], settings.points, settings.seed);
+      const double per_packet = watts_per_packet / mesh.zone_area(zones[i]);
+      d.by_samples = samples.mean;
+      d.limit =
+          per_packet * chance(samples.mean / per_packet, samples.squared_error / (per_packet * per_packet));
+      d.zone = zones[i];
+      found[i].variance = samples.squared_error;
+    }
+    done += last - c * kChunk;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(zones.size()));
+  });
+
+  DirectAudit audit;
+  audit.left_out = mesh.zone_count() - zones.size();
+  audit.surfaces.resize(scene.surfaces.size());
+  std::vector<double> variances(scene.surfaces.size(), 0.0);  // of SurfaceDirect::by_samples
+  for (const auto& [d, variance] : found) {
+    if (!d.zone.valid()) continue;
+    const double area = mesh.zone_area(d.zone);
+    const std::size_t s = mesh.zone_surface(d.zone).index();
+    ++audit.compared;
+    audit.surfaces[s].by_packets += area * d.by_packets;
+    audit.surfaces[s].by_samples += area * d.by_samples;
+    variances[s] += area * area * variance;
+    if (std::abs(d.by_packets - d.by_samples) > d.limit) audit.different.push_back(d);
+  }
+  for (std::size_t s = 0; s < audit.surfaces.size(); ++s)
+    audit.surfaces[s].limit = watts_per_packet * chance(audit.surfaces[s].by_samples / watts_per_packet,
+                                                        variances[s] / (watts_per_packet * watts_per_packet));
+  const auto power = [&](const DirectDifference& d) {
+    return mesh.zone_area(d.zone) * std::abs(d.by_packets - d.by_samples);
+  };
+  std::stable_sort(audit.different.begin(), audit.different.end(),
+                   [&](const DirectDifference& a, const DirectDifference& b) { return power(a) > power(b); });
+  return audit;
+}
+
+bool DirectAudit::agrees() const {
+  return different.empty() &&
+         std::none_of(surfaces.begin(), surfaces.end(), [](const SurfaceDirect& s) { return s.differs(); });
+}
+
+}  // namespace reemit
