@@ -23,9 +23,9 @@ void print(const std::string& room, const Comparison& c) {
   double largest = 0;
   for (const BlockDeviation& b : c.blocks)
     if (std::abs(b.errors()) > kMostErrors) largest = std::max(largest, std::abs(b.relative()));
-  fmt::print("| {} | {} | {} | {:.2f} / {:.2f} | {:.1f} | {:+.2f} | {:.1f} | {:.1f} | {} |\n", room, c.camera,
-             c.blocks.size(), 100 * c.reference_error, 100 * c.largest_reference_error,
-             1e-6 * static_cast<double>(c.paths), 100 * c.mean_deviation,
+  fmt::print("| {} | {} | {} | {:.2f} / {:.2f} | {:.1f} | {:+.2f} +- {:.2f} | {:.1f} | {:.1f} | {} |\n", room,
+             c.camera, c.blocks.size(), 100 * c.reference_error, 100 * c.largest_reference_error,
+             1e-6 * static_cast<double>(c.paths), 100 * c.mean_deviation, 100 * c.mean_error,
              c.blocks.empty() ? 0.0 : std::abs(c.blocks[0].errors()), 100 * largest, c.different());
   std::size_t shown = 0;
   for (const BlockDeviation& b : c.blocks)
@@ -77,8 +77,8 @@ int main(int argc, char** argv) {
   app.add_option("--cameras", cameras, "Cameras of each room");
   app.add_option("--seconds", settings.seconds, "For the reference of one picture [s]")
       ->capture_default_str();
-  app.add_option("--packets", settings.packets, "Of the zone solution")->capture_default_str();
-  app.add_option("--spp", settings.spp, "Of the checked still")->capture_default_str();
+  app.add_option("--packets", settings.packets, "Of the zone solutions, all together")->capture_default_str();
+  app.add_option("--spp", settings.spp, "Of the checked stills, all together")->capture_default_str();
   app.add_option("--zone-area", settings.zone_area, "[m2]");
   app.add_option("--bias", settings.planted_bias, "Planted in the checked still, as a share");
   app.add_flag("--path", settings.by_path, "Check the path tracer instead of the gathered still");

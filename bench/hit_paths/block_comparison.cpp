@@ -4,7 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
 
@@ -75,7 +75,8 @@ std::vector<BlockSums> trace_reference(const Scene& scene, const Camera& camera,
   for (;;) {
     tbb::parallel_for(std::size_t{0}, count,
                       [&](std::size_t i) { add_passes(tracer, settings, i, blocks[i]); });
-    if (blocks[0].passes < kLeastPasses) continue;
+    if (settings.passes > 0 && blocks[0].passes >= settings.passes) return blocks;
+    if (settings.passes > 0 || blocks[0].passes < kLeastPasses) continue;
     std::vector<double> errors;
     for (const BlockSums& s : blocks) errors.push_back(worst_error(s));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -83,29 +84,62 @@ std::vector<BlockSums> trace_reference(const Scene& scene, const Camera& camera,
   }
 }
 
-/// The still that is checked, and by how much the noise of its zone solution may shift all of a block.
-struct CheckedStill {
-  StillImage image;
-  double zone_error = 0;
+/// Independent renderings of the still, each with a zone solution of its own: only so does their spread hold
+/// the noise of the zones, which the pixels of a block share.
+constexpr int kRenderings = 8;
+
+/// Mean radiance of one block in one band over the renderings.
+struct CheckedBlock {
+  std::vector<double> values;
+  double mean() const { return std::accumulate(values.begin(), values.end(), 0.0) / kRenderings; }
+  double standard_error() const {
+    double squares = 0;
+    for (const double v : values) squares += (v - mean()) * (v - mean());
+    return std::sqrt(squares / (kRenderings * (kRenderings - 1)));
+  }
 };
 
-CheckedStill render(const Scene& scene, const Camera& camera, const ComparisonSettings& settings) {
+double block_mean(const StillImage& image, int x0, int y0, std::size_t band) {
+  double sum = 0;
+  for (int y = y0; y < y0 + kBlock; ++y)
+    for (int x = x0; x < x0 + kBlock; ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+      sum += static_cast<double>(image.radiance[pixel * image.bands.count() + band]);
+    }
+  return sum / (kBlock * kBlock);
+}
+
+/// By block, then band.
+std::vector<CheckedBlock> render(const Scene& scene, const Camera& camera,
+                                 const ComparisonSettings& settings) {
   const std::atomic<bool> never{false};
-  MeshSettings mesh;
-  if (settings.zone_area > 0) mesh.zone_area = settings.zone_area;
+  MeshSettings mesh_settings;
+  if (settings.zone_area > 0) mesh_settings.zone_area = settings.zone_area;
+  const MeshResult mesh = build_mesh(scene, mesh_settings);
   SolverSettings solver;
-  solver.packets = settings.packets;
-  solver.seed = settings.seed;
-  const Solution solution = solve(scene, build_mesh(scene, mesh), solver, {}, never);
-  const RayScene rays(solution.mesh);
+  solver.packets = settings.packets / kRenderings;
   StillSettings still;
   still.width = settings.width;
   still.height = settings.height;
-  still.spp = settings.spp;
-  still.seed = settings.seed;
+  still.spp = std::max(1, settings.spp / kRenderings);
   still.integrator = settings.by_path ? Integrator::kPath : Integrator::kGather;
-  return {render_still(scene, solution, rays, camera, still, {}, never),
-          settings.by_path ? 0.0 : solution.record.error};
+  const int across = settings.width / kBlock;
+  const int blocks = across * (settings.height / kBlock);
+  std::vector<CheckedBlock> found(static_cast<std::size_t>(blocks) * scene.bands.count());
+  for (int rendering = 0; rendering < kRenderings; ++rendering) {
+    solver.seed = settings.seed * kRenderings + static_cast<std::uint64_t>(rendering);
+    still.seed = solver.seed;
+    const Solution solution = solve(scene, mesh, solver, {}, never);
+    const RayScene rays(solution.mesh);
+    const StillImage image = render_still(scene, solution, rays, camera, still, {}, never);
+    auto next = found.begin();
+    for (int i = 0; i < blocks; ++i)
+      for (std::size_t b = 0; b < scene.bands.count(); ++b)
+        (next++)->values.push_back((1 + settings.planted_bias) *
+                                   block_mean(image, i % across * kBlock, i / across * kBlock, b));
+  }
+  return found;
 }
 
 }  // namespace
@@ -121,43 +155,41 @@ std::size_t Comparison::different() const {
 
 Comparison compare_blocks(const Scene& scene, const Camera& camera, const ComparisonSettings& settings) {
   const std::vector<BlockSums> reference = trace_reference(scene, camera, settings);
-  const CheckedStill checked = render(scene, camera, settings);
+  const std::vector<CheckedBlock> checked = render(scene, camera, settings);
   const std::size_t bands = scene.bands.count();
+
+  // Eight values know their spread badly: a block has at least the relative error of the median one.
+  std::vector<double> spreads;
+  for (const CheckedBlock& c : checked)
+    if (c.mean() > 0) spreads.push_back(c.standard_error() / c.mean());
+  const double least_spread = median(spreads);
+
   Comparison out;
   out.camera = camera.name;
   std::vector<double> errors;
-  double sum = 0;
+  std::vector<double> totals(kRenderings, 0.0);
   double sum_of_reference = 0;
+  double variance_of_reference = 0;
   const int across = settings.width / kBlock;
   for (std::size_t i = 0; i < reference.size(); ++i) {
-    const int x0 = static_cast<int>(i) % across * kBlock;
-    const int y0 = static_cast<int>(i) / across * kBlock;
     BlockDeviation worst;
     double worst_errors = -1;
+    double standard_error = 0;  // of the reference over bands, which share their paths
     for (std::size_t b = 0; b < bands; ++b) {
-      double mean = 0;
-      double variance = 0;
-      for (int y = y0; y < y0 + kBlock; ++y)
-        for (int x = x0; x < x0 + kBlock; ++x) {
-          const std::size_t at = (static_cast<std::size_t>(y) * static_cast<std::size_t>(settings.width) +
-                                  static_cast<std::size_t>(x)) *
-                                     bands +
-                                 b;
-          mean += static_cast<double>(checked.image.radiance[at]) / (kBlock * kBlock);
-          variance += std::pow(static_cast<double>(checked.image.radiance_stderr[at]) / (kBlock * kBlock), 2);
-        }
-      mean *= 1 + settings.planted_bias;
+      const CheckedBlock& c = checked[i * bands + b];
       const double expected = reference[i].mean(b);
-      sum += mean;
+      for (std::size_t r = 0; r < kRenderings; ++r) totals[r] += c.values[r];
       sum_of_reference += expected;
-      if (mean == 0 && expected == 0) continue;
-      BlockDeviation d{x0, y0, mean, expected,
-                       std::sqrt(variance + std::pow(checked.zone_error * mean, 2) +
-                                 std::pow(reference[i].standard_error(b), 2))};
+      standard_error += reference[i].standard_error(b);
+      if (c.mean() == 0 && expected == 0) continue;
+      const double spread = std::max(c.standard_error(), least_spread * c.mean());
+      const BlockDeviation d{static_cast<int>(i) % across * kBlock, static_cast<int>(i) / across * kBlock,
+                             c.mean(), expected, std::hypot(spread, reference[i].standard_error(b))};
       if (std::abs(d.errors()) <= worst_errors) continue;
       worst_errors = std::abs(d.errors());
       worst = d;
     }
+    variance_of_reference += standard_error * standard_error;
     if (worst_errors < 0) {
       ++out.black;
       continue;
@@ -168,7 +200,11 @@ Comparison compare_blocks(const Scene& scene, const Camera& camera, const Compar
     out.largest_reference_error = std::max(out.largest_reference_error, error);
     out.paths += static_cast<std::uint64_t>(reference[i].passes) * kBlock * kBlock;
   }
-  out.mean_deviation = sum_of_reference > 0 ? sum / sum_of_reference - 1 : 0;
+  if (sum_of_reference > 0) {
+    const CheckedBlock whole{totals};
+    out.mean_deviation = whole.mean() / sum_of_reference - 1;
+    out.mean_error = std::hypot(whole.standard_error(), std::sqrt(variance_of_reference)) / sum_of_reference;
+  }
   out.reference_error = median(errors);
   std::sort(out.blocks.begin(), out.blocks.end(), [](const BlockDeviation& a, const BlockDeviation& b) {
     return std::abs(a.errors()) > std::abs(b.errors());

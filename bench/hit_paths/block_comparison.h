@@ -19,11 +19,12 @@ constexpr double kMostDeviation = 0.03;
 struct ComparisonSettings {
   int width = 128;  ///< [px], a multiple of kBlock.
   int height = 96;
-  double seconds = 30;             ///< For the reference [s]; it stops sooner when its error is small enough.
-  double reference_error = 0.006;  ///< Median over blocks at which the reference stops.
-  std::uint64_t packets = 4'000'000;
-  int spp = 256;         ///< Of the still that is checked.
-  double zone_area = 0;  ///< [m2], 0 = default.
+  double seconds = 30;  ///< For the reference [s]; it stops sooner when its error is small enough.
+  int passes = 0;  ///< Paths per pixel of the reference instead, a multiple of 8: the same on any machine.
+  double reference_error = 0.006;     ///< Median over blocks at which the reference stops.
+  std::uint64_t packets = 8'000'000;  ///< Of the zone solutions, all together.
+  int spp = 256;                      ///< Of the still that is checked.
+  double zone_area = 0;               ///< [m2], 0 = default.
   std::uint64_t seed = 1;
   double planted_bias = 0;  ///< Added to the checked picture as a share, to see whether it would be noticed.
   bool by_path = false;     ///< Check the path tracer instead of gathering.
@@ -45,6 +46,7 @@ struct Comparison {
   std::vector<BlockDeviation> blocks;  ///< Those with light, by falling |errors|.
   int black = 0;                       ///< Blocks that are black in both.
   double mean_deviation = 0;           ///< Of the whole picture, relative.
+  double mean_error = 0;               ///< Relative standard error of that.
   double reference_error = 0;          ///< Median relative standard error of the blocks' references.
   double largest_reference_error = 0;
   std::uint64_t paths = 0;

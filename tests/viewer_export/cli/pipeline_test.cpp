@@ -72,6 +72,16 @@ TEST_F(Pipeline, WithoutAStoppingRuleItSaysWhichOneItTakes) {
   EXPECT_THAT(run.err, HasSubstr("--error 2%"));
 }
 
+TEST_F(Pipeline, DirectLightOfPacketsAndShadowRaysAgrees) {
+  solve_small_room(folder_, "room.h5");
+  const json direct = json::parse(output_of({"audit", path("room.h5"), "--direct", "--json"}))["direct"];
+  EXPECT_TRUE(direct["agrees"].get<bool>());
+  EXPECT_GT(direct["zones_compared"].get<int>(), 100);
+  EXPECT_EQ(direct["zones_different"], 0);
+  EXPECT_EQ(direct["surfaces"].size(), 2U);
+  EXPECT_THAT(output_of({"audit", path("room.h5"), "--direct"}), HasSubstr("None of"));
+}
+
 TEST_F(Pipeline, RendersWithAllIntegrators) {
   solve_small_room(folder_, "room.h5");
   for (const char* integrator : {"gather", "path", "zones"}) {

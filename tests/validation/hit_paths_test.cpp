@@ -1,0 +1,78 @@
+// Stills against paths that sample no luminaire and share neither mesh nor rays with the program, in short:
+// the long form is bench_hit_paths.
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "bench/hit_paths/block_comparison.h"
+#include "bench/hit_paths/touching_lamps.h"
+#include "scenes/io/scene_reader.h"
+#include "tests/support/temp_folder.h"
+
+namespace reemit::hit_paths {
+namespace {
+
+/// Limits of a whole picture, in standard errors: odds of a false alarm 6e-7 (normal; a picture's reference
+/// has over 10^5 paths) for each of the five comparisons here. Blocks: kMostErrors and kMostDeviation.
+constexpr double kLimit = 5;
+
+ComparisonSettings quick(bool by_path) {
+  ComparisonSettings settings;
+  settings.width = 64;
+  settings.height = 48;
+  settings.passes = 256;
+  settings.packets = 600'000;
+  settings.spp = 64;
+  settings.by_path = by_path;
+  return settings;
+}
+
+void expect_same_picture(const Scene& scene) {
+  for (const bool by_path : {false, true}) {
+    const Comparison c = compare_blocks(scene, scene.cameras.at(0), quick(by_path));
+    const std::string what = scene.name + (by_path ? ", path traced" : ", gathered");
+    EXPECT_EQ(c.different(), 0U) << what << ": worst block " << c.blocks.at(0).relative() << ", "
+                                 << c.blocks.at(0).errors() << " standard errors";
+    EXPECT_LE(std::abs(c.mean_deviation), kLimit * c.mean_error) << what;
+    EXPECT_LT(c.mean_error, 0.01) << what << ": too weak to tell";
+  }
+}
+
+/// A lamp that hangs over a wall, and a plinth whose edge runs along it 4 micrometres inside its ends.
+Scene lamp_with_plinth(const test::TempFolder& folder) {
+  folder.write("room.json",
+               R"({"format": "reemit-room", "version": 1, "name": "lamp with plinth", "bands": "grey",
+ "materials": {"w": {"reflectance": 0.5}, "lamp": {"reflectance": 0, "radiance": 3.59}},
+ "objects": [
+  {"name": "lamp", "material": "lamp", "polygon": {"vertices": [[-5.62738, 5.07771, 3.443749],
+     [0.8356, 5.07771, 3.443749], [0.8356, -0.04149, 3.443751], [-5.62738, -0.04149, 3.443751]]}},
+  {"name": "wall", "material": "w", "quad": {"corner": [-12, -1, -3], "u": [14, 0, 0], "v": [0, 8, 0]}},
+  {"name": "plinth", "material": "w",
+   "quad": {"corner": [-5.627376, 0.025222, 2.998156], "u": [0, 0, 0.445595], "v": [6.462972, 0, 0]}}],
+ "cameras": [{"name": "c", "eye": [-5, 2.5, 3], "look_at": [-5, 2.5, -3], "vertical_fov_deg": 70}]})");
+  return read_scene(folder / "room.json");
+}
+
+TEST(HitPaths, a_plinth_along_a_lamp_does_not_put_it_out) {
+  const test::TempFolder folder;
+  expect_same_picture(lamp_with_plinth(folder));
+}
+
+TEST(HitPaths, lamps_may_touch_what_is_around_them) {
+  expect_same_picture(touching_lamps_room(107));
+}
+
+TEST(HitPaths, a_bias_of_2_percent_is_noticed) {
+  const test::TempFolder folder;
+  const Scene scene = lamp_with_plinth(folder);
+  ComparisonSettings settings = quick(false);
+  const Comparison sound = compare_blocks(scene, scene.cameras[0], settings);
+  EXPECT_LE(std::abs(sound.mean_deviation), kLimit * sound.mean_error);
+  settings.planted_bias = 0.02;
+  const Comparison biased = compare_blocks(scene, scene.cameras[0], settings);
+  EXPECT_GT(std::abs(biased.mean_deviation), kLimit * biased.mean_error)
+      << biased.mean_deviation << " +- " << biased.mean_error;
+}
+
+}  // namespace
+}  // namespace reemit::hit_paths
