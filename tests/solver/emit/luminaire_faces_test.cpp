@@ -51,7 +51,7 @@ TEST(LuminaireFaces, the_front_is_that_of_the_polygon_whatever_slivers_the_mesh_
   bool has_tilted_sliver = false;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
     if (mesh.triangle(TriangleId(t)).surface == SurfaceId(0))
-      has_tilted_sliver |= mesh.triangle_normal(TriangleId(t)).dot(front) < 0.999;
+      has_tilted_sliver |= mesh.triangle_normal(TriangleId(t)).dot(front) < 1 - 1e-6;
   ASSERT_TRUE(has_tilted_sliver) << "the room tests nothing any more";
 
   const std::vector<LuminaireFace> faces = luminaire_faces(scene, mesh);
