@@ -59,8 +59,9 @@ std::vector<Probe> choose_probes(const Solution& solution, double offset) {
 
 }  // namespace
 
-std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays,
-                                           const Solution& solution) {
+std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays, const Solution& solution,
+                                           const StopToken& stop) {
+  if (stop.requested()) return std::nullopt;
   const RadianceField field(scene, solution, rays, kHalves);
   if (field.parts() != kHalves) return std::nullopt;
   const std::size_t bands = scene.bands.count();
@@ -75,6 +76,7 @@ std::optional<double> discretisation_error(const Scene& scene, const RayScene& r
   std::vector<double> values(probes.size() * bands);
   const std::size_t chunks = (probes.size() + kChunk - 1) / kChunk;
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
+    if (stop.requested()) return;
     const std::size_t first = c * kChunk;
     const std::size_t last = std::min(first + kChunk, probes.size());
     std::vector<float> found((last - first) * kHalves * 2 * bands, 0.0F);
@@ -114,6 +116,7 @@ std::optional<double> discretisation_error(const Scene& scene, const RayScene& r
     }
   });
 
+  if (stop.requested()) return std::nullopt;
   std::optional<double> worst;
   for (std::size_t b = 0; b < bands; ++b) {
     double difference = 0;

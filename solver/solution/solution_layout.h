@@ -77,6 +77,6 @@ inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, Solve
 inline constexpr SamplingKind kAllSamplingKinds[] = {SamplingKind::kRandom, SamplingKind::kSobol};
 inline constexpr StopReason kAllStopReasons[] = {
     StopReason::kErrorTarget, StopReason::kTimeLimit,   StopReason::kPacketCount, StopReason::kBatchLimit,
-    StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};
+    StopReason::kBounceLimit, StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};
 
 }  // namespace reemit

@@ -10,6 +10,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// By band, in the order of "bands".
+Json unshot_shares(const EnergyAudit& audit) {
+  Json shares = Json::array();
+  for (const BandAudit& band : audit.bands) shares.push_back(band.unshot_share());
+  return shares;
+}
+
 Json record_json(const Solution& solution) {
   const SolveRecord& record = solution.record;
   return {{"stopped", to_string(record.stopped)},
@@ -27,10 +34,17 @@ Json record_json(const Solution& solution) {
           {"seed", solution.settings.seed},
           {"method", to_string(solution.settings.method)},
           {"sampling", to_string(solution.settings.sampling)},
+          {"unshot_share", unshot_shares(solution.audit)},
           {"balanced", solution.audit.balanced()},
           {"bands", solution.bands.names()},
           {"room", solution.room_path},
           {"room_hash", solution.room_hash}};
+}
+
+/// More is unshot than whole batches leave; by the matrix method it is what rounding leaves.
+bool lacks_unshot_power(const Solution& solution) {
+  return solution.settings.method != SolveMethod::kMatrix &&
+         solution.audit.unshot_share() > solution.settings.stop_share;
 }
 
 std::string deviation_text(const RowSums& sums) {
@@ -65,6 +79,21 @@ Json form_factor_json(const FormFactorReport& report) {
           {"rays", report.rays},
           {"row_sums_before", row_sums_json(report.before)},
           {"row_sums", row_sums_json(report.after)}};
+}
+
+std::vector<std::string> solve_warnings(const Solution& solution) {
+  std::vector<std::string> warnings;
+  if (lacks_unshot_power(solution))
+    warnings.push_back(fmt::format(
+        "{} of the emitted power was still on its way when the run stopped ({}): radiosities are too low by "
+        "about that. "
+        "Give it more time; light in sealed parts of high reflectance needs 1/(1 - reflectance) bounces.",
+        percent_text(solution.audit.worst_unshot_share()), to_string(solution.record.stopped)));
+  if (solution.sums.batches == 1)
+    warnings.push_back(
+        "the run stopped after one batch: how large its error is, is not known. Give it more time, or more "
+        "packets.");
+  return warnings;
 }
 
 std::string solve_line(const Solution& solution) {
@@ -112,6 +141,9 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
     text += fmt::format("gathered  {} zones too small for packets\n", record.gathered_zones);
   text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",
                       solution.mesh.triangle_count(), solution.mesh.zone_count(), record.unreached_zones);
+  if (lacks_unshot_power(solution))
+    text += fmt::format("unshot    {} of the emitted power; radiosities are too low by about that\n",
+                        percent_text(solution.audit.worst_unshot_share()));
   text += fmt::format("books     {}\n", solution.audit.balanced() ? "balance exactly" : "DO NOT BALANCE");
   return text;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -12,6 +13,10 @@ namespace reemit::cli {
 std::string form_factor_text(const FormFactorReport& report);
 /// The same for `solve --json` and `export --json`.
 nlohmann::ordered_json form_factor_json(const FormFactorReport& report);
+
+/// What a user should know about how a run ended: power left unshot beyond SolverSettings::stop_share, an
+/// error that is not known because there was one batch only.
+std::vector<std::string> solve_warnings(const Solution& solution);
 
 /// The line `solve` ends with: why it stopped, packets, rays, seconds, error; for the matrix method more
 /// about the form factors.

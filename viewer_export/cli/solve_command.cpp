@@ -99,6 +99,7 @@ ExitCode run_solve(const SolveOptions& options) {
   if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {
     print_note(fmt::format("interrupted; the solution so far is in {}", options.output.string()));
   }
+  if (!options.style.quiet) print_warnings(solve_warnings(solution));
   if (options.style.json) {
     fmt::print("{}\n", solve_json(solution, options.output).dump(2));
   } else {

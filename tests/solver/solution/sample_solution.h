@@ -75,15 +75,17 @@ inline Solution sample_solution(const BandSet& bands) {
   s.mesh_report.cut_faces = 6;
   s.mesh_report.warnings = {"wall: two faces overlap", "", "lamp: flipped"};
 
-  s.sums.batches = 4;
+  for (const std::int64_t weight : {1, 2, 1, 3}) s.sums.count_batch(weight);
   double next = 0.1;
   const auto fill = [&](std::vector<double>& values, double scale) {
     for (std::size_t i = 0; i < s.mesh.zone_count() * bands.count(); ++i)
       values.push_back(scale * (next += 1.0 / 3));
   };
   fill(s.sums.direct, 1);
+  fill(s.sums.direct_cross, 2);
   fill(s.sums.direct_squared, 30);
   fill(s.sums.indirect, 1);
+  fill(s.sums.indirect_cross, 2);
   fill(s.sums.indirect_squared, 40);
   fill(s.sums.total_squared, 100);
   // Stored as float: numbers that it holds exactly.
@@ -91,6 +93,7 @@ inline Solution sample_solution(const BandSet& bands) {
     s.sums.group_total.push_back(0.125 * static_cast<double>(i));
 
   s.audit.batches = 4;
+  s.audit.weight = 7;
   for (std::size_t b = 0; b < bands.count(); ++b) {
     const auto n = static_cast<std::int64_t>(b);
     BandAudit audit;
@@ -101,8 +104,8 @@ inline Solution sample_solution(const BandSet& bands) {
     audit.absorbed_on_backs = {7 + n, 2};
     audit.escaped = {1, 2, 3, 4, 5, 6 + n};
     audit.unshot = -3;
-    audit.roulette_gain = 11;
-    audit.roulette_loss = 12 + n;
+    audit.roulette_net = -1 - n;
+    audit.roulette_gain = 11e20;
     s.audit.bands.push_back(std::move(audit));
   }
   return s;

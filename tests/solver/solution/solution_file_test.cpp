@@ -93,21 +93,26 @@ void expect_same_room(const Solution& a, const Solution& b) {
 
 void expect_same_books(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.sums.batches, b.sums.batches);
+  EXPECT_EQ(a.sums.group_weight, b.sums.group_weight);
+  EXPECT_EQ(a.sums.weight_squared, b.sums.weight_squared);
   EXPECT_EQ(a.sums.direct, b.sums.direct);
+  EXPECT_EQ(a.sums.direct_cross, b.sums.direct_cross);
   EXPECT_EQ(a.sums.direct_squared, b.sums.direct_squared);
   EXPECT_EQ(a.sums.indirect, b.sums.indirect);
+  EXPECT_EQ(a.sums.indirect_cross, b.sums.indirect_cross);
   EXPECT_EQ(a.sums.indirect_squared, b.sums.indirect_squared);
   EXPECT_EQ(a.sums.total_squared, b.sums.total_squared);
   EXPECT_EQ(a.sums.group_total, b.sums.group_total);
   EXPECT_EQ(a.audit.batches, b.audit.batches);
+  EXPECT_EQ(a.audit.weight, b.audit.weight);
   ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
   for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {
     const BandAudit& x = a.audit.bands[i];
     const BandAudit& y = b.audit.bands[i];
     EXPECT_EQ(std::tie(x.band, x.watts_per_quantum, x.emitted, x.absorbed, x.absorbed_on_backs, x.escaped,
-                       x.unshot, x.roulette_gain, x.roulette_loss),
+                       x.unshot, x.roulette_net, x.roulette_gain),
               std::tie(y.band, y.watts_per_quantum, y.emitted, y.absorbed, y.absorbed_on_backs, y.escaped,
-                       y.unshot, y.roulette_gain, y.roulette_loss));
+                       y.unshot, y.roulette_net, y.roulette_gain));
   }
 }
 
