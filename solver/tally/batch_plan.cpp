@@ -12,7 +12,7 @@ namespace {
 /// zone, is the smaller part.
 std::uint64_t default_unit(std::size_t zones) {
   constexpr std::uint64_t kSmallest = 65536;
-  constexpr std::size_t kZonesPerPacket = 2;
+  constexpr std::size_t kZonesPerPacket = 4;
   return std::max<std::uint64_t>(kSmallest, zones / kZonesPerPacket);
 }
 /// Packets per zone in a batch that has grown up. Each sweep looks at all zones with power: fewer packets

@@ -19,11 +19,11 @@ TEST(BatchPlan, SmallRoomsHaveEqualBatches) {
 
 TEST(BatchPlan, LargeRoomsStartSmallAndGrow) {
   const BatchPlan plan({}, 1'000'000);
-  EXPECT_EQ(plan.unit_packets(), 500'000U);
+  EXPECT_EQ(plan.unit_packets(), 250'000U);
   std::int64_t done = 0;
   std::int64_t last = 0;
   std::int64_t batches = 0;
-  for (; last * 500'000 < 16'000'000; ++batches) {
+  for (; last * 250'000 < 16'000'000; ++batches) {
     ASSERT_LT(batches, 1000);
     const std::int64_t weight = plan.next_weight(batches, done);
     if (batches % kRound == 0) {
@@ -38,7 +38,7 @@ TEST(BatchPlan, LargeRoomsStartSmallAndGrow) {
     done += weight;
   }
   EXPECT_EQ(plan.next_weight(batches + 5000, done), last) << "full size";
-  EXPECT_EQ(plan.largest_batch_packets(), static_cast<std::uint64_t>(last) * 500'000);
+  EXPECT_EQ(plan.largest_batch_packets(), static_cast<std::uint64_t>(last) * 250'000);
 }
 
 TEST(BatchPlan, PacketsAreSpentInWholeBatches) {

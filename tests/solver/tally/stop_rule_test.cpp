@@ -57,9 +57,9 @@ TEST(StopRule, BatchesShrinkToTheTimeLeft) {
   const StopRule rule = rule_of(s, kManyZones);
   RunState state = after(1600, 1, 8);
   state.weight = 1'000'000;
-  state.batch_seconds = 0.1;  // a full batch, of weight 32, would take 3.2 s
+  state.batch_seconds = 0.05;  // a full batch, of weight 64, would take 3.2 s
   EXPECT_FALSE(rule.stop(state));
-  EXPECT_EQ(rule.next_weight(state), 20);
+  EXPECT_EQ(rule.next_weight(state), 40);
   state.shortened = true;
   EXPECT_EQ(rule.stop(state), StopReason::kTimeLimit) << "even if an error target were met as well";
 }
