@@ -96,10 +96,14 @@ class BatchRun {
         books_(transport.zones(), transport.surfaces(), transport.bands()) {}
 
   void run(const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
-    // A batch that was foreseen to end in time may take a little longer.
+    // A batch that was foreseen to end in time may take a little longer, and a slow start must leave time for
+    // some light at least.
     constexpr double kGrace = 0.01;
-    const StopToken stop = schedule_.token(schedule_.batches_s + kGrace * schedule_.limit_s, interrupt);
+    constexpr double kLeast = 0.1;
     state_.seconds = seconds_since(schedule_.start);
+    const double end = std::max(schedule_.batches_s + kGrace * schedule_.limit_s,
+                                state_.seconds + kLeast * schedule_.limit_s);
+    const StopToken stop = schedule_.token(end, interrupt);
     std::optional<StopReason> reason;
     while (!reason) {
       const bool whole = add(stop);
