@@ -10,6 +10,7 @@
 #include "mesh/conform_triangles.h"
 #include "mesh/contact_split.h"
 #include "mesh/coplanar_overlap.h"
+#include "mesh/dropped_luminaires.h"
 #include "mesh/duplicate_faces.h"
 #include "mesh/edge_points.h"
 #include "mesh/mesh_tolerances.h"
@@ -48,6 +49,7 @@ void book_areas(const VertexTable& vertices, const std::vector<FacePiece>& piece
     // What welding and omitted slivers changed; less than that is rounding.
     const double rest = pieces[p].area - meshed[p] - cut.covered[p];
     if (std::abs(rest) > 1e-12 * pieces[p].area) areas.removed += rest;
+    if (meshed[p] + cut.covered[p] <= 0) areas.collapsed += pieces[p].area;
   }
 }
 
@@ -148,6 +150,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
 
   BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);
   append_patches(scene, shapes, base, report);
+  check_dropped_luminaires(scene, tolerances.weld, report);
   size_zones(base, zone_area);
   return {ZoneMesh(std::move(base)), std::move(report)};
 }

@@ -112,6 +112,7 @@ void PolygonRepair::drop(const FacePiece& piece, double area) {
   SurfaceAreas& areas = report_.surfaces[piece.surface.index()];
   areas.input += area;
   areas.removed += area;
+  areas.collapsed += area;
   degenerate_.add(scene_, piece.surface, piece.face);
 }
 
@@ -199,6 +200,7 @@ void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner,
     SurfaceAreas& areas = report_.surfaces[piece.surface.index()];
     areas.input += piece.area;
     areas.removed += piece.area;
+    areas.collapsed += piece.area;
     return;
   }
   piece.smooth = false;
