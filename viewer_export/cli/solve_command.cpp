@@ -70,7 +70,10 @@ ExitCode run_solve(const SolveOptions& options) {
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
   check_output_file(options.output, options.room);
   const Scene scene = read_scene(options.room, options.read);
-  if (!options.style.quiet) print_warnings(scene.warnings);
+  if (!options.style.quiet) {
+    print_warnings(scene.warnings);
+    for (const std::string& note : scene.notes) print_note(note);
+  }
   MeshSettings mesh_settings = options.mesh;
   if (matrix) {
     mesh_settings.default_zone_count = kMatrixZoneCount;
@@ -155,10 +158,7 @@ void add_solve_command(CLI::App& program, Action& action) {
                     "--method matrix)");
   solve.add_flag("--two-sided", options->read.force_two_sided,
                  "Let every face reflect on both sides (rooms with mixed winding)");
-  add_choice_option<EmissiveUnits>(
-      solve, "--emissive-units", options->read.gltf_emissive_units,
-      {{"cd/m2", EmissiveUnits::kCandela}, {"W/sr/m2", EmissiveUnits::kWatt}},
-      "Unit of emissive factors in glTF; the specification says cd/m2, exporters disagree");
+  add_gltf_unit_options(solve, options->read);
 
   solve.option_defaults()->group("Output");
   add_json_option(solve, options->style);
