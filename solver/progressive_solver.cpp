@@ -12,6 +12,8 @@
 #include "scenes/model/error.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/small_zones.h"
+#include "solver/losses/lost_light.h"
+#include "solver/losses/luminaire_warnings.h"
 #include "solver/matrix/matrix_solve.h"
 #include "solver/shoot/closed_room_check.h"
 #include "solver/shoot/packet_batch.h"
@@ -152,6 +154,9 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
     solution.record.error_95th_percentile = error.percentile_95;
     solution.record.unreached_zones = error.unreached;
   });
+  solution.light_warnings = luminaire_warnings(transport, emission);
+  for (std::string& warning : lost_light_warnings(transport, emission, solution))
+    solution.light_warnings.push_back(std::move(warning));
   return solution;
 }
 

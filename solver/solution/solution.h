@@ -92,6 +92,7 @@ struct Solution {
   ZoneMesh mesh{BaseMesh{}};
   ZoneSums sums;
   EnergyAudit audit;
+  std::vector<std::string> light_warnings;  ///< Of light that is lost where it should not be (lost_light.h).
   std::optional<FormFactorReport> form_factors;  ///< Of the matrix method; not kept in the file.
 
   // Batch means: mean = sum/n, standard error = sqrt((sum of squares - sum^2/n) / (n(n-1))). One batch alone

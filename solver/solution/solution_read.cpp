@@ -268,6 +268,7 @@ Solution read_all(const Hdf5Group& root) {
   solution.sums = read_sums(root, bands);
   solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / bands);
   solution.audit = read_audit(root, solution);
+  solution.light_warnings = root.open_group("audit").read_texts("warnings");
   return solution;
 }
 

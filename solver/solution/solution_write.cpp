@@ -287,6 +287,7 @@ void write_audit(const Hdf5Group& root, const Solution& solution) {
                             {bands.size(), surfaces}, "quanta", "absorbed on the backs of one-sided faces");
   put(group, "escaped", flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::escaped)), 6, "quanta",
       "left the room towards +x -x +y -y +z -z");
+  group.write("warnings", solution.light_warnings, "what was found about light that is lost");
 }
 
 void write_all(const Hdf5Group& root, const Solution& solution) {

@@ -79,8 +79,12 @@ std::string solve_line(const Solution& solution) {
   return line;
 }
 
-Json solve_json(const Solution& solution, const std::filesystem::path& file) {
+Json solve_json(const Scene& scene, const Solution& solution, const std::filesystem::path& file) {
   Json json = record_json(solution);
+  json["warnings"] = scene.warnings;
+  for (const auto* more : {&solution.mesh_report.warnings, &solution.light_warnings})
+    for (const std::string& warning : *more) json["warnings"].push_back(warning);
+  json["notes"] = scene.notes;
   json["solution"] = file.string();
   if (solution.form_factors) json["form_factors"] = form_factor_json(*solution.form_factors);
   return json;
@@ -126,6 +130,7 @@ Json solution_json(const Solution& solution, const std::filesystem::path& file,
   json["base_triangles"] = solution.mesh.triangle_count();
   json["surfaces"] = solution.surface_names;
   json["warnings"] = solution.mesh_report.warnings;
+  for (const std::string& warning : solution.light_warnings) json["warnings"].push_back(warning);
   return json;
 }
 

@@ -16,8 +16,10 @@ nlohmann::ordered_json form_factor_json(const FormFactorReport& report);
 /// The line `solve` ends with: why it stopped, packets, rays, seconds, error; for the matrix method more
 /// about the form factors.
 std::string solve_line(const Solution& solution);
-/// The same as the document of `solve --json` (docs/command_line.md).
-nlohmann::ordered_json solve_json(const Solution& solution, const std::filesystem::path& file);
+/// The same as the document of `solve --json` (docs/command_line.md), with all warnings and the notes of the
+/// room.
+nlohmann::ordered_json solve_json(const Scene& scene, const Solution& solution,
+                                  const std::filesystem::path& file);
 
 /// What `info` says about a solution. `room_status` in words: whether the room is still the one solved.
 std::string solution_text(const Solution& solution, const std::filesystem::path& file,

@@ -99,11 +99,12 @@ ExitCode run_solve(const SolveOptions& options) {
   solution.mesh_settings = mesh_settings;
   write_output([&] { save_solution(solution, options.output); });
 
+  if (!options.style.quiet) print_warnings(solution.light_warnings);
   if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {
     print_note(fmt::format("interrupted; the solution so far is in {}", options.output.string()));
   }
   if (options.style.json) {
-    fmt::print("{}\n", solve_json(solution, options.output).dump(2));
+    fmt::print("{}\n", solve_json(scene, solution, options.output).dump(2));
   } else {
     fmt::print("{}\n", solve_line(solution));
   }

@@ -90,6 +90,7 @@ inline Solution sample_solution(const BandSet& bands) {
   for (std::size_t i = 0; i < ZoneSums::kGroups * s.sums.direct.size(); ++i)
     s.sums.group_total.push_back(0.125 * static_cast<double>(i));
 
+  s.light_warnings = {"light 'spot': 40 % of its light is lost", "", "5 % leaves the room"};
   s.audit.batches = 4;
   for (std::size_t b = 0; b < bands.count(); ++b) {
     const auto n = static_cast<std::int64_t>(b);

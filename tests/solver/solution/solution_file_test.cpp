@@ -89,6 +89,7 @@ void expect_same_room(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.mesh_report.nonplanar_faces, b.mesh_report.nonplanar_faces);
   EXPECT_EQ(a.mesh_report.cut_faces, b.mesh_report.cut_faces);
   EXPECT_EQ(a.mesh_report.warnings, b.mesh_report.warnings);
+  EXPECT_EQ(a.light_warnings, b.light_warnings);
 }
 
 void expect_same_books(const Solution& a, const Solution& b) {
