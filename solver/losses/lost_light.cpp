@@ -14,11 +14,12 @@
 namespace reemit {
 namespace {
 
-constexpr double kLeastShare = 1e-5;   // of the emitted power; less is below any error target
-constexpr double kClosedShare = 0.01;  // a room that loses less through openings counts as closed
-constexpr double kOutdoorShare = 0.3;  // a room that loses more from places outside is meant to
-constexpr double kNarrow = 0.01;       // width of a gap, of the diagonal of the room
-constexpr double kOnePlace = 0.05;     // distance within which losses are in one place, of the diagonal
+constexpr double kLeastShare = 1e-5;         // of the emitted power; less is below any error target
+constexpr double kClosedShare = 0.01;        // a room that loses less through openings counts as closed
+constexpr double kMostlyClosedShare = 0.05;  // the same where most of the loss goes through gaps
+constexpr double kOutdoorShare = 0.3;        // a room that loses more from places outside is meant to
+constexpr double kNarrow = 0.01;             // width of a gap, of the diagonal of the room
+constexpr double kOnePlace = 0.05;           // distance within which losses are in one place, of the diagonal
 constexpr std::uint32_t kProbes = 1U << 16;
 constexpr std::size_t kMostExits = 512;
 constexpr std::size_t kMostPlaces = 3;
@@ -175,7 +176,7 @@ void warn_of_escapes(const TransportScene& transport, const Emission& emission, 
   const double share = escaped / emitted_watts(audit);
   if (!(share > kLeastShare)) return;
   const EscapedLight found = find_escapes(transport, emission, solution);
-  const bool by_gaps = 2 * found.through_gaps > share;
+  const bool by_gaps = 2 * found.through_gaps > share && found.through_openings < kMostlyClosedShare;
   const bool closed =
       found.through_openings < kClosedShare && share < kOutdoorShare && !has_directional(transport.scene());
   if (!by_gaps && !closed) return;

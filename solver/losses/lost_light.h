@@ -33,9 +33,9 @@ EscapedLight find_escapes(const TransportScene& transport, const Emission& emiss
 
 /// Warnings about light that a room loses although its faces close, with share, place and surfaces: light
 /// that escapes, and light that ends on backs of one-sided faces. Faces count as closed when at most 1 % of
-/// the light leaves through openings, or most of what leaves does so through gaps. A room with an opening
-/// (the Cornell box) loses light by intent and gets no warning, nor does one that is mostly outdoors. Where
-/// directional lights shine in from outside, only gaps count. Reads Solution::audit and sums.
+/// the light leaves through openings, or 5 % if most of what leaves does so through gaps. A room with an
+/// opening (the Cornell box) loses light by intent and gets no warning, nor does one that is mostly outdoors.
+/// Where directional lights shine in from outside, only gaps count. Reads Solution::audit and sums.
 std::vector<std::string> lost_light_warnings(const TransportScene& transport, const Emission& emission,
                                              const Solution& solution);
 
