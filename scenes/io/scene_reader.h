@@ -14,10 +14,10 @@ enum class EmissiveUnits { kByGenerator, kCandela, kWatt };
 struct ReadOptions {
   /// Unit of glTF emissiveFactor x emissive strength. The specification says cd/m2; exporters disagree.
   EmissiveUnits gltf_emissive_units = EmissiveUnits::kByGenerator;
+  bool force_two_sided = false;  ///< Treat every face as reflecting on both sides (rooms with mixed winding).
   /// Luminous efficacy by which the cd and lx of glTF lamps become watts [lm/W], finite and above 0. Nothing:
   /// by the program that wrote the file (docs/gltf_input.md).
   std::optional<double> gltf_light_efficacy;
-  bool force_two_sided = false;  ///< Treat every face as reflecting on both sides (rooms with mixed winding).
 
   bool operator==(const ReadOptions&) const = default;
 };

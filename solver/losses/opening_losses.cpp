@@ -16,7 +16,7 @@ namespace reemit {
 namespace {
 
 constexpr std::uint32_t kPacketsPerLight = 4096;
-constexpr std::uint32_t kLeastPacketsPerLight = 256;
+constexpr std::uint32_t kLeastPacketsPerLight = 64;
 constexpr std::uint32_t kMostPackets = 1U << 19;
 constexpr double kLeastLoss = 1e-3;
 
@@ -64,39 +64,81 @@ std::optional<SurfaceId> between(const TransportScene& transport, const Vec3f& f
   return transport.mesh().triangle(hit.triangle).surface;
 }
 
-/// A face that a light stands on, closer than rays can tell apart, with its normal.
+/// A face that a light stands on, closer than rays can tell apart.
 struct Contact {
   SurfaceId surface;
-  Vec3f normal;
+  bool front = true;  ///< The side that the light stands on.
+  Vec3f normal;       ///< Of that side.
 };
 constexpr float kTouching = 4 * RayScene::kLift;
 
-std::optional<Contact> contact_at(const TransportScene& transport, const Vec3f& point) {
+std::optional<Contact> contact_of(const TransportScene& transport, const PunctualLight& light,
+                                  const Vec3f& point) {
+  if (std::holds_alternative<PhotometricLight>(light)) return std::nullopt;  // these start off their opening
   for (int k = 0; k < 3; ++k) {
     const Vec3f axis = Vec3f::Unit(k);
     Hit hit;
     if (!transport.rays().closest(point - kTouching * axis, axis, hit) || hit.distance > 2 * kTouching)
       continue;
-    return Contact{transport.mesh().triangle(hit.triangle).surface,
-                   transport.rays().normal(hit.triangle, hit.u, hit.v)};
+    const BaseTriangle& face = transport.mesh().triangle(hit.triangle);
+    Contact contact{face.surface, true, transport.rays().normal(hit.triangle, hit.u, hit.v)};
+    // On a face with two like sides a spot stands on the one it shines away from.
+    const auto* spot = std::get_if<SpotLight>(&light);
+    if (face.two_sided && spot != nullptr && spot->direction.cast<float>().dot(contact.normal) < 0) {
+      contact.front = false;
+      contact.normal = -contact.normal;
+    }
+    return contact;
   }
   return std::nullopt;
 }
+
+/// Looks from both sides of the faces that a light meets. One outside of a room meets faces with the open
+/// before them and the room behind them.
+class SideLooks {
+ public:
+  explicit SideLooks(const RayScene& rays) : rays_(rays), numbers_(0) {}
+
+  void look(const Hit& hit) {
+    constexpr std::uint32_t kMostLooks = 256;
+    if (looks_ == kMostLooks) return;
+    const Vec3f local = sample_cosine_hemisphere(numbers_.sample(looks_, 0), numbers_.sample(looks_, 1));
+    ++looks_;
+    const Vec3f front = rays_.normal(hit.triangle, hit.u, hit.v);
+    const auto is_open = [&](bool side) {
+      const Frame frame(side ? front : Vec3f(-front));
+      return rays_.escapes(rays_.ray_origin(hit.triangle, hit.u, hit.v, side), frame.to_world(local));
+    };
+    if (is_open(hit.front)) ++open_before_;
+    if (is_open(!hit.front)) ++open_behind_;
+  }
+
+  bool outside_of_a_room() const {
+    return looks_ > 0 && 2 * open_before_ >= looks_ && 20 * open_behind_ <= looks_;
+  }
+
+ private:
+  const RayScene& rays_;
+  SobolSequence numbers_;
+  std::uint32_t looks_ = 0, open_before_ = 0, open_behind_ = 0;
+};
 
 /// Books where the packets of one light end.
 class OpeningBooks {
  public:
   OpeningBooks(const TransportScene& transport, const PunctualLight& light, const Vec3f& mouth)
-      : transport_(transport), mouth_(mouth) {
-    if (!std::holds_alternative<PhotometricLight>(light)) contact_ = contact_at(transport, mouth);
-  }
+      : transport_(transport),
+        mouth_(mouth),
+        contact_(contact_of(transport, light, mouth)),
+        looks_(transport.rays()) {}
 
   void add(const ProbeRay& probe) {
     ++packets_;
     std::optional<SurfaceId> cutter = between(transport_, probe.origin, mouth_);
     const SurfaceId met = probe.met ? transport_.mesh().triangle(probe.hit.triangle).surface : SurfaceId();
     if (contact_ && probe.direction.dot(contact_->normal) < 0) {
-      if (probe.met && probe.hit.front && met == contact_->surface && probe.hit.distance < kTouching) {
+      if (probe.met && probe.hit.front == contact_->front && met == contact_->surface &&
+          probe.hit.distance < kTouching) {
         ++touching_;
         return;
       }
@@ -110,26 +152,38 @@ class OpeningBooks {
       ++takers_[met];
     } else if (probe.met) {
       ++seen_;
+      ++seers_[met];
+      looks_.look(probe.hit);
     }
   }
 
   OpeningLoss loss(std::uint32_t light) const {
     const auto share = [&](std::uint32_t count) { return static_cast<double>(count) / packets_; };
-    OpeningLoss loss{light,          share(on_backs_ + beyond_),
-                     share(beyond_), share(touching_),
-                     share(seen_),   contact_ ? contact_->surface : SurfaceId()};
-    if (!contact_ && !takers_.empty())
-      loss.surface = std::max_element(takers_.begin(), takers_.end(), [](const auto& a, const auto& b) {
-                       return a.second < b.second;
-                     })->first;
+    OpeningLoss loss{
+        light, share(on_backs_ + beyond_), share(beyond_), share(touching_), share(seen_), most_of(takers_)};
+    if (contact_) {
+      loss.surface = contact_->surface;
+    } else if (looks_.outside_of_a_room()) {
+      loss.lost = 1;
+      loss.seen = 0;
+      loss.surface = most_of(seers_);
+    }
     return loss;
   }
 
  private:
+  using Counts = std::map<SurfaceId, std::uint32_t>;
+  static SurfaceId most_of(const Counts& counts) {
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == counts.end() ? SurfaceId() : most->first;
+  }
+
   const TransportScene& transport_;
   Vec3f mouth_;
   std::optional<Contact> contact_;
-  std::map<SurfaceId, std::uint32_t> takers_;
+  SideLooks looks_;
+  Counts takers_, seers_;
   std::uint32_t packets_ = 0, on_backs_ = 0, beyond_ = 0, touching_ = 0, seen_ = 0;
 };
 

@@ -106,6 +106,30 @@ TEST_F(LuminaireLosses, LampsBehindASurfaceLoseWhatMeetsItsBack) {
                           AllOf(HasSubstr("'troffer'"), HasSubstr("behind 'quad3'"))));
 }
 
+TEST_F(LuminaireLosses, LampsOutsideARoomOfTwoSidedFacesLoseAll) {
+  walls(true);
+  light(SpotLight{"spot", Vec3(2, 3.2, 2), Vec3(0, -1, 0), room_.flat(1), 0.1, 0.3});
+  light(PointLight{"bulb", Vec3(2, 3.01, 2), room_.flat(1)});
+  light(troffer(Vec3(2, 3.5, 2)));
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'spot': 100 %"), HasSubstr("behind 'quad3'")),
+                                      AllOf(HasSubstr("'bulb': 100 %"), HasSubstr("behind 'quad3'")),
+                                      AllOf(HasSubstr("'troffer': 100 %"), HasSubstr("behind 'quad3'"))));
+}
+
+TEST_F(LuminaireLosses, LampsInOpenRoomsAndOutdoorsLoseNothing) {
+  const MaterialId grey = room_.material("grey", 0.5, 0, true);
+  room_.box(Vec3(0, 0, 0), Vec3(4, 3, 4), {grey, grey, grey, grey, MaterialId(), grey}, 2);
+  light(PointLight{"bulb", Vec3(2, 2, 2), room_.flat(1)});
+  light(PointLight{"near the opening", Vec3(2, 2, 0.1), room_.flat(1)});
+  light(SpotLight{"spot", Vec3(2, 3, 2), Vec3(0, -1, 0), room_.flat(1), 0.1, 0.3});
+  EXPECT_THAT(warnings(), IsEmpty());
+  room_ = RoomBuilder();
+  const MaterialId ground = room_.material("ground", 0.5, 0, true);
+  room_.quad(ground, {Vec3(0, 0, 0), Vec3(0, 0, 4), Vec3(4, 0, 4), Vec3(4, 0, 0)}, 2);
+  light(PointLight{"lantern", Vec3(2, 2, 2), room_.flat(1)});
+  EXPECT_THAT(warnings(), IsEmpty());
+}
+
 TEST_F(LuminaireLosses, LampsOnASurfaceAreNamed) {
   walls(true);
   light(PointLight{"bulb", Vec3(0, 1, 1), room_.flat(1)});

@@ -15,7 +15,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.program_version = "1.2.3";
   s.room_path = "/rooms/kitchen – north.json";
   s.room_hash = "0123456789abcdef";
-  s.read_options = {EmissiveUnits::kWatt, 683.5, true};
+  s.read_options = {EmissiveUnits::kWatt, true, 683.5};
   s.mesh_settings.zone_area = 0.125;
   s.mesh_settings.default_zone_count = 77;
   s.mesh_settings.smallest_angle_deg = 21;
