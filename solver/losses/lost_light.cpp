@@ -21,7 +21,7 @@ constexpr double kOutdoorShare = 0.3;        // a room that loses more from plac
 constexpr double kNarrow = 0.01;             // width of a gap, of the diagonal of the room
 constexpr double kOnePlace = 0.05;           // distance within which losses are in one place, of the diagonal
 constexpr std::uint32_t kProbes = 1U << 16;
-constexpr std::size_t kMostExits = 512;
+constexpr std::size_t kMostLosses = 512;
 constexpr std::size_t kMostPlaces = 3;
 
 double emitted_watts(const EnergyAudit& audit) {
@@ -112,6 +112,18 @@ std::vector<SurfaceId> main_surfaces(const std::map<SurfaceId, double>& watts) {
                    [&](SurfaceId a, SurfaceId b) { return watts.at(a) > watts.at(b); });
   if (order.size() > 2) order.resize(2);
   return order;
+}
+
+/// Of very many every n-th, which stands for all.
+template <class T>
+void thin_out(std::vector<T>& losses) {
+  const std::size_t stride = 1 + losses.size() / kMostLosses;
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < losses.size(); i += stride) {
+    kept.push_back(std::move(losses[i]));
+    kept.back().watts *= static_cast<double>(stride);
+  }
+  losses = std::move(kept);
 }
 
 std::vector<LightLoss> places_of(std::vector<Loss> losses, double distance, double emitted) {
@@ -226,6 +238,7 @@ void warn_of_backs(const TransportScene& transport, const Emission& emission, co
     if (!(share > 0)) continue;
     text += fmt::format("{} {} ({})", i == 0 ? ":" : ",", quoted_name(scene, SurfaceId(order[i])),
                         share_text(share));
+    thin_out(hits[i]);
     const std::vector<LightLoss> places =
         places_of(std::move(hits[i]), kOnePlace * room_diagonal(scene), emitted);
     if (places.empty()) continue;
@@ -252,14 +265,12 @@ EscapedLight find_escapes(const TransportScene& transport, const Emission& emiss
   const RayScene& rays = transport.rays();
   const double diagonal = room_diagonal(transport.scene());
   const double emitted = emitted_watts(solution.audit);
-  // Of very many every n-th stands for all.
-  const std::size_t stride = 1 + escapes.size() / kMostExits;
+  thin_out(escapes);
   EscapedLight found;
   std::vector<Loss> losses;
-  for (std::size_t i = 0; i < escapes.size(); i += stride) {
-    const Escape& escape = escapes[i];
+  for (const Escape& escape : escapes) {
     const ExitPlace exit = find_exit(rays, escape.origin, escape.direction);
-    Loss loss{escape.watts * static_cast<double>(stride), exit.point, exit.width, LightLoss::Way::kGap, {}};
+    Loss loss{escape.watts, exit.point, exit.width, LightLoss::Way::kGap, {}};
     if (exit.found && exit.width < kNarrow * diagonal) {
       loss.surfaces.assign(exit.surfaces.begin(), exit.surfaces.end());
       found.through_gaps += loss.watts / emitted;

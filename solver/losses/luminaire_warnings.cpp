@@ -45,8 +45,7 @@ std::vector<std::string> luminaire_warnings(const TransportScene& transport, con
   for (const SelfLitLuminaire& lamp : self_lit_luminaires(transport, emission))
     warnings.push_back(fmt::format(
         "luminaire {}{}: {} of its power shines onto the lamp itself; a closed lamp should emit from its "
-        "outer side "
-        "only",
+        "outer side only",
         quoted_name(scene, lamp.surfaces[0]),
         lamp.surfaces.size() > 1 ? fmt::format(" with {} more surface(s)", lamp.surfaces.size() - 1) : "",
         share_text(lamp.share)));
