@@ -233,6 +233,7 @@ void warn_of_backs(const TransportScene& transport, const Emission& emission, co
   });
   std::string text = fmt::format("{} of the light ends on backs of one-sided faces, which absorb it",
                                  share_text(lost / emitted));
+  bool from_faces = false;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const double share = watts[order[i]] / emitted;
     if (!(share > 0)) continue;
@@ -244,9 +245,12 @@ void warn_of_backs(const TransportScene& transport, const Emission& emission, co
     if (places.empty()) continue;
     text += fmt::format(" near {} m", place_text(places[0].place));
     const std::string from = names_of(places[0].surfaces, scene);
-    if (!from.empty()) text += " from " + from;
+    if (from.empty()) continue;  // from a light without area, which has a warning of its own
+    text += " from " + from;
+    from_faces = true;
   }
-  warnings.push_back(text + "; turn the faces round, or solve with --two-sided");
+  if (from_faces) text += "; turn the faces round, or solve with --two-sided";
+  warnings.push_back(text);
 }
 
 }  // namespace
