@@ -12,6 +12,7 @@
 #include "scenes/model/error.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/small_zones.h"
+#include "solver/gather/zone_bias_estimate.h"
 #include "solver/matrix/matrix_solve.h"
 #include "solver/shoot/closed_room_check.h"
 #include "solver/shoot/packet_batch.h"
@@ -145,6 +146,7 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
       }
     }
     if (!interrupt) solution.record.discretisation = discretisation_error(scene, rays, solution);
+    if (!interrupt) solution.record.gather_bias = estimate_zone_bias(scene, rays, solution);
     solution.record.seconds = seconds_since(start);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
     solution.record.error = error.rms;

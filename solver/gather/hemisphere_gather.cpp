@@ -1,28 +1,49 @@
 #include "solver/gather/hemisphere_gather.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
+#include "solver/gather/uneven_zones.h"
 #include "solver/reflect/lambert.h"
 
 namespace reemit {
+namespace {
+
+/// By zone, the distance within which a hit is continued [normalised units].
+std::vector<float> reach_of_zones(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
+                                  const GatherSettings& settings) {
+  const ZoneMesh& mesh = rays.mesh();
+  std::vector<float> reach(mesh.zone_count(), 0.0F);
+  if (settings.close_hit == 0) return reach;
+  const std::vector<std::uint8_t> uneven = uneven_zones(rays, field, direct, settings.seed);
+  for (std::size_t z = 0; z < reach.size(); ++z)
+    reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
+                              : static_cast<float>(settings.close_hit) *
+                                    field.zone_size(mesh.zone_triangle(ZoneId(z)).index());
+  return reach;
+}
+
+}  // namespace
 
 HemisphereGather::HemisphereGather(const RayScene& rays, const RadianceField& field,
                                    const DirectLight& direct, const GatherSettings& settings)
     : rays_(&rays),
       field_(&field),
       direct_(&direct),
-      close_hit_(static_cast<float>(settings.close_hit)),
+      reach_(reach_of_zones(rays, field, direct, settings)),
       most_bounces_(settings.most_bounces),
       rng_(settings.seed, RngPurpose::kHemisphere) {}
 
-void HemisphereGather::add_close(const Hit& y, const PathKey& key, float* weight, float* sum) const {
+void HemisphereGather::add_continued(const Hit& y, const PathKey& key, float* weight, float* sum) const {
   const std::size_t bands = band_count();
   Hit hit = y;
   for (int bounce = 0;; ++bounce) {
     const std::size_t t = hit.triangle.index();
-    if (bounce == most_bounces_ || !is_close(t, hit.distance)) {
-      const float* radiance = field_->reflected(t, hit.u, hit.v, hit.front, key.part);
+    const std::size_t zone = field_->zone_number(t, hit.u, hit.v, hit.front);
+    if (zone == RadianceField::kNoZone) return;
+    if (bounce == most_bounces_ || !continues(zone, hit.distance)) {
+      const float* radiance = field_->reflected(ZoneId(zone), key.part);
       for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
       return;
     }
@@ -83,12 +104,14 @@ void GatherBatch::flush() {
     const std::uint32_t t = hits.triangle[i];
     if (t == RayScene::kMiss) continue;
     float* weight = &weights_[i * bands_];
-    if (gather_->is_close(t, hits.distance[i])) {
+    const std::size_t zone = field.zone_number(t, hits.u[i], hits.v[i], hits.front[i]);
+    if (zone == RadianceField::kNoZone) continue;
+    if (gather_->continues(zone, hits.distance[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
-      gather_->add_close(hit, keys_[i], weight, sums_[i]);
+      gather_->add_continued(hit, keys_[i], weight, sums_[i]);
       continue;
     }
-    const float* radiance = field.reflected(t, hits.u[i], hits.v[i], hits.front[i], keys_[i].part);
+    const float* radiance = field.reflected(ZoneId(zone), keys_[i].part);
     for (std::size_t b = 0; b < bands_; ++b) sums_[i][b] += weight[b] * radiance[b];
   }
   count_ = 0;

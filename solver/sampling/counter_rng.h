@@ -20,6 +20,8 @@ enum class RngPurpose : std::uint32_t {
   kSmallZonePilot,
   kDiscretisation,
   kFormFactor,
+  kUnevenZone,
+  kZoneBias,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

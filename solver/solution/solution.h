@@ -12,6 +12,7 @@
 #include "solver/matrix/form_factor_report.h"
 #include "solver/solver_settings.h"
 #include "solver/tally/energy_audit.h"
+#include "solver/tally/zone_bias.h"
 
 namespace reemit {
 
@@ -71,6 +72,9 @@ struct SolveRecord {
   /// How far radiosity at points lies from that of their zones, relative rms, worst band: an error that more
   /// packets do not lessen. Nothing if it was not estimated.
   std::optional<double> discretisation;
+  /// The same for light gathered at points of the room, what stills and vertices show. Nothing if it was not
+  /// estimated.
+  std::optional<ZoneBias> gather_bias;
 };
 
 /// The view-independent solution of a room and all that later questions need.

@@ -50,6 +50,7 @@ void transfer_record(Archive& archive, Record& record) {
   archive.attribute("unreached_zones", record.unreached_zones);
   archive.attribute("gathered_zones", record.gathered_zones);
   archive.attribute("discretisation", record.discretisation);
+  archive.attribute("gather_bias", record.gather_bias);
 }
 
 template <class Archive, class Report>

@@ -42,6 +42,11 @@ struct AttributeReader {
   void attribute(const char* name, std::optional<double>& value) {
     if (group.has_attribute(name)) value = group.read_attribute<double>(name);
   }
+  void attribute(const char* name, std::optional<ZoneBias>& value) {
+    if (group.has_attribute(name))
+      value = ZoneBias{group.read_attribute<double>(name),
+                       group.read_attribute<double>((std::string(name) + "_bound").c_str())};
+  }
   void attribute(const char* name, EmissiveUnits& value) {
     parse<EmissiveUnits>(name, value, kAllEmissiveUnits);
   }

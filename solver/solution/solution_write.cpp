@@ -27,6 +27,11 @@ struct AttributeWriter {
   void attribute(const char* name, const std::optional<double>& value) {
     if (value) group.write_attribute(name, *value);
   }
+  void attribute(const char* name, const std::optional<ZoneBias>& value) {
+    if (!value) return;
+    group.write_attribute(name, value->rms);
+    group.write_attribute((std::string(name) + "_bound").c_str(), value->bound);
+  }
   template <class Enum>
   requires std::is_enum_v<Enum>
   void attribute(const char* name, Enum value) { group.write_attribute(name, to_string(value)); }

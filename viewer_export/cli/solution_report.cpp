@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/text_table.h"
 
 namespace reemit::cli {
@@ -12,25 +13,27 @@ using Json = nlohmann::ordered_json;
 
 Json record_json(const Solution& solution) {
   const SolveRecord& record = solution.record;
-  return {{"stopped", to_string(record.stopped)},
-          {"packets", record.packets},
-          {"rays", record.rays},
-          {"seconds", record.seconds},
-          {"error", record.error},
-          {"error_bound", record.error_bound},
-          {"error_95th_percentile", record.error_95th_percentile},
-          {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
-          {"zones", solution.mesh.zone_count()},
-          {"unreached_zones", record.unreached_zones},
-          {"gathered_zones", record.gathered_zones},
-          {"batches", solution.sums.batches},
-          {"seed", solution.settings.seed},
-          {"method", to_string(solution.settings.method)},
-          {"sampling", to_string(solution.settings.sampling)},
-          {"balanced", solution.audit.balanced()},
-          {"bands", solution.bands.names()},
-          {"room", solution.room_path},
-          {"room_hash", solution.room_hash}};
+  Json json{{"stopped", to_string(record.stopped)},
+            {"packets", record.packets},
+            {"rays", record.rays},
+            {"seconds", record.seconds},
+            {"error", record.error},
+            {"error_bound", record.error_bound},
+            {"error_95th_percentile", record.error_95th_percentile},
+            {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
+            {"zones", solution.mesh.zone_count()},
+            {"unreached_zones", record.unreached_zones},
+            {"gathered_zones", record.gathered_zones},
+            {"batches", solution.sums.batches},
+            {"seed", solution.settings.seed},
+            {"method", to_string(solution.settings.method)},
+            {"sampling", to_string(solution.settings.sampling)},
+            {"balanced", solution.audit.balanced()},
+            {"bands", solution.bands.names()},
+            {"room", solution.room_path},
+            {"room_hash", solution.room_hash}};
+  add_zones(json, record.gather_bias);
+  return json;
 }
 
 std::string deviation_text(const RowSums& sums) {
@@ -71,8 +74,9 @@ std::string solve_line(const Solution& solution) {
   const SolveRecord& record = solution.record;
   const std::string effort = solution.form_factors ? fmt::format("{} zones", solution.mesh.zone_count())
                                                    : fmt::format("{} packets", record.packets);
-  std::string line = fmt::format("stopped: {}; {}, {} rays, {:.2f} s, error {}", to_string(record.stopped),
-                                 effort, record.rays, record.seconds, percent_text(record.error));
+  std::string line = fmt::format("stopped: {}; {}, {} rays, {:.2f} s, noise {}, zones {} in gathered light",
+                                 to_string(record.stopped), effort, record.rays, record.seconds,
+                                 percent_text(record.error), zones_text(record.gather_bias));
   if (record.discretisation)
     line += fmt::format("; points differ from their zones by {}", percent_text(*record.discretisation));
   if (solution.form_factors) line += "\n" + form_factor_text(*solution.form_factors);
@@ -100,14 +104,15 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
   text += fmt::format("stopped   {}\n", to_string(record.stopped));
   text += fmt::format("effort    {} packets, {} rays, {} batches, {:.2f} s\n", record.packets, record.rays,
                       solution.sums.batches, record.seconds);
-  text += fmt::format("error     {} (95 % of the lit zones within {})\n", percent_text(record.error),
+  text += fmt::format("noise     {} (95 % of the lit zones within {})\n", percent_text(record.error),
                       percent_text(record.error_95th_percentile));
   text += fmt::format("bound     {} (99.9 % odds that the true rms noise of the zone values is below)\n",
                       percent_text(record.error_bound));
+  text += fmt::format("zones     {} error in light gathered at points; only finer zones lessen it\n",
+                      zones_text(record.gather_bias));
   if (record.discretisation)
-    text += fmt::format(
-        "zones     points differ from the zones they are in by {} rms; only finer zones lessen it\n",
-        percent_text(*record.discretisation));
+    text += fmt::format("          points differ from the zones they are in by {} rms\n",
+                        percent_text(*record.discretisation));
   if (record.gathered_zones > 0)
     text += fmt::format("gathered  {} zones too small for packets\n", record.gathered_zones);
   text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",

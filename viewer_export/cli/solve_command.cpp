@@ -14,6 +14,7 @@
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/option_values.h"
@@ -99,6 +100,9 @@ ExitCode run_solve(const SolveOptions& options) {
   if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {
     print_note(fmt::format("interrupted; the solution so far is in {}", options.output.string()));
   }
+  const std::string missed =
+      missed_by_zones("gathered light", settings.error_target, solution.record.gather_bias);
+  if (!missed.empty() && !options.style.quiet) print_note(missed);
   if (options.style.json) {
     fmt::print("{}\n", solve_json(solution, options.output).dump(2));
   } else {
