@@ -53,6 +53,10 @@ void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.record.unreached_zones, b.record.unreached_zones);
   EXPECT_EQ(a.record.gathered_zones, b.record.gathered_zones);
   EXPECT_EQ(a.record.discretisation, b.record.discretisation);
+  ASSERT_EQ(a.record.gather_bias.has_value(), b.record.gather_bias.has_value());
+  if (!a.record.gather_bias) return;
+  EXPECT_EQ(a.record.gather_bias->rms, b.record.gather_bias->rms);
+  EXPECT_EQ(a.record.gather_bias->bound, b.record.gather_bias->bound);
 }
 
 void expect_same_room(const Solution& a, const Solution& b) {
