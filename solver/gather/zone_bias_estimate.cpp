@@ -45,7 +45,7 @@ void add_difference(const HemisphereGather& gather, const PathTracer& path, cons
 
 ZoneBiasEffort ZoneBiasEffort::of(double rays) {
   // A gathered and traced ray costs about as much as ten rays.
-  constexpr double kShare = 500;
+  constexpr double kShare = 800;
   constexpr double kMostRays = 1 << 12;
   const double of_point = rays / (kShare * kPoints);
   return {static_cast<std::uint32_t>(
@@ -120,7 +120,7 @@ std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& r
     points.push_back(point_in_zone(rays, probes[i].zone, {u[0], u[1]}));
     for (const double p : power) scale.push_back(p > 0 ? ZoneBiasEffort::kPoints * probes[i].area / p : 0);
   }
-  const ZoneBiasEffort effort = ZoneBiasEffort::of(2 * static_cast<double>(solution.record.rays));
+  const ZoneBiasEffort effort = ZoneBiasEffort::of(3 * static_cast<double>(solution.record.rays));
   return estimate_zone_bias(gather, path, points, scale, effort, seed);
 }
 

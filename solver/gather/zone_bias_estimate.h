@@ -19,7 +19,7 @@ struct ZoneBiasEffort {
 
   std::uint32_t rays = 16;  ///< Per point [1, 2^16], a power of two >= 16; each is gathered and path-traced.
 
-  /// So many that the estimate takes some two per cent of the time that `rays` took.
+  /// So many that the estimate takes some one to two per cent of the time that `rays` took.
   static ZoneBiasEffort of(double rays);
 };
 

@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(ErrorText, states_the_share_of_the_zones) {
-  EXPECT_EQ(zones_text(ZoneBias{0.0312, 0.04}), "3.1 %");
+  EXPECT_EQ(zones_text(ZoneBias{0.0312, 0.035}), "3.1 %");
   EXPECT_EQ(zones_text(ZoneBias{0.002, 0.0081}), "below 0.81 %");
   EXPECT_EQ(zones_text(ZoneBias{}), "none");
   EXPECT_EQ(zones_text(std::nullopt), "not known");
@@ -27,13 +27,13 @@ TEST(ErrorText, json_holds_both_numbers_or_null) {
 }
 
 TEST(ErrorText, says_when_the_zones_alone_miss_a_target) {
-  const std::string text = missed_by_zones("the picture", 0.01, ZoneBias{0.0312, 0.04});
+  const std::string text = missed_by_zones("the picture", 0.01, ZoneBias{0.0312, 0.035});
   EXPECT_THAT(text, HasSubstr("the picture"));
   EXPECT_THAT(text, HasSubstr("1 %"));
   EXPECT_THAT(text, HasSubstr("3.1 %"));
   EXPECT_THAT(text, HasSubstr("--zone-area"));
-  EXPECT_EQ(missed_by_zones("the picture", 0.05, ZoneBias{0.0312, 0.04}), "");
-  EXPECT_EQ(missed_by_zones("the picture", 0, ZoneBias{0.0312, 0.04}), "") << "no target";
+  EXPECT_EQ(missed_by_zones("the picture", 0.05, ZoneBias{0.0312, 0.035}), "");
+  EXPECT_EQ(missed_by_zones("the picture", 0, ZoneBias{0.0312, 0.035}), "") << "no target";
   EXPECT_EQ(missed_by_zones("the picture", 0.01, ZoneBias{0.02, 0.05}), "") << "noise may be all of it";
   EXPECT_EQ(missed_by_zones("the picture", 0.01, std::nullopt), "");
 }
