@@ -17,7 +17,7 @@ namespace reemit {
 namespace {
 
 constexpr std::size_t kGroups = ZoneBiasEffort::kGroups;
-constexpr std::size_t kReplicates = 16;
+constexpr std::uint32_t kReplicates = 16;
 static_assert(kReplicates == ZoneSums::kGroups);
 
 /// Adds the difference at one point of one replicate to sum[b].
@@ -45,11 +45,10 @@ void add_difference(const HemisphereGather& gather, const PathTracer& path, cons
 
 ZoneBiasEffort ZoneBiasEffort::of(double rays) {
   // A gathered and traced ray costs about as much as ten rays.
-  constexpr double kShare = 800;
+  constexpr double kShare = 500;
   constexpr double kMostRays = 1 << 12;
-  const double of_point = rays / (kShare * kPoints);
-  return {static_cast<std::uint32_t>(
-      std::bit_floor(static_cast<unsigned>(std::clamp(of_point, double{kReplicates}, kMostRays))))};
+  const double of_point = std::clamp(rays / (kShare * kPoints), double{kReplicates}, kMostRays);
+  return {static_cast<std::uint32_t>(of_point) / kReplicates * kReplicates};
 }
 
 ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& path,

@@ -17,7 +17,7 @@ struct ZoneBiasEffort {
   static constexpr std::size_t kPointsPerGroup = 64;
   static constexpr std::size_t kPoints = kGroups * kPointsPerGroup;
 
-  std::uint32_t rays = 16;  ///< Per point [1, 2^16], a power of two >= 16; each is gathered and path-traced.
+  std::uint32_t rays = 16;  ///< Per point [1, 2^16], a multiple of 16; each is gathered and path-traced.
 
   /// So many that the estimate takes some one to two per cent of the time that `rays` took.
   static ZoneBiasEffort of(double rays);

@@ -31,7 +31,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.settings.gather_small_zones = false;
   s.settings.seed = 18'000'000'000'000'000'001U;
   s.settings.threads = 3;
-  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6, 5, 0.125};
+  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6, 5, 0.125, ZoneBias{0.03, 0.04}};
   s.bands = bands;
 
   Scene scene;
