@@ -119,7 +119,7 @@ std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& r
     points.push_back(point_in_zone(rays, probes[i].zone, {u[0], u[1]}));
     for (const double p : power) scale.push_back(p > 0 ? ZoneBiasEffort::kPoints * probes[i].area / p : 0);
   }
-  const ZoneBiasEffort effort = ZoneBiasEffort::of(3 * static_cast<double>(solution.record.rays));
+  const ZoneBiasEffort effort = ZoneBiasEffort::of(static_cast<double>(solution.record.rays));
   return estimate_zone_bias(gather, path, points, scale, effort, seed);
 }
 
