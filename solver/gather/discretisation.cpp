@@ -31,7 +31,7 @@ std::optional<double> discretisation_error(const Scene& scene, const RayScene& r
   const std::size_t bands = scene.bands.count();
   const std::uint64_t seed = solution.settings.seed;
   const DirectLight direct(scene, rays);
-  const HemisphereGather gather(rays, field, direct, GatherSettings{.seed = seed});
+  const HemisphereGather gather(rays, field, direct, GatherSettings{.continue_uneven = false, .seed = seed});
   const CounterRng rng(seed, RngPurpose::kDiscretisation);
   const std::vector<ZoneProbe> probes =
       choose_probes(solution, kProbes, static_cast<double>(rng.uniform4(0, 1, 0)[0]));

@@ -16,7 +16,8 @@ std::vector<float> reach_of_zones(const RayScene& rays, const RadianceField& fie
   const ZoneMesh& mesh = rays.mesh();
   std::vector<float> reach(mesh.zone_count(), 0.0F);
   if (settings.close_hit == 0) return reach;
-  const std::vector<std::uint8_t> uneven = uneven_zones(rays, field, direct, settings.seed);
+  std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
+  if (settings.continue_uneven) uneven = uneven_zones(rays, field, direct, settings.seed);
   for (std::size_t z = 0; z < reach.size(); ++z)
     reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
                               : static_cast<float>(settings.close_hit) *

@@ -16,6 +16,8 @@ struct GatherSettings {
   /// show no zone-sized steps; so are hits on uneven zones from any distance. >= 0, 0 = always read.
   double close_hit = 1.0;
   int most_bounces = 4;  ///< Bounces after which a hit is read all the same [0, 64].
+  /// Look for uneven zones before the first ray, which takes some shadow rays for each zone.
+  bool continue_uneven = true;
   std::uint64_t seed = 1;
 };
 
