@@ -25,8 +25,6 @@ namespace {
 
 // Only triangles clearly worse than wanted are improved: a rectangle of 1:4 stays two triangles.
 constexpr double kToleratedAngle = 0.7;
-// Contacts that extend less than this part of a zone's edge are not worth a cut.
-constexpr double kSmallestContact = 0.25;
 // Triangles whose sides are below this many zone edges, or whose area is below this part of a zone, may have
 // any shape.
 constexpr double kFreeLength = 3;
@@ -127,8 +125,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
   const double zone_edge = std::sqrt(zone_area);
 
   PieceGroups groups = group_overlapping_pieces(pieces, tolerances, vertices);
-  const ContactCuts cuts =
-      find_contact_cuts(pieces, groups, tolerances, kSmallestContact * zone_edge, vertices, shapes.exact);
+  const ContactCuts cuts = find_contact_cuts(pieces, groups, tolerances, vertices, shapes.exact);
   if (cuts.ignored > 0)
     report.warnings.push_back(fmt::format(
         "{} faces touch so many others that they were cut along the longest contacts only", cuts.ignored));

@@ -8,15 +8,12 @@
 namespace reemit {
 namespace {
 
-/// Sides of the polygon that stands for a circle in a cut; what it leaves out of the circle's area is 0.6 %.
-constexpr int kSegments = 32;
-
-using Points = std::array<std::optional<Vec3>, kSegments>;
+using Points = std::array<std::optional<Vec3>, kFootSides>;
 
 Points circle(const Vec3& centre, const Vec3& u, const Vec3& v, double radius) {
   Points points;
-  for (int i = 0; i < kSegments; ++i) {
-    const double azimuth = 2 * std::numbers::pi * i / kSegments;
+  for (int i = 0; i < kFootSides; ++i) {
+    const double azimuth = 2 * std::numbers::pi * i / kFootSides;
     points[static_cast<std::size_t>(i)] = centre + radius * (std::cos(azimuth) * u + std::sin(azimuth) * v);
   }
   return points;
@@ -109,8 +106,8 @@ bool is_pierced(const CurvedShape& shape, const VertexTable& vertices, const Fac
   if (f.height > 0) return any_inside(section_of(f, plane, contact));
   const auto chord = chord_of(f, plane, contact);
   if (!chord) return false;
-  for (int i = 1; i < kSegments; ++i) {
-    const double s = static_cast<double>(i) / kSegments;
+  for (int i = 1; i < kFootSides; ++i) {
+    const double s = static_cast<double>(i) / kFootSides;
     if (loops.contains((1 - s) * chord->from + s * chord->to)) return true;
   }
   return false;
