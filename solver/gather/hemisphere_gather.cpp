@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "solver/reflect/lambert.h"
 
@@ -50,6 +51,7 @@ GatherBatch::GatherBatch(const HemisphereGather& gather)
     : gather_(&gather),
       bands_(gather.band_count()),
       rays_{},
+      second_look_{},
       keys_{},
       sums_{},
       weights_(static_cast<std::size_t>(kWidth) * bands_) {}
@@ -68,20 +70,46 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   rays_.dx[lane] = direction.x();
   rays_.dy[lane] = direction.y();
   rays_.dz[lane] = direction.z();
+  second_look_[lane] = false;
   keys_[lane] = key;
   sums_[lane] = sum;
   std::copy_n(weight, bands_, &weights_[lane * bands_]);
-  if (++count_ == kWidth) flush();
+  ++count_;
+  while (count_ == kWidth) trace();
 }
 
 void GatherBatch::flush() {
-  if (count_ == 0) return;
+  while (count_ > 0) trace();
+}
+
+// Puts a ray back into the queue, turned a little, where it costs no block of its own.
+void GatherBatch::keep_for_second_look(std::size_t lane) {
+  const auto to = static_cast<std::size_t>(count_++);
+  const Vec3f direction = RayScene::nudged({rays_.dx[lane], rays_.dy[lane], rays_.dz[lane]});
+  rays_.ox[to] = rays_.ox[lane];
+  rays_.oy[to] = rays_.oy[lane];
+  rays_.oz[to] = rays_.oz[lane];
+  rays_.dx[to] = direction.x();
+  rays_.dy[to] = direction.y();
+  rays_.dz[to] = direction.z();
+  second_look_[to] = true;
+  keys_[to] = keys_[lane];
+  sums_[to] = sums_[lane];
+  std::copy_n(&weights_[lane * bands_], bands_, &weights_[to * bands_]);
+}
+
+void GatherBatch::trace() {
   const RadianceField& field = gather_->field();
+  const RayScene& rays = gather_->rays();
   Hit16 hits;
-  gather_->rays().closest16(rays_, count_, hits);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
+  rays.closest16(rays_, count_, hits);
+  const auto count = static_cast<std::size_t>(std::exchange(count_, 0));
+  for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t t = hits.triangle[i];
-    if (t == RayScene::kMiss) continue;
+    if (rays.is_doubtful(t, hits.front[i])) {
+      if (!second_look_[i]) keep_for_second_look(i);
+      continue;
+    }
     float* weight = &weights_[i * bands_];
     if (gather_->is_close(t, hits.distance[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
@@ -91,7 +119,6 @@ void GatherBatch::flush() {
     const float* radiance = field.reflected(t, hits.u[i], hits.v[i], hits.front[i], keys_[i].part);
     for (std::size_t b = 0; b < bands_; ++b) sums_[i][b] += weight[b] * radiance[b];
   }
-  count_ = 0;
 }
 
 }  // namespace reemit

@@ -65,10 +65,14 @@ class GatherBatch {
  private:
   static constexpr int kWidth = 16;
 
+  void trace();
+  void keep_for_second_look(std::size_t lane);
+
   const HemisphereGather* gather_;
   std::size_t bands_;
   int count_ = 0;
   Ray16 rays_;
+  std::array<bool, kWidth> second_look_;
   std::array<PathKey, kWidth> keys_;
   std::array<float*, kWidth> sums_;
   std::vector<float> weights_;

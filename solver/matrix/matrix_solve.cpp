@@ -49,7 +49,7 @@ struct ZonalSystem {
 };
 
 void add_punctual_lights(const TransportScene& transport, std::uint64_t seed, ZonalSystem& system) {
-  const std::vector<PunctualLight>& lights = transport.scene().lights;
+  const std::vector<PunctualLight>& lights = transport.lights();
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const Spectrum& emission = emission_of(lights[l]);
     const Spectrum power = light_power(lights[l], transport.rays());

@@ -100,7 +100,7 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
       transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane],
                             sample_cosine_power(x.u[2][lane], x.u[3][lane], s->exponent + 1), rays, lane);
     else
-      start_light_ray(transport_.scene().lights[s->light], transport_.rays(), x.u[0][lane], x.u[1][lane],
+      start_light_ray(transport_.lights()[s->light], transport_.rays(), x.u[0][lane], x.u[1][lane],
                       x.u[2][lane], x.u[3][lane], rays, lane);
   }
 }

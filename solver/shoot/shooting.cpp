@@ -21,14 +21,15 @@ constexpr std::uint32_t kMostSweeps = 200'000;
 
 /// Account that a packet is booked to, and whether other threads may book to it at the same time.
 struct Account {
-  std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room.
+  std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room or needs a second look.
   bool shared = false;
 };
 
 /// Accounts of 16 packets. Their memory is asked for at once, before the first is needed: with many zones the
 /// books are larger than the caches.
 void find_accounts(const TransportScene& transport, const Hit16& hits, int count,
-                   SweepAccounts::Incident& incident, bool shared, BatchBooks& books, Account* accounts) {
+                   SweepAccounts::Incident& incident, bool shared, bool second_look, BatchBooks& books,
+                   Account* accounts) {
   const std::size_t bands = transport.bands();
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t t = hits.triangle[lane];
@@ -38,7 +39,7 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
     if (zone.valid()) {
       accounts[lane] = {&incident.quanta[zone.index() * bands], shared};
       incident.touch(zone.index());
-    } else {
+    } else if (second_look) {
       const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
       accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true};
     }
@@ -64,7 +65,7 @@ void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
     const auto trace_and_book = [&](const Ray16& rays, int count, const std::int64_t* quanta,
                                     bool second_look) {
       transport.rays().closest16(rays, count, hits);
-      find_accounts(transport, hits, count, incident, shared, books, accounts);
+      find_accounts(transport, hits, count, incident, shared, second_look, books, accounts);
       for (int lane = 0; lane < count; ++lane, quanta += bands) {
         const Account& account = accounts[lane];
         if (account.quanta == nullptr && !second_look) {

@@ -139,9 +139,12 @@ class WalkTask {
     rng_.bits4x16(id, batch_, bounce, bits);
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
+      if (!zone[lane].valid() && !second_look) {
+        missed_.add(rays, lane, id[lane], quanta);
+        continue;
+      }
       if (hits_.triangle[lane] == RayScene::kMiss) {
-        if (!second_look) missed_.add(rays, lane, id[lane], quanta);
-        for (std::size_t b = 0; second_look && b < bands_; ++b)
+        for (std::size_t b = 0; b < bands_; ++b)
           local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
         continue;
       }
