@@ -68,10 +68,6 @@ bool lies_in_plane(const Vec3& centre, const Vec3& axis, double radius, const st
 
 }  // namespace
 
-double ShapeFeet::Touch::clear_radius() const {
-  return std::sqrt(2 * radius * kGap);
-}
-
 ShapeFeet::OnTriangle& ShapeFeet::at(std::uint32_t triangle) {
   if (index_[triangle] == kNowhere) {
     index_[triangle] = static_cast<std::uint32_t>(on_.size());
@@ -83,7 +79,7 @@ ShapeFeet::OnTriangle& ShapeFeet::at(std::uint32_t triangle) {
 
 ShapeFeet::ShapeFeet(const ZoneMesh& mesh, const std::vector<Vec3f>& corners,
                      std::span<const CurvedShape> shapes)
-    : touches_of_(shapes.size()), index_(mesh.flat_count(), kNowhere) {
+    : resting_(shapes.size()), index_(mesh.flat_count(), kNowhere) {
   const auto triangle = [&](std::size_t t) {
     return Corners{corners[3 * t].cast<double>(), corners[3 * t + 1].cast<double>(),
                    corners[3 * t + 2].cast<double>()};
@@ -99,27 +95,49 @@ ShapeFeet::ShapeFeet(const ZoneMesh& mesh, const std::vector<Vec3f>& corners,
     near[shape].push_back({t, triangle(t)});
   });
   for (std::size_t s = 0; s < shapes.size(); ++s) {
-    if (const auto* sphere = std::get_if<Sphere>(&shapes[s]))
-      add_sphere(s, *sphere, mesh, near[s]);
-    else
-      add_mantle(frustum_of(shapes[s]), mesh, near[s]);
+    for (const Target& face : near[s])
+      add_resting(s, shapes[s], face, mesh.triangle_normal(TriangleId(face.triangle)));
+    if (!std::holds_alternative<Sphere>(shapes[s])) add_mantle(frustum_of(shapes[s]), mesh, near[s]);
   }
 }
 
-void ShapeFeet::add_sphere(std::size_t shape, const Sphere& s, const ZoneMesh& mesh,
-                           std::span<const Target> near) {
-  if (s.radius <= 4 * kGap) return;
-  for (const auto& [t, corners] : near) {
-    const Vec3& n = mesh.triangle_normal(TriangleId(t));
-    const double height = n.dot(s.centre - corners[0]);
-    if (std::abs(std::abs(height) - s.radius) > kGap) continue;
-    const Touch touch{s.centre - height * n, height > 0 ? n : Vec3(-n), s.radius};
-    if (distance_to(corners, touch.point) > touch.clear_radius()) continue;
-    const auto number = static_cast<std::uint32_t>(touches_.size());
-    touches_.push_back(touch);
-    touches_of_[shape].push_back(number);
-    at(t).touched.push_back(number);
+void ShapeFeet::add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal) {
+  const Vec3& on_plane = face.corners[0];
+  const auto rests = [&](const Vec3& p) { return std::abs(normal.dot(p - on_plane)) <= kGap; };
+  Resting resting;
+  Touch touch;
+  double radius = 0;
+  if (const auto* sphere = std::get_if<Sphere>(&s)) {
+    const double height = normal.dot(sphere->centre - on_plane);
+    resting = {sphere->centre, Vec3::Zero(), height > 0 ? Vec3(-normal) : normal, 1};
+    radius = sphere->radius;
+    touch.from = sphere->centre + radius * resting.low;
+    touch.along = Vec3::Zero();
+  } else {
+    const Frustum f = frustum_of(s);
+    if (!(f.height > 0)) return;
+    const bool above = normal.dot(f.base + 0.5 * f.height * f.axis - on_plane) > 0;
+    const Vec3 down = above ? Vec3(-normal) : normal;
+    const Vec3 radial = across(down, f.axis);
+    if (radial.norm() < 0.5) return;  // stands rather than lies
+    resting = {f.base, f.axis, radial.normalized(), radial.norm()};
+    radius = f.r0;
+    touch.from = f.base + f.r0 * resting.low;
+    touch.along = f.base + f.height * f.axis + f.r1 * resting.low - touch.from;
   }
+  if (radius <= 4 * kGap || !rests(touch.from) || !rests(touch.from + touch.along)) return;
+  touch.clear = std::sqrt(2 * radius * kGap / resting.steepness);
+  constexpr int kLooks = 32;
+  bool reaches = false;
+  for (int i = 0; i <= kLooks && !reaches; ++i)
+    reaches = distance_to(face.corners, touch.from + touch.along * i / kLooks) <=
+              touch.clear + touch.along.norm() / kLooks;
+  if (!reaches) return;
+  touch.normal = normal;
+  touch.aside = touch.along.isZero() ? normal.unitOrthogonal() : normal.cross(touch.along).normalized();
+  at(face.triangle).touched.push_back(static_cast<std::uint32_t>(touches_.size()));
+  touches_.push_back(touch);
+  resting_[shape].push_back(resting);
 }
 
 void ShapeFeet::add_mantle(const Frustum& f, const ZoneMesh& mesh, std::span<const Target> near) {
@@ -164,16 +182,19 @@ void ShapeFeet::add_foot(Foot foot, const ZoneMesh& mesh, std::span<const Target
 Vec3f ShapeFeet::clear_of_shapes(std::size_t triangle, const Vec3f& start) const {
   const OnTriangle& on = on_[index_[triangle]];
   Vec3 p = start.cast<double>();
-  const auto keep_off = [&](const Vec3& centre, const Vec3& up, double radius) {
-    const Vec3 offset = across(p - centre, up);
+  const auto keep_off = [&](const Vec3& offset, double radius, const Vec3& else_to) {
     const double distance = offset.norm();
     if (distance >= radius) return;
-    const Vec3 away = distance > 0 ? Vec3(offset / distance) : up.unitOrthogonal();
-    p += (radius - distance) * away;
+    p += (radius - distance) * (distance > 0 ? Vec3(offset / distance) : else_to);
   };
-  for (const std::uint32_t f : on.beside) keep_off(feet_[f].centre, feet_[f].up, feet_[f].radius + kBeside);
-  for (const std::uint32_t k : on.touched)
-    keep_off(touches_[k].point, touches_[k].up, touches_[k].clear_radius());
+  for (const std::uint32_t f : on.beside)
+    keep_off(across(p - feet_[f].centre, feet_[f].up), feet_[f].radius + kBeside, feet_[f].u);
+  for (const std::uint32_t k : on.touched) {
+    const Touch& touch = touches_[k];
+    const double length2 = touch.along.squaredNorm();
+    const double t = length2 > 0 ? std::clamp((p - touch.from).dot(touch.along) / length2, 0.0, 1.0) : 0.0;
+    keep_off(across(p - touch.from - t * touch.along, touch.normal), touch.clear, touch.aside);
+  }
   return p.cast<float>();
 }
 
@@ -205,14 +226,18 @@ ShapeFeet::Place ShapeFeet::place_of(const Place& hit, const Vec3& origin, const
 
 Vec3 ShapeFeet::clear_of_faces(std::size_t shape, const Vec3& point) const {
   Vec3 p = point;
-  for (const std::uint32_t k : touches_of_[shape]) {
-    const Touch& touch = touches_[k];
-    if (touch.up.dot(p - touch.point) >= kGap) continue;
-    const Vec3 offset = across(p - touch.point, touch.up);
-    const double distance = offset.norm();
-    const Vec3 away = distance > 0 ? Vec3(offset / distance) : touch.up.unitOrthogonal();
-    const double radius = std::sqrt(2 * touch.radius * kGap - kGap * kGap);
-    p = touch.point + kGap * touch.up + radius * away;
+  for (const Resting& r : resting_[shape]) {
+    const Vec3 centre = r.base + r.axis.dot(p - r.base) * r.axis;
+    const Vec3 radial = p - centre;
+    const double radius = radial.norm();
+    // Cosine of the angle from `low` at which the shape is kGap above the plane.
+    const double cosine = std::max(-1.0, 1 - kGap / (radius * r.steepness));
+    if (!(radial.dot(r.low) > radius * cosine)) continue;
+    const Vec3 aside = across(radial, r.low);
+    const double length = aside.norm();
+    const Vec3 side = length > 0 ? Vec3(aside / length)
+                                 : (r.axis.isZero() ? r.low.unitOrthogonal() : Vec3(r.axis.cross(r.low)));
+    p = centre + radius * (cosine * r.low + std::sqrt(1 - cosine * cosine) * side);
   }
   return p;
 }

@@ -16,8 +16,9 @@ namespace reemit {
 /// the same: what arrives within the mantle belongs to the triangles within the polygon, and rays leave from
 /// points beside the mantle.
 ///
-/// A sphere touches a face in one point, around which the gap is narrower than the distance by which rays
-/// start off their surface. Rays leave from where the gap is wide enough, on either surface.
+/// A sphere touches a face in a point and a mantle that lies on it in a line. There the gap is narrower than
+/// the distance by which rays start off their surface: they leave from where it is wide enough, on either
+/// surface.
 class ShapeFeet {
  public:
   ShapeFeet() = default;
@@ -41,9 +42,7 @@ class ShapeFeet {
   Place place_of(const Place& hit, const Vec3& origin, const Vec3& direction, double distance) const;
 
   /// Whether faces touch the shape, so that clear_of_faces() may move points.
-  bool touches_faces(std::size_t shape) const {
-    return shape < touches_of_.size() && !touches_of_[shape].empty();
-  }
+  bool touches_faces(std::size_t shape) const { return shape < resting_.size() && !resting_[shape].empty(); }
   /// A point of the shape, moved along it until no face is nearer than a ray start needs.
   Vec3 clear_of_faces(std::size_t shape, const Vec3& point) const;
 
@@ -65,12 +64,20 @@ class ShapeFeet {
     double widening;             // of the radius per height
     std::vector<Target> within;  // triangles inside the polygon
   };
-  /// Point in which a sphere touches a plane.
+  /// Point or line in which a shape touches a plane, as the plane sees it.
   struct Touch {
-    Vec3 point;
-    Vec3 up;  // unit, to the middle of the sphere
-    double radius;
-    double clear_radius() const;  // around the point, where the gap is wide enough
+    Vec3 from;
+    Vec3 along;    // to the end of the line; 0 for a point
+    Vec3 normal;   // of the plane, unit
+    Vec3 aside;    // unit, in the plane, across the line
+    double clear;  // distance at which the gap is wide enough
+  };
+  /// The same as the shape sees it.
+  struct Resting {
+    Vec3 base;         // the centre of a sphere, or a point of the axis
+    Vec3 axis;         // unit; 0 for spheres
+    Vec3 low;          // unit, across the axis, to where it touches
+    double steepness;  // height over the plane per distance against `low`
   };
   struct OnTriangle {
     std::vector<std::uint32_t> beside;   // feet that it reaches under from outside
@@ -79,12 +86,12 @@ class ShapeFeet {
 
   void add_mantle(const Frustum& f, const ZoneMesh& mesh, std::span<const Target> near);
   void add_foot(Foot foot, const ZoneMesh& mesh, std::span<const Target> near);
-  void add_sphere(std::size_t shape, const Sphere& s, const ZoneMesh& mesh, std::span<const Target> near);
+  void add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal);
   OnTriangle& at(std::uint32_t triangle);
 
   std::vector<Foot> feet_;
   std::vector<Touch> touches_;
-  std::vector<std::vector<std::uint32_t>> touches_of_;  // by shape
+  std::vector<std::vector<Resting>> resting_;  // by shape
   std::vector<std::uint32_t> triangles_;
   std::vector<OnTriangle> on_;        // as triangles_
   std::vector<std::uint32_t> index_;  // by triangle, in triangles_
