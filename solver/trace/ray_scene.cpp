@@ -180,9 +180,15 @@ bool RayScene::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) co
     read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, d, found);
     return true;
   };
+  const auto is_certain = [&](const Hit& found) {
+    return !is_doubtful(static_cast<std::uint32_t>(found.triangle.index()), found.front);
+  };
   const bool any = trace(direction, hit);
-  if (any && !is_doubtful(static_cast<std::uint32_t>(hit.triangle.index()), hit.front)) return true;
-  return trace(nudged(direction), hit) || any;
+  if (any && is_certain(hit)) return true;
+  Hit second;
+  if (!trace(nudged(direction), second)) return any;
+  if (!any || is_certain(second)) hit = second;
+  return true;
 }
 
 bool RayScene::closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
@@ -273,6 +279,8 @@ void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   closest16(doubtful, doubtful_count, again);
   for (int k = 0; k < doubtful_count; ++k) {
     const int i = lanes[k];
+    // A back is believed when it is met again.
+    if (hits.triangle[i] != kMiss && is_doubtful(again.triangle[k], again.front[k])) continue;
     hits.triangle[i] = again.triangle[k];
     hits.u[i] = again.u[k];
     hits.v[i] = again.v[k];
