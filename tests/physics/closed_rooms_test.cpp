@@ -1,7 +1,6 @@
 // Closed rooms lose nothing: not a quantum leaves them, meets the back of a one-sided face or reaches a
 // sealed body, whatever pierces their walls or stands on their floors. Counts of quanta, so no tolerance;
-// each room leaked by many packets when its zones could lie on two sides of a face. Longer runs:
-// bench/closed_rooms.
+// each room leaked by many packets when its zones could lie on two sides of a face.
 
 #include <atomic>
 #include <numeric>
