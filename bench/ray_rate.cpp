@@ -21,7 +21,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/shoot/packet_batch.h"
-#include "solver/tally/stop_rule.h"
+#include "solver/tally/batch_plan.h"
 
 namespace {
 
@@ -117,7 +117,7 @@ void measure(const Case& c, int threads, int rounds) {
   SolverSettings settings;
   settings.method = c.method;
   const auto packets = static_cast<std::uint32_t>(
-      std::max<std::size_t>(1'000'000, StopRule(settings, built.mesh.zone_count()).batch_packets()));
+      std::max<std::size_t>(1'000'000, BatchPlan(settings, built.mesh.zone_count()).largest_batch_packets()));
   BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
   const auto run = [&](const RayObserver* observer) {
     books.clear();

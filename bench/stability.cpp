@@ -153,7 +153,7 @@ void measure_reflectance() {
         squares += a * d * d;
         for (std::size_t g = 0; g < groups.size(); ++g)
           groups[g] += a * (s.sums.group_total[g * s.mesh.zone_count() + z] /
-                                static_cast<double>(s.sums.group_batches(g)) / truth -
+                                static_cast<double>(s.sums.group_weight[g]) / truth -
                             1);
       }
       double spread = 0;

@@ -10,6 +10,7 @@
 #include "mesh/conform_triangles.h"
 #include "mesh/contact_split.h"
 #include "mesh/coplanar_overlap.h"
+#include "mesh/dropped_luminaires.h"
 #include "mesh/duplicate_faces.h"
 #include "mesh/edge_points.h"
 #include "mesh/mesh_tolerances.h"
@@ -25,8 +26,6 @@ namespace {
 
 // Only triangles clearly worse than wanted are improved: a rectangle of 1:4 stays two triangles.
 constexpr double kToleratedAngle = 0.7;
-// Contacts that extend less than this part of a zone's edge are not worth a cut.
-constexpr double kSmallestContact = 0.25;
 // Triangles whose sides are below this many zone edges, or whose area is below this part of a zone, may have
 // any shape.
 constexpr double kFreeLength = 3;
@@ -48,6 +47,7 @@ void book_areas(const VertexTable& vertices, const std::vector<FacePiece>& piece
     // What welding and omitted slivers changed; less than that is rounding.
     const double rest = pieces[p].area - meshed[p] - cut.covered[p];
     if (std::abs(rest) > 1e-12 * pieces[p].area) areas.removed += rest;
+    if (meshed[p] + cut.covered[p] <= 0) areas.collapsed += pieces[p].area;
   }
 }
 
@@ -127,8 +127,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
   const double zone_edge = std::sqrt(zone_area);
 
   PieceGroups groups = group_overlapping_pieces(pieces, tolerances, vertices);
-  const ContactCuts cuts =
-      find_contact_cuts(pieces, groups, tolerances, kSmallestContact * zone_edge, vertices, shapes.exact);
+  const ContactCuts cuts = find_contact_cuts(pieces, groups, tolerances, vertices, shapes.exact);
   if (cuts.ignored > 0)
     report.warnings.push_back(fmt::format(
         "{} faces touch so many others that they were cut along the longest contacts only", cuts.ignored));
@@ -148,6 +147,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
 
   BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);
   append_patches(scene, shapes, base, report);
+  check_dropped_luminaires(scene, tolerances.weld, report);
   size_zones(base, zone_area);
   return {ZoneMesh(std::move(base)), std::move(report)};
 }

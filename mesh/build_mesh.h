@@ -10,9 +10,11 @@ namespace reemit {
 
 /// Area of one surface through repair and meshing [m2], one side: input = meshed + removed to 1e-9 relative.
 struct SurfaceAreas {
-  double input = 0;    ///< Sum over the polygons as read, after splitting non-planar ones into triangles.
-  double meshed = 0;   ///< Sum over the base triangles.
-  double removed = 0;  ///< Duplicates and parts covered by a coplanar face that wins over this one.
+  double input = 0;   ///< Sum over the polygons as read, after splitting non-planar ones into triangles.
+  double meshed = 0;  ///< Sum over the base triangles.
+  /// Duplicates, parts covered by a coplanar face that wins over this one, and what collapsed.
+  double removed = 0;
+  double collapsed = 0;  ///< Part of `removed`: faces and slivers too small or thin to be meshed.
 };
 
 /// What meshing did to the room, for `info` and for the user.
@@ -34,7 +36,8 @@ struct MeshResult {
 };
 
 /// Repairs, cuts and triangulates the room and sizes its zones. Deterministic.
-/// Throws InputError when nothing is left to trace, or a face cannot be repaired (it is named).
+/// Throws InputError when nothing is left to trace, a face cannot be repaired (it is named), or all
+/// luminaires are too small or thin to be meshed.
 MeshResult build_mesh(const Scene& scene, const MeshSettings& settings = {});
 
 }  // namespace reemit

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <unordered_map>
 #include <utility>
 
 #include "mesh/box_pairs.h"
 #include "mesh/contact_segments.h"
-#include "mesh/disjoint_sets.h"
 #include "mesh/edge_points.h"
 #include "mesh/shape_contacts.h"
 
@@ -38,14 +36,13 @@ class CutArrangement {
     }
   }
 
-  std::vector<Segment> arrange(std::vector<PlanarSegment> raw, double smallest, bool& ignored,
+  std::vector<Segment> arrange(std::vector<PlanarSegment> raw, bool& ignored,
                                std::vector<std::uint32_t>& on_boundary);
 
  private:
   std::uint32_t node_at(const Vec2& p) { return nodes_.weld({p.x(), p.y(), 0}); }
   Vec2 position(std::uint32_t node) const { return nodes_[node].head<2>(); }
   std::vector<Segment> split_at_nodes(const std::vector<Segment>& segments) const;
-  void drop_small(std::vector<Segment>& segments, double smallest) const;
   std::uint32_t vertex_at(std::uint32_t node, std::vector<std::uint32_t>& on_boundary);
 
   const PieceGroup& group_;
@@ -86,28 +83,6 @@ std::vector<Segment> CutArrangement::split_at_nodes(const std::vector<Segment>& 
   return out;
 }
 
-// Drops connected cuts that together extend less than `smallest`.
-void CutArrangement::drop_small(std::vector<Segment>& segments, double smallest) const {
-  DisjointSets sets(nodes_.size());
-  for (const Segment& s : segments) sets.join(s[0], s[1]);
-  struct Extent {
-    Vec2 min = Vec2::Constant(std::numeric_limits<double>::infinity());
-    Vec2 max = Vec2::Constant(-std::numeric_limits<double>::infinity());
-  };
-  std::unordered_map<std::size_t, Extent> extents;
-  for (const Segment& s : segments) {
-    Extent& e = extents[sets.find(s[0])];
-    for (const std::uint32_t node : s) {
-      e.min = e.min.cwiseMin(position(node));
-      e.max = e.max.cwiseMax(position(node));
-    }
-  }
-  std::erase_if(segments, [&](const Segment& s) {
-    const Extent& e = extents.at(sets.find(s[0]));
-    return (e.max - e.min).norm() < smallest;
-  });
-}
-
 // The vertex of a node: a corner, a new point on an edge, or a new point in the plane.
 std::uint32_t CutArrangement::vertex_at(std::uint32_t node, std::vector<std::uint32_t>& on_boundary) {
   const auto known = vertex_of_.find(node);
@@ -138,7 +113,7 @@ std::uint32_t CutArrangement::vertex_at(std::uint32_t node, std::vector<std::uin
   return vertex;
 }
 
-std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, double smallest, bool& ignored,
+std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, bool& ignored,
                                              std::vector<std::uint32_t>& on_boundary) {
   if (raw.size() > kMostCuts) {
     ignored = true;
@@ -155,7 +130,6 @@ std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, dou
   sort_unique(segments);
   segments = split_at_nodes(segments);
   sort_unique(segments);
-  drop_small(segments, smallest);
   std::vector<Segment> out;
   for (const Segment& s : segments) {
     const Segment ends{vertex_at(s[0], on_boundary), vertex_at(s[1], on_boundary)};
@@ -190,7 +164,7 @@ std::vector<std::pair<std::size_t, std::size_t>> candidates(const std::vector<Fa
 }  // namespace
 
 ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
-                              const MeshTolerances& tolerances, double smallest, VertexTable& vertices,
+                              const MeshTolerances& tolerances, VertexTable& vertices,
                               std::span<const CurvedShape> shapes) {
   ContactCuts out;
   out.segments.resize(groups.groups.size());
@@ -226,7 +200,7 @@ ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceG
     if (raw.empty()) continue;
     bool ignored = false;
     out.segments[g] =
-        CutArrangement(pieces, group, tolerances, vertices).arrange(raw, smallest, ignored, out.on_boundary);
+        CutArrangement(pieces, group, tolerances, vertices).arrange(raw, ignored, out.on_boundary);
     if (ignored) ++out.ignored;
   }
   return out;

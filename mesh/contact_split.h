@@ -21,10 +21,10 @@ struct ContactCuts {
 };
 
 /// Finds the lines along which other pieces and curved shapes stand on a group (edges within the contact
-/// distance of its plane) or pierce it. Contacts that extend less than `smallest` metres are not cut: they
-/// are much smaller than a zone.
+/// distance of its plane) or pierce it. However small a contact is beside a zone, it is cut: what pierces a
+/// wall may be thin and long.
 ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
-                              const MeshTolerances& tolerances, double smallest, VertexTable& vertices,
+                              const MeshTolerances& tolerances, VertexTable& vertices,
                               std::span<const CurvedShape> shapes = {});
 
 }  // namespace reemit

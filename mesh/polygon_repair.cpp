@@ -8,6 +8,7 @@
 
 #include "mesh/face_notes.h"
 #include "mesh/planar_triangulation.h"
+#include "scenes/io/polygon_loops.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -21,7 +22,7 @@ struct Corner {
 };
 
 // Outline and holes of one face.
-struct Polygon {
+struct FaceLoops {
   std::vector<std::vector<Corner>> loops;
 };
 
@@ -46,17 +47,19 @@ class PolygonRepair {
 
  private:
   void repair(SurfaceId surface, std::uint32_t face);
-  Polygon read(SurfaceId surface, std::uint32_t face);
+  FaceLoops read(SurfaceId surface, std::uint32_t face);
   std::vector<Corner> read_loop(SurfaceId surface, const std::vector<std::uint32_t>& loop,
                                 const std::vector<std::uint32_t>& normals);
-  void weld(Polygon& polygon);
+  void weld(FaceLoops& polygon);
+  std::vector<FaceLoops> split_welded_seams(FaceLoops face);
+  double repair_part(SurfaceId surface, std::uint32_t face, const FaceLoops& part, double area_as_read);
   void drop(const FacePiece& piece, double area);
-  bool finish_plane(FacePiece& piece, const Polygon& polygon, double& deviation) const;
-  void refuse_if_crossed(const FacePiece& piece, const Polygon& polygon) const;
+  bool finish_plane(FacePiece& piece, const FaceLoops& polygon, double& deviation) const;
+  void refuse_if_crossed(const FacePiece& piece, const FaceLoops& polygon) const;
   void add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners);
-  void add_polygon(FacePiece piece, const Polygon& polygon);
-  void add_split(const FacePiece& piece, const Polygon& polygon);
-  PlanarTriangulation triangulate(const FacePiece& piece, const Polygon& polygon,
+  void add_polygon(FacePiece piece, const FaceLoops& polygon);
+  void add_split(const FacePiece& piece, const FaceLoops& polygon);
+  PlanarTriangulation triangulate(const FacePiece& piece, const FaceLoops& polygon,
                                   std::vector<Corner>& corners) const;
   InputError bad_face(const FacePiece& piece, const std::string& problem, const std::string& advice) const {
     return {"face " + face_name(scene_, piece.surface, piece.face), problem, advice};
@@ -87,15 +90,15 @@ std::vector<Corner> PolygonRepair::read_loop(SurfaceId surface, const std::vecto
   return out;
 }
 
-Polygon PolygonRepair::read(SurfaceId surface, std::uint32_t face) {
+FaceLoops PolygonRepair::read(SurfaceId surface, std::uint32_t face) {
   const Face& f = scene_.surfaces[surface.index()].faces[face];
-  Polygon polygon;
+  FaceLoops polygon;
   polygon.loops.push_back(read_loop(surface, f.outer, f.normals));
   for (const auto& hole : f.holes) polygon.loops.push_back(read_loop(surface, hole, {}));
   return polygon;
 }
 
-void PolygonRepair::weld(Polygon& polygon) {
+void PolygonRepair::weld(FaceLoops& polygon) {
   for (std::vector<Corner>& loop : polygon.loops) {
     for (Corner& c : loop) c.vertex = vertices_.weld(c.read);
     const auto same = [](const Corner& a, const Corner& b) { return a.vertex == b.vertex; };
@@ -107,17 +110,49 @@ void PolygonRepair::weld(Polygon& polygon) {
                       polygon.loops.end());
 }
 
+// The parts of a face whose outline draws holes or islands by seams whose ends only welding made equal
+// (readers have split the others); the face itself if it does not.
+std::vector<FaceLoops> PolygonRepair::split_welded_seams(FaceLoops face) {
+  std::vector<std::uint32_t> outline;
+  for (const Corner& c : face.loops[0]) outline.push_back(c.vertex);
+  std::sort(outline.begin(), outline.end());
+  if (std::adjacent_find(outline.begin(), outline.end()) == outline.end()) return {std::move(face)};
+  const auto positions = [&](const std::vector<Corner>& loop) {
+    std::vector<Vec3> out;
+    for (const Corner& c : loop) out.push_back(vertices_[c.vertex]);
+    return out;
+  };
+  Polygon welded{.outer = positions(face.loops[0]), .normals = {}, .holes = {}};
+  for (const Corner& c : face.loops[0]) welded.normals.push_back(c.normal);
+  for (std::size_t i = 1; i < face.loops.size(); ++i) welded.holes.push_back(positions(face.loops[i]));
+  std::vector<FaceLoops> parts;
+  const auto corner = [&](const Vec3& p, const Vec3& normal) { return Corner{p, vertices_.weld(p), normal}; };
+  for (const Polygon& island : split_at_seams(std::move(welded))) {
+    FaceLoops& part = parts.emplace_back();
+    std::vector<Corner>& loop = part.loops.emplace_back();
+    for (std::size_t i = 0; i < island.outer.size(); ++i)
+      loop.push_back(corner(island.outer[i], island.normals[i]));
+    for (const auto& hole : island.holes) {
+      std::vector<Corner>& corners = part.loops.emplace_back();
+      for (const Vec3& p : hole) corners.push_back(corner(p, Vec3::Zero()));
+    }
+  }
+  if (parts.empty()) parts.push_back(std::move(face));
+  return parts;
+}
+
 void PolygonRepair::drop(const FacePiece& piece, double area) {
   ++report_.degenerate_faces;
   SurfaceAreas& areas = report_.surfaces[piece.surface.index()];
   areas.input += area;
   areas.removed += area;
+  areas.collapsed += area;
   degenerate_.add(scene_, piece.surface, piece.face);
 }
 
 // Fits the plane; false if the polygon encloses no area. `deviation`: largest distance of a corner from the
 // plane.
-bool PolygonRepair::finish_plane(FacePiece& piece, const Polygon& polygon, double& deviation) const {
+bool PolygonRepair::finish_plane(FacePiece& piece, const FaceLoops& polygon, double& deviation) const {
   if (polygon.loops[0].size() < 3) return false;
   piece.loops.clear();
   for (const std::vector<Corner>& loop : polygon.loops) {
@@ -147,7 +182,7 @@ bool PolygonRepair::finish_plane(FacePiece& piece, const Polygon& polygon, doubl
   return true;
 }
 
-PlanarTriangulation PolygonRepair::triangulate(const FacePiece& piece, const Polygon& polygon,
+PlanarTriangulation PolygonRepair::triangulate(const FacePiece& piece, const FaceLoops& polygon,
                                                std::vector<Corner>& corners) const {
   std::vector<Vec2> points;
   std::vector<std::array<std::uint32_t, 2>> segments;
@@ -165,7 +200,7 @@ PlanarTriangulation PolygonRepair::triangulate(const FacePiece& piece, const Pol
 }
 
 // An outline like a figure 8 may enclose area twice in opposite senses, which leaves no front.
-void PolygonRepair::refuse_if_crossed(const FacePiece& piece, const Polygon& polygon) const {
+void PolygonRepair::refuse_if_crossed(const FacePiece& piece, const FaceLoops& polygon) const {
   const std::vector<Corner>& loop = polygon.loops[0];
   Vec3 widest = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
@@ -191,7 +226,7 @@ void PolygonRepair::refuse_if_crossed(const FacePiece& piece, const Polygon& pol
 
 void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners) {
   FacePiece piece = like;
-  Polygon polygon;
+  FaceLoops polygon;
   polygon.loops.emplace_back(corners.begin(), corners.end());
   piece.area = triangle_area(corners[0].read, corners[1].read, corners[2].read);
   double deviation = 0;
@@ -199,6 +234,7 @@ void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner,
     SurfaceAreas& areas = report_.surfaces[piece.surface.index()];
     areas.input += piece.area;
     areas.removed += piece.area;
+    areas.collapsed += piece.area;
     return;
   }
   piece.smooth = false;
@@ -216,7 +252,7 @@ void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner,
   pieces_.push_back(std::move(piece));
 }
 
-void PolygonRepair::add_polygon(FacePiece piece, const Polygon& polygon) {
+void PolygonRepair::add_polygon(FacePiece piece, const FaceLoops& polygon) {
   double area = vector_area_as_read(polygon.loops[0]).norm();
   for (std::size_t i = 1; i < polygon.loops.size(); ++i) area -= vector_area_as_read(polygon.loops[i]).norm();
   std::vector<Corner> corners;
@@ -243,7 +279,7 @@ void PolygonRepair::add_polygon(FacePiece piece, const Polygon& polygon) {
   pieces_.push_back(std::move(piece));
 }
 
-void PolygonRepair::add_split(const FacePiece& piece, const Polygon& polygon) {
+void PolygonRepair::add_split(const FacePiece& piece, const FaceLoops& polygon) {
   std::vector<Corner> corners;
   const PlanarTriangulation cut = triangulate(piece, polygon, corners);
   for (std::size_t i = corners.size(); i < cut.points.size(); ++i) {
@@ -253,7 +289,9 @@ void PolygonRepair::add_split(const FacePiece& piece, const Polygon& polygon) {
   for (const auto& t : cut.triangles) add_triangle(piece, {corners[t[0]], corners[t[1]], corners[t[2]]});
 }
 
-void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
+// Returns the largest distance of a corner from the plane of the part [m] if the eye can see it, else 0.
+double PolygonRepair::repair_part(SurfaceId surface, std::uint32_t face, const FaceLoops& part,
+                                  double area_as_read) {
   const Material& material = scene_.material_of(scene_.surfaces[surface.index()]);
   FacePiece piece;
   piece.surface = surface;
@@ -261,32 +299,42 @@ void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
   piece.two_sided = material.two_sided;
   piece.emits = material.emits();
   piece.emits_both_sides = material.emits_both_sides;
-  Polygon polygon = read(surface, face);
-  const double area_as_read = vector_area_as_read(polygon.loops[0]).norm();
-  weld(polygon);
   double deviation = 0;
-  if (!finish_plane(piece, polygon, deviation)) {
-    if (polygon.loops[0].size() > 3) refuse_if_crossed(piece, polygon);
+  if (!finish_plane(piece, part, deviation)) {
+    if (part.loops[0].size() > 3) refuse_if_crossed(piece, part);
     drop(piece, area_as_read);
-    return;
+    return 0;
   }
-  const std::vector<Corner>& outline = polygon.loops[0];
-  if (outline.size() == 3 && polygon.loops.size() == 1) {
+  const std::vector<Corner>& outline = part.loops[0];
+  if (outline.size() == 3 && part.loops.size() == 1) {
     add_triangle(piece, {outline[0], outline[1], outline[2]});
-    return;
+    return 0;
   }
   const bool shaded = std::any_of(outline.begin(), outline.end(), [&](const Corner& c) {
     return c.normal.squaredNorm() > 0 && std::abs(c.normal.normalized().dot(piece.plane.normal)) < 1 - 1e-7;
   });
-  if (deviation > kVisiblyBent * piece.diameter) {
-    ++report_.nonplanar_faces;
-    bent_.add(scene_, surface, face);
-    largest_bend_ = std::max(largest_bend_, deviation);
-  }
+  const double bend = deviation > kVisiblyBent * piece.diameter ? deviation : 0;
   if (shaded || deviation > kPlanar * piece.diameter)
-    add_split(piece, polygon);
+    add_split(piece, part);
   else
-    add_polygon(std::move(piece), polygon);
+    add_polygon(std::move(piece), part);
+  return bend;
+}
+
+void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
+  FaceLoops polygon = read(surface, face);
+  const double area_as_read = vector_area_as_read(polygon.loops[0]).norm();
+  weld(polygon);
+  const std::vector<FaceLoops> parts = split_welded_seams(std::move(polygon));
+  double bend = 0;
+  for (const FaceLoops& part : parts)
+    bend = std::max(
+        bend, repair_part(surface, face, part,
+                          parts.size() == 1 ? area_as_read : vector_area_as_read(part.loops[0]).norm()));
+  if (bend == 0) return;
+  ++report_.nonplanar_faces;
+  bent_.add(scene_, surface, face);
+  largest_bend_ = std::max(largest_bend_, bend);
 }
 
 std::vector<FacePiece> PolygonRepair::run() {

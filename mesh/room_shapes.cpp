@@ -30,7 +30,8 @@ std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes,
   for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, 0));
   for_each_box_pair(boxes_of(shapes.exact, 0), boxes, [&](std::uint32_t s, std::uint32_t piece) {
     if (pierced[s] || room.material_of(room.surfaces[shapes.surface[s].index()]).emits()) return;
-    pierced[s] = is_pierced(shapes.exact[s], vertices, pieces[piece], tolerances.contact);
+    // Not within the contact distance: what sticks out by less than that is a leak all the same.
+    pierced[s] = is_pierced(shapes.exact[s], vertices, pieces[piece], tolerances.weld);
   });
   return pierced;
 }

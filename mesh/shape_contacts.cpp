@@ -1,5 +1,6 @@
 #include "mesh/shape_contacts.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -8,15 +9,12 @@
 namespace reemit {
 namespace {
 
-/// Sides of the polygon that stands for a circle in a cut; what it leaves out of the circle's area is 0.6 %.
-constexpr int kSegments = 32;
-
-using Points = std::array<std::optional<Vec3>, kSegments>;
+using Points = std::array<std::optional<Vec3>, kFootSides>;
 
 Points circle(const Vec3& centre, const Vec3& u, const Vec3& v, double radius) {
   Points points;
-  for (int i = 0; i < kSegments; ++i) {
-    const double azimuth = 2 * std::numbers::pi * i / kSegments;
+  for (int i = 0; i < kFootSides; ++i) {
+    const double azimuth = 2 * std::numbers::pi * i / kFootSides;
     points[static_cast<std::size_t>(i)] = centre + radius * (std::cos(azimuth) * u + std::sin(azimuth) * v);
   }
   return points;
@@ -50,6 +48,44 @@ Points section_of(const Frustum& f, const PlaneFrame& plane, double contact) {
       points[i] = *wide[i] + a / (a - b) * (*narrow[i] - *wide[i]);
   }
   return points;
+}
+
+bool any_point_inside(const Vec2& from, const Vec2& to, const PlanarLoops& loops) {
+  for (int i = 0; i <= kFootSides; ++i) {
+    const double s = static_cast<double>(i) / kFootSides;
+    if (loops.contains((1 - s) * from + s * to)) return true;
+  }
+  return false;
+}
+
+/// Whether a mantle reaches farther than `contact` to both sides of a plane within the loops of a face. It
+/// may do so across its axis or along it, like a log that lies half in the floor.
+bool passes_through(const Frustum& f, const PlaneFrame& plane, double contact, const PlanarLoops& loops) {
+  // The lowest and highest lines of the mantle are among those looked at.
+  const Vec3 steepest = plane.normal - f.axis.dot(plane.normal) * f.axis;
+  const Vec3 u = steepest.norm() > 1e-9 ? Vec3(steepest.normalized()) : f.u;
+  const Vec3 v = f.axis.cross(u);
+  const Points wide = circle(f.base, u, v, f.r0);
+  const Points narrow = circle(f.base + f.height * f.axis, u, v, f.r1);
+  for (std::size_t i = 0; i < wide.size(); ++i) {
+    const std::size_t next = (i + 1) % wide.size();
+    const std::array<Vec3, 4> quad{*wide[i], *wide[next], *narrow[next], *narrow[i]};
+    std::array<double, 4> height{};
+    for (std::size_t k = 0; k < 4; ++k) height[k] = plane.height(quad[k]);
+    if (*std::min_element(height.begin(), height.end()) >= -contact ||
+        *std::max_element(height.begin(), height.end()) <= contact)
+      continue;
+    std::vector<Vec2> section;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t after = (k + 1) % 4;
+      if ((height[k] < 0) == (height[after] < 0)) continue;
+      const double t = height[k] / (height[k] - height[after]);
+      section.push_back(plane.project(quad[k] + t * (quad[after] - quad[k])));
+    }
+    for (std::size_t k = 1; k < section.size(); ++k)
+      if (any_point_inside(section[k - 1], section[k], loops)) return true;
+  }
+  return false;
 }
 
 bool lies_in(const Vec3& centre, double radius, const Vec3& axis, const PlaneFrame& plane, double contact) {
@@ -96,24 +132,16 @@ bool is_pierced(const CurvedShape& shape, const VertexTable& vertices, const Fac
                 double contact) {
   const PlaneFrame& plane = piece.plane;
   const PlanarLoops loops(vertices, piece, plane);
-  const auto any_inside = [&](const Points& points) {
-    for (const auto& p : points)
-      if (p && loops.contains(plane.project(*p))) return true;
-    return false;
-  };
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     const auto points = section_of(*sphere, plane, contact);
-    return points && any_inside(*points);
+    return points && std::any_of(points->begin(), points->end(), [&](const std::optional<Vec3>& p) {
+             return p && loops.contains(plane.project(*p));
+           });
   }
   const Frustum f = frustum_of(shape);
-  if (f.height > 0) return any_inside(section_of(f, plane, contact));
+  if (f.height > 0) return passes_through(f, plane, contact, loops);
   const auto chord = chord_of(f, plane, contact);
-  if (!chord) return false;
-  for (int i = 1; i < kSegments; ++i) {
-    const double s = static_cast<double>(i) / kSegments;
-    if (loops.contains((1 - s) * chord->from + s * chord->to)) return true;
-  }
-  return false;
+  return chord && any_point_inside(chord->from, chord->to, loops);
 }
 
 std::vector<IndexedBox> boxes_of(std::span<const CurvedShape> shapes, double margin) {

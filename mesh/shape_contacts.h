@@ -8,6 +8,9 @@
 
 namespace reemit {
 
+/// Sides of the polygon that stands for a circle in a cut; what it leaves out of the circle's area is 0.6 %.
+inline constexpr int kFootSides = 32;
+
 /// Where a shape stands on a plane (circles within `contact` metres of it) or passes through it, as inscribed
 /// polygons in the coordinates of the plane. Appends to `out`.
 void section_with_plane(const CurvedShape& shape, const PlaneFrame& plane, double contact,

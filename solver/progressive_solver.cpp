@@ -4,14 +4,19 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/stop_token.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/small_zones.h"
+#include "solver/gather/zone_bias_estimate.h"
+#include "solver/losses/lost_light.h"
+#include "solver/losses/luminaire_warnings.h"
 #include "solver/matrix/matrix_solve.h"
 #include "solver/shoot/closed_room_check.h"
 #include "solver/shoot/packet_batch.h"
@@ -23,8 +28,10 @@
 namespace reemit {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+using Clock = StopToken::Clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings) {
@@ -48,58 +55,143 @@ Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSetting
 
 /// Share of all rays, and of the time, that goes to gathering on small zones at most.
 constexpr double kSmallZoneShare = 0.15;
+/// Share of the time that is kept for what comes after batches and gathering: the error and the
+/// discretisation.
+constexpr double kLastShare = 0.03;
 
 bool gathers_small_zones(const Solution& solution) {
   return solution.settings.gather_small_zones && small_zone_count(solution.mesh) > 0;
 }
 
-/// Adds batches to `solution` until a rule stops it.
-void run_batches(const TransportScene& transport, const Emission& emission, Solution& solution,
-                 const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
-  const SolverSettings& settings = solution.settings;
-  SolverSettings limits = settings;
-  if (gathers_small_zones(solution)) limits.time_limit_s *= 1 - kSmallZoneShare;
-  const StopRule rule(limits, transport.zones());
-  const auto start = std::chrono::steady_clock::now();
-  SolveRecord& record = solution.record;
-  BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
-  for (;;) {
-    const auto batch = static_cast<std::uint32_t>(solution.sums.batches);
-    const BatchTask task{
-        transport, emission, settings, batch, rule.batch_packets(), batch == 0 ? nullptr : &interrupt};
-    books.clear();
-    const bool whole =
-        settings.method == SolveMethod::kShooting ? shoot_batch(task, books) : walk_batch(task, books);
-    if (whole) {
-      add_batch(solution.mesh, books, emission.watts_per_quantum, solution.sums);
-      add_batch(books, solution.audit);
-      record.packets += books.packets;
-      record.rays += books.rays;
-    }
-    record.seconds = seconds_since(start);
-    record.error = zone_rms_error(transport.scene(), solution.mesh, solution.sums);
-    record.error_bound = record.error;
-    if (rule.may_reach_target(solution.sums.batches, record.error))
-      record.error_bound = zone_error(transport.scene(), solution.mesh, solution.sums).bound;
-    const RunState state{solution.sums.batches, record.packets, record.error_bound, record.seconds,
-                         interrupt.load()};
-    if (progress) {
-      const double fraction = rule.fraction_done(state);
-      progress({fraction, record.error, static_cast<double>(record.rays) / record.seconds, record.seconds,
-                fraction > 0 ? record.seconds * (1 - fraction) / fraction
-                             : std::numeric_limits<double>::infinity(),
-                record.rays, record.packets, solution.sums.batches});
-    }
-    if (const auto reason = rule.stop(state)) {
-      record.stopped = *reason;
-      return;
-    }
+/// When the parts of a run must be over; never, without a time limit.
+struct Schedule {
+  Clock::time_point start;
+  double limit_s = 0;  ///< 0: no limit.
+  double batches_s = 0;
+  double gather_s = 0;
+
+  Schedule(Clock::time_point begin, const Solution& solution)
+      : start(begin), limit_s(solution.settings.time_limit_s) {
+    gather_s = limit_s * (1 - kLastShare);
+    batches_s = gather_s - (gathers_small_zones(solution) ? kSmallZoneShare * limit_s : 0.0);
   }
+
+  StopToken token(double seconds, const std::atomic<bool>& interrupt) const {
+    if (!(limit_s > 0)) return StopToken(interrupt);
+    // Beyond what a clock can count there is no limit either.
+    constexpr double kLongest = 1e9;
+    const std::chrono::duration<double> span(std::min(seconds, kLongest));
+    return StopToken(interrupt, start + std::chrono::duration_cast<Clock::duration>(span));
+  }
+};
+
+/// Adds batches to a solution until a rule stops it.
+class BatchRun {
+ public:
+  BatchRun(const TransportScene& transport, const Emission& emission, const Schedule& schedule,
+           Solution& solution)
+      : transport_(transport),
+        emission_(emission),
+        schedule_(schedule),
+        solution_(solution),
+        plan_(solution.settings, transport.zones()),
+        rule_(solution.settings, plan_, schedule.batches_s),
+        books_(transport.zones(), transport.surfaces(), transport.bands()) {}
+
+  void run(const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+    // A batch that was foreseen to end in time may take a little longer, and a slow start must leave time for
+    // some light at least.
+    constexpr double kGrace = 0.01;
+    constexpr double kLeast = 0.1;
+    state_.seconds = seconds_since(schedule_.start);
+    const double end = std::max(schedule_.batches_s + kGrace * schedule_.limit_s,
+                                state_.seconds + kLeast * schedule_.limit_s);
+    const StopToken stop = schedule_.token(end, interrupt);
+    std::optional<StopReason> reason;
+    while (!reason) {
+      const bool whole = add(stop);
+      if (progress) report(progress);
+      reason = rule_.stop(state_);
+      if (!whole) reason = stop.interrupted() ? StopReason::kInterrupted : StopReason::kTimeLimit;
+      if (interrupt) reason = StopReason::kInterrupted;
+    }
+    solution_.record.stopped = *reason;
+  }
+
+ private:
+  /// Runs the next batch; false if it was cut off.
+  bool add(const StopToken& stop) {
+    const SolverSettings& settings = solution_.settings;
+    SolveRecord& record = solution_.record;
+    const std::int64_t weight = rule_.next_weight(state_);
+    state_.shortened = weight < plan_.next_weight(state_.batches, state_.weight);
+    const auto packets = static_cast<std::uint32_t>(weight * plan_.unit_packets());
+    const BatchTask task{transport_, emission_, settings, static_cast<std::uint32_t>(state_.batches),
+                         packets,    &stop};
+    books_.clear();
+    const bool whole =
+        settings.method == SolveMethod::kShooting ? shoot_batch(task, books_) : walk_batch(task, books_);
+    if (whole || state_.batches == 0) {
+      add_batch(solution_.mesh, books_, emission_.watts_per_quantum, weight, solution_.sums);
+      add_batch(books_, weight, solution_.audit);
+      record.packets += books_.packets;
+      record.rays += books_.rays;
+      state_.weight += weight;
+      state_.batches = solution_.sums.batches;
+    }
+    record.error = zone_rms_error(transport_.scene(), solution_.mesh, solution_.sums);
+    state_.error = record.error;
+    if (rule_.may_reach_target(state_.batches, record.error))
+      state_.error = zone_error(transport_.scene(), solution_.mesh, solution_.sums).bound;
+    state_.unshot_share = solution_.audit.worst_unshot_share();
+    const double before = std::exchange(state_.seconds, seconds_since(schedule_.start));
+    state_.batch_seconds = (state_.seconds - before) / static_cast<double>(weight);
+    record.seconds = state_.seconds;
+    return whole;
+  }
+
+  void report(const ProgressCallback& progress) const {
+    const SolveRecord& record = solution_.record;
+    const double fraction = rule_.fraction_done(state_);
+    progress(
+        {fraction, record.error, static_cast<double>(record.rays) / record.seconds, record.seconds,
+         fraction > 0 ? record.seconds * (1 - fraction) / fraction : std::numeric_limits<double>::infinity(),
+         record.rays, record.packets, state_.batches});
+  }
+
+  const TransportScene& transport_;
+  const Emission& emission_;
+  const Schedule& schedule_;
+  Solution& solution_;
+  BatchPlan plan_;
+  StopRule rule_;
+  BatchBooks books_;
+  RunState state_;
+};
+
+/// What follows the batches and takes time of its own: light on small zones, and how far points differ from
+/// zones.
+void finish(const Scene& scene, const RayScene& rays, const Schedule& schedule,
+            const std::atomic<bool>& interrupt, Solution& solution) {
+  SolveRecord& record = solution.record;
+  if (gathers_small_zones(solution)) {
+    SmallZoneLimits limits;
+    limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
+    if (schedule.limit_s > 0) limits.seconds = schedule.gather_s - seconds_since(schedule.start);
+    const bool clock_had_a_say =
+        gather_small_zones(scene, rays, limits, solution, schedule.token(schedule.gather_s, interrupt));
+    if (clock_had_a_say && !interrupt) record.stopped = StopReason::kTimeLimit;
+  }
+  // Short runs may spend a moment more on it.
+  constexpr double kMoment = 0.5;
+  const StopToken stop = schedule.token(schedule.limit_s + kMoment, interrupt);
+  record.discretisation = discretisation_error(scene, rays, solution, stop);
+  record.gather_bias = estimate_zone_bias(scene, rays, solution, stop);
 }
 
 void run_matrix(const TransportScene& transport, const Emission& emission, Solution& solution,
                 const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const auto report = [&](double fraction) {
     if (!progress) return;
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -115,6 +207,7 @@ void run_matrix(const TransportScene& transport, const Emission& emission, Solut
 
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
                const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  const auto start = Clock::now();
   Solution solution = empty_solution(scene, std::move(mesh), settings);
   const RayScene rays(solution.mesh);
   const TransportScene transport(scene, solution.mesh, rays);
@@ -131,27 +224,25 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
-    const auto start = std::chrono::steady_clock::now();
+    const Schedule schedule(start, solution);
     if (settings.method == SolveMethod::kMatrix) {
       run_matrix(transport, emission, solution, progress, interrupt);
+      solution.record.discretisation = discretisation_error(scene, rays, solution, StopToken(interrupt));
+      solution.record.gather_bias = estimate_zone_bias(scene, rays, solution, StopToken(interrupt));
     } else {
-      run_batches(transport, emission, solution, progress, interrupt);
-      if (gathers_small_zones(solution)) {
-        SmallZoneLimits limits;
-        limits.solver_rays =
-            kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(solution.record.rays);
-        if (settings.time_limit_s > 0) limits.seconds = settings.time_limit_s - seconds_since(start);
-        gather_small_zones(scene, rays, limits, solution, interrupt);
-      }
+      BatchRun(transport, emission, schedule, solution).run(progress, interrupt);
+      finish(scene, rays, schedule, interrupt, solution);
     }
-    if (!interrupt) solution.record.discretisation = discretisation_error(scene, rays, solution);
-    solution.record.seconds = seconds_since(start);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
     solution.record.error = error.rms;
     solution.record.error_bound = error.bound;
     solution.record.error_95th_percentile = error.percentile_95;
     solution.record.unreached_zones = error.unreached;
+    solution.record.seconds = seconds_since(start);
   });
+  solution.light_warnings = luminaire_warnings(transport, emission);
+  for (std::string& warning : lost_light_warnings(transport, emission, solution))
+    solution.light_warnings.push_back(std::move(warning));
   return solution;
 }
 

@@ -22,11 +22,13 @@ struct SolveProgress {
 using ProgressCallback = std::function<void(const SolveProgress&)>;
 
 /// Solves the room batch by batch until a stopping rule of `settings` holds or `interrupt` becomes true; then
-/// returns what stands. At least one batch is always finished. Values depend on room, mesh and settings
-/// (without threads) only, bit for bit, when the run stops by error or packets. Fills everything in Solution
-/// except room_path, read_options and mesh_settings. Throws InputError when a closed room reflects everything
-/// in some band: it has no solution. The matrix method has no stopping rules and nothing to return when it is
-/// interrupted: it throws Interrupted, and what compute_form_factors throws.
+/// returns what stands. A batch that the time limit or `interrupt` cuts off is left out, but if it is the
+/// first: then it is the solution, low by what BandAudit::unshot says, its error unknown. The time limit
+/// counts from the call on. Values depend on room, mesh and settings (without threads) only, bit for bit,
+/// when the run stops by error or packets. Fills everything in Solution except room_path, read_options and
+/// mesh_settings. Throws InputError when a luminaire shines into a sealed part of the room that reflects
+/// everything in some band: it has no solution. The matrix method has no stopping rules and nothing to return
+/// when it is interrupted: it throws Interrupted, and what compute_form_factors throws.
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
                const ProgressCallback& progress, const std::atomic<bool>& interrupt);
 

@@ -46,7 +46,7 @@ class SolvedRoom {
     const ZoneSums& sums = solutions_[replicate / ZoneSums::kGroups].sums;
     const std::size_t group = replicate % ZoneSums::kGroups;
     return sums.group_total[group * sums.direct.size() + value] /
-           static_cast<double>(sums.group_batches(group));
+           static_cast<double>(sums.group_weight[group]);
   }
 
   const Scene* scene_;

@@ -17,9 +17,8 @@ using Rgb = Eigen::Array3d;
 /// Reads the materials of one file.
 class MaterialReader {
  public:
-  MaterialReader(const GltfModel& gltf, const GltfAccessors& accessors, const ReadOptions& options,
-                 Scene& scene)
-      : gltf_(gltf), textures_(gltf, accessors), options_(options), scene_(scene) {}
+  MaterialReader(const GltfModel& gltf, const GltfAccessors& accessors, const GltfUnits& units, Scene& scene)
+      : gltf_(gltf), textures_(gltf, accessors), units_(units), scene_(scene) {}
 
   void read_all() {
     std::set<std::string> ignored;
@@ -147,8 +146,7 @@ class MaterialReader {
     if (!(factor > 0).any()) return;
     const Rgb emissive =
         factor * mean(source.emissiveTexture.index, TextureEncoding::kSrgb, "emissive", material.name);
-    const bool photometric = options_.gltf_emissive_units == EmissiveUnits::kCandela;
-    material.emitted_radiance = photometric ? Rgb(emissive / kGltfEfficacy) : emissive;
+    material.emitted_radiance = emissive * units_.radiance();
     material.emits_both_sides = source.doubleSided;
   }
 
@@ -173,16 +171,16 @@ class MaterialReader {
 
   const GltfModel& gltf_;
   GltfTextures textures_;
-  const ReadOptions& options_;
+  const GltfUnits& units_;
   Scene& scene_;
   std::string where_;
 };
 
 }  // namespace
 
-void read_gltf_materials(const GltfModel& gltf, const GltfAccessors& accessors, const ReadOptions& options,
+void read_gltf_materials(const GltfModel& gltf, const GltfAccessors& accessors, const GltfUnits& units,
                          Scene& scene) {
-  MaterialReader(gltf, accessors, options, scene).read_all();
+  MaterialReader(gltf, accessors, units, scene).read_all();
   Material plain;
   plain.name = "no material";
   constexpr double kPlainReflectance = 0.5;

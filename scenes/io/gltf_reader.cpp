@@ -20,8 +20,8 @@ namespace {
 /// Turns placed nodes into surfaces, lights and cameras.
 class NodeReader {
  public:
-  NodeReader(const GltfModel& gltf, const GltfAccessors& accessors, Scene& scene)
-      : gltf_(gltf), accessors_(accessors), scene_(scene) {}
+  NodeReader(const GltfModel& gltf, const GltfAccessors& accessors, const GltfUnits& units, Scene& scene)
+      : gltf_(gltf), accessors_(accessors), units_(units), scene_(scene) {}
 
   void read(const GltfPlacedNode& placed) {
     const tinygltf::Node& node = gltf_.model.nodes[placed.node];
@@ -154,7 +154,8 @@ class NodeReader {
     if (!valid)
       fail(fmt::format("the light \"{}\" has no valid colour or intensity", name), "Export the file anew.");
     const Spectrum strength =
-        Eigen::Array3d(colour[0], colour[1], colour[2]) * (source.intensity / kGltfEfficacy);
+        Eigen::Array3d(colour[0], colour[1], colour[2]) *
+        (source.intensity * (source.type == "directional" ? units_.watts_per_m2() : units_.watts_per_sr()));
     const Vec3 position = placed.to_world.translation();
     const Vec3 forward = -placed.to_world.linear().col(2);
     if (source.type != "point" && !(forward.norm() > 0))
@@ -179,6 +180,7 @@ class NodeReader {
 
   const GltfModel& gltf_;
   const GltfAccessors& accessors_;
+  const GltfUnits& units_;
   Scene& scene_;
   std::map<int, std::vector<GltfPrimitive>> meshes_;
   GltfOmissions omissions_;
@@ -190,19 +192,11 @@ class NodeReader {
   std::string name_;
 };
 
-void state_conversions(const ReadOptions& options, Scene& scene) {
+void state_conversions(const GltfUnits& units, Scene& scene) {
   const bool emits = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& material) { return material.emits(); });
-  if (emits && options.gltf_emissive_units == EmissiveUnits::kCandela) {
-    scene.notes.push_back(
-        fmt::format("emissive values are taken as cd/m2 and divided by {} lm/W", kGltfEfficacy));
-  } else if (emits) {
-    scene.notes.push_back("emissive values are taken as W/(sr m2)");
-  }
-  if (!scene.lights.empty()) {
-    scene.notes.push_back(
-        fmt::format("punctual lights are taken as cd and lx and divided by {} lm/W", kGltfEfficacy));
-  }
+  if (emits) scene.notes.push_back("emissive meshes: values are taken " + units.emissive_assumption);
+  if (!scene.lights.empty()) scene.notes.push_back("lamps: strengths are taken " + units.lamp_assumption);
 }
 
 }  // namespace
@@ -215,11 +209,12 @@ Scene read_gltf_scene(const std::filesystem::path& file, const ReadOptions& opti
   scene.bands = BandSet::rgb();
   scene.warnings = gltf.warnings;
   const GltfAccessors accessors(gltf);
-  read_gltf_materials(gltf, accessors, options, scene);
-  NodeReader reader(gltf, accessors, scene);
+  const GltfUnits units = gltf_units(gltf.model.asset.generator, options);
+  read_gltf_materials(gltf, accessors, units, scene);
+  NodeReader reader(gltf, accessors, units, scene);
   for (const GltfPlacedNode& node : place_gltf_nodes(gltf, scene)) reader.read(node);
   reader.report();
-  state_conversions(options, scene);
+  state_conversions(units, scene);
   return scene;
 }
 

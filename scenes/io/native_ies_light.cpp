@@ -9,6 +9,7 @@
 
 #include "scenes/io/native_materials.h"
 #include "scenes/model/error.h"
+#include "scenes/model/opening_reach.h"
 
 namespace reemit {
 namespace {
@@ -51,11 +52,32 @@ Eigen::Matrix3d orientation_of(const JsonCursor& at, const Vec3& position, doubl
   return axes;
 }
 
+/// From the given position to the middle of the opening: how far an opening of this size must stand off what
+/// it is mounted on to touch it from outside [m].
+Vec3 mount_offset(const JsonCursor& at, const PhotometricLight& light) {
+  const auto mount = at.find("mount");
+  const std::string kind = mount ? mount->choice({"free", "ceiling", "wall"}) : "free";
+  const auto away = at.find("away");
+  if (kind == "free") {
+    if (away) away->fail("the luminaire is not mounted on anything", "Add \"mount\", or remove this.");
+    return Vec3::Zero();
+  }
+  if (kind == "wall" && !away)
+    mount->fail("the file does not say on which side of the wall the luminaire is",
+                "Add \"away\": the direction from the wall into the room.");
+  const Vec3 out = away ? away->vec3() : Vec3(-light.orientation.col(2));
+  const double length = out.stableNorm();
+  if (!(length > 0) || !std::isfinite(length))
+    away->fail("the direction has no length", "Give the direction from what it is mounted on into the room.");
+  const Vec3 unit = out / length;
+  return opening_reach(light.opening, light.orientation.transpose() * unit) * unit;
+}
+
 }  // namespace
 
 PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& name) {
   at.expect_object({"type", "name", "file", "position", "direction", "look_at", "c0", "rotate_deg", "color",
-                    "scale", "flux_lm", "opening"});
+                    "scale", "flux_lm", "opening", "mount", "away"});
   const JsonCursor path = at.at("file");
   const IesLuminaire* file = nullptr;
   try {
@@ -70,6 +92,7 @@ PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& 
   light.table = file->table;
   const auto opening = at.find("opening");
   if (!opening || opening->choice({"file", "point"}) == "file") light.opening = file->opening;
+  light.position += mount_offset(at, light);
   const auto scale = at.find("scale");
   const auto flux = at.find("flux_lm");
   if (scale && flux) flux->fail("\"scale\" is given already", "Keep one of the two.");

@@ -1,18 +1,23 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "scenes/model/scene.h"
 
 namespace reemit {
 
-enum class EmissiveUnits { kCandela, kWatt };  ///< cd/m2 or W/(sr m2).
+/// cd/m2, W/(sr m2), or what the program that wrote the file is known to write.
+enum class EmissiveUnits { kByGenerator, kCandela, kWatt };
 
 /// What a file format leaves open.
 struct ReadOptions {
   /// Unit of glTF emissiveFactor x emissive strength. The specification says cd/m2; exporters disagree.
-  EmissiveUnits gltf_emissive_units = EmissiveUnits::kCandela;
+  EmissiveUnits gltf_emissive_units = EmissiveUnits::kByGenerator;
   bool force_two_sided = false;  ///< Treat every face as reflecting on both sides (rooms with mixed winding).
+  /// Luminous efficacy by which the cd and lx of glTF lamps become watts [lm/W], finite and above 0. Nothing:
+  /// by the program that wrote the file (docs/gltf_input.md).
+  std::optional<double> gltf_light_efficacy;
 
   bool operator==(const ReadOptions&) const = default;
 };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenes/model/photometry.h"
+#include "solver/emit/light_places.h"
 #include "solver/emit/luminaire_faces.h"
 #include "solver/shoot/emission.h"
 
@@ -52,9 +53,11 @@ void LuminaireTable::add_surfaces(const Scene& scene) {
 }
 
 void LuminaireTable::add_lights(const Scene& scene) {
-  for (const PunctualLight& light : scene.lights) {
+  const std::vector<PunctualLight> placed = lights_before_faces(scene, *rays_);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const PunctualLight& light = scene.lights[i];
     if (!(light_power(light, *rays_).sum() > 0)) continue;
-    punctual_.push_back(make_punctual_emitter(light, *rays_));
+    punctual_.push_back(make_punctual_emitter(placed[i], *rays_));
     lights_.push_back(&light);
     add_emission(emission_of(light));
   }

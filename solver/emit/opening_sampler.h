@@ -9,9 +9,6 @@ namespace reemit {
 /// where they are round.
 Vec3 sample_opening(const LuminousOpening& opening, double u0, double u1);
 
-/// Largest value of n.p over the points p of the opening [m]; n is a unit vector in luminaire coordinates.
-double opening_reach(const LuminousOpening& opening, const Vec3& n);
-
 /// Greatest of length, width and height [m]; 0 for a point.
 double opening_extent(const LuminousOpening& opening);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scenes/model/opening_reach.h"
 #include "solver/emit/intensity_sampler.h"
 #include "solver/emit/opening_sampler.h"
 

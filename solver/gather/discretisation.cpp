@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "solver/gather/replicate_gather.h"
+#include "solver/gather/zone_probes.h"
 
 namespace reemit {
 namespace {
@@ -21,60 +22,27 @@ constexpr std::size_t kChunk = 64;
 constexpr double kMostUncertain = 2;
 constexpr double kSmallEnough = 0.03;
 
-/// A zone to look at, and the area it stands for [m2].
-struct Probe {
-  ZoneId zone;
-  double area = 0;
-};
-
-/// Zones in proportion to area times (their radiosity + the mean one), evenly along the numbering: squared
-/// differences are largest where it is bright, and dark parts keep a share.
-std::vector<Probe> choose_probes(const Solution& solution, double offset) {
-  const ZoneMesh& mesh = solution.mesh;
-  std::vector<double> power(mesh.zone_count(), 0.0);
-  double total_power = 0;
-  double total_area = 0;
-  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
-    const ZoneId zone(z);
-    const Spectrum& reflectance = solution.zone_material(zone).reflectance;
-    for (std::size_t b = 0; b < solution.bands.count(); ++b)
-      power[z] += mesh.zone_area(zone) * reflectance[static_cast<Eigen::Index>(b)] *
-                  solution.irradiance(zone, b).mean;
-    total_power += power[z];
-    total_area += mesh.zone_area(zone);
-  }
-  std::vector<Probe> probes;
-  if (!(total_power > 0)) return probes;
-  double passed = 0;
-  double next = offset / kProbes;
-  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
-    const double area = mesh.zone_area(ZoneId(z));
-    const double share = 0.5 * (power[z] / total_power + area / total_area);
-    passed += share;
-    for (; next < passed && probes.size() < kProbes; next += 1.0 / kProbes)
-      probes.push_back({ZoneId(z), area / share / kProbes});
-  }
-  return probes;
-}
-
 }  // namespace
 
-std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays,
-                                           const Solution& solution) {
+std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays, const Solution& solution,
+                                           const StopToken& stop) {
+  if (stop.requested()) return std::nullopt;
   const RadianceField field(scene, solution, rays, kHalves);
   if (field.parts() != kHalves) return std::nullopt;
   const std::size_t bands = scene.bands.count();
   const std::uint64_t seed = solution.settings.seed;
   const DirectLight direct(scene, rays);
-  const HemisphereGather gather(rays, field, direct, GatherSettings{.seed = seed});
+  const HemisphereGather gather(rays, field, direct, GatherSettings{.continue_uneven = false, .seed = seed});
   const CounterRng rng(seed, RngPurpose::kDiscretisation);
-  const std::vector<Probe> probes = choose_probes(solution, static_cast<double>(rng.uniform4(0, 1, 0)[0]));
+  const std::vector<ZoneProbe> probes =
+      choose_probes(solution, kProbes, static_cast<double>(rng.uniform4(0, 1, 0)[0]));
 
   // By probe and band: product of the two differences, product of the two zone values.
   std::vector<double> differences(probes.size() * bands);
   std::vector<double> values(probes.size() * bands);
   const std::size_t chunks = (probes.size() + kChunk - 1) / kChunk;
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
+    if (stop.requested()) return;
     const std::size_t first = c * kChunk;
     const std::size_t last = std::min(first + kChunk, probes.size());
     std::vector<float> found((last - first) * kHalves * 2 * bands, 0.0F);
@@ -114,6 +82,7 @@ std::optional<double> discretisation_error(const Scene& scene, const RayScene& r
     }
   });
 
+  if (stop.requested()) return std::nullopt;
   std::optional<double> worst;
   for (std::size_t b = 0; b < bands; ++b) {
     double difference = 0;

@@ -1,28 +1,51 @@
 #include "solver/gather/hemisphere_gather.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
+#include <utility>
 
+#include "solver/gather/uneven_zones.h"
 #include "solver/reflect/lambert.h"
 
 namespace reemit {
+namespace {
+
+/// By zone, the distance within which a hit is continued [normalised units].
+std::vector<float> reach_of_zones(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
+                                  const GatherSettings& settings) {
+  const ZoneMesh& mesh = rays.mesh();
+  std::vector<float> reach(mesh.zone_count(), 0.0F);
+  if (settings.close_hit == 0) return reach;
+  std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
+  if (settings.continue_uneven) uneven = uneven_zones(rays, field, direct, settings.seed);
+  for (std::size_t z = 0; z < reach.size(); ++z)
+    reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
+                              : static_cast<float>(settings.close_hit) *
+                                    field.zone_size(mesh.zone_triangle(ZoneId(z)).index());
+  return reach;
+}
+
+}  // namespace
 
 HemisphereGather::HemisphereGather(const RayScene& rays, const RadianceField& field,
                                    const DirectLight& direct, const GatherSettings& settings)
     : rays_(&rays),
       field_(&field),
       direct_(&direct),
-      close_hit_(static_cast<float>(settings.close_hit)),
+      reach_(reach_of_zones(rays, field, direct, settings)),
       most_bounces_(settings.most_bounces),
       rng_(settings.seed, RngPurpose::kHemisphere) {}
 
-void HemisphereGather::add_close(const Hit& y, const PathKey& key, float* weight, float* sum) const {
+void HemisphereGather::add_continued(const Hit& y, const PathKey& key, float* weight, float* sum) const {
   const std::size_t bands = band_count();
   Hit hit = y;
   for (int bounce = 0;; ++bounce) {
     const std::size_t t = hit.triangle.index();
-    if (bounce == most_bounces_ || !is_close(t, hit.distance)) {
-      const float* radiance = field_->reflected(t, hit.u, hit.v, hit.front, key.part);
+    const std::size_t zone = field_->zone_number(t, hit.u, hit.v, hit.front);
+    if (zone == RadianceField::kNoZone) return;
+    if (bounce == most_bounces_ || !continues(zone, hit.distance)) {
+      const float* radiance = field_->reflected(ZoneId(zone), key.part);
       for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
       return;
     }
@@ -50,6 +73,7 @@ GatherBatch::GatherBatch(const HemisphereGather& gather)
     : gather_(&gather),
       bands_(gather.band_count()),
       rays_{},
+      second_look_{},
       keys_{},
       sums_{},
       weights_(static_cast<std::size_t>(kWidth) * bands_) {}
@@ -68,30 +92,57 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   rays_.dx[lane] = direction.x();
   rays_.dy[lane] = direction.y();
   rays_.dz[lane] = direction.z();
+  second_look_[lane] = false;
   keys_[lane] = key;
   sums_[lane] = sum;
   std::copy_n(weight, bands_, &weights_[lane * bands_]);
-  if (++count_ == kWidth) flush();
+  ++count_;
+  while (count_ == kWidth) trace();
 }
 
 void GatherBatch::flush() {
-  if (count_ == 0) return;
+  while (count_ > 0) trace();
+}
+
+// Puts a ray back into the queue, turned a little, where it costs no block of its own.
+void GatherBatch::keep_for_second_look(std::size_t lane) {
+  const auto to = static_cast<std::size_t>(count_++);
+  const Vec3f direction = RayScene::nudged({rays_.dx[lane], rays_.dy[lane], rays_.dz[lane]});
+  rays_.ox[to] = rays_.ox[lane];
+  rays_.oy[to] = rays_.oy[lane];
+  rays_.oz[to] = rays_.oz[lane];
+  rays_.dx[to] = direction.x();
+  rays_.dy[to] = direction.y();
+  rays_.dz[to] = direction.z();
+  second_look_[to] = true;
+  keys_[to] = keys_[lane];
+  sums_[to] = sums_[lane];
+  std::copy_n(&weights_[lane * bands_], bands_, &weights_[to * bands_]);
+}
+
+void GatherBatch::trace() {
   const RadianceField& field = gather_->field();
+  const RayScene& rays = gather_->rays();
   Hit16 hits;
-  gather_->rays().closest16(rays_, count_, hits);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
+  rays.closest16(rays_, count_, hits);
+  const auto count = static_cast<std::size_t>(std::exchange(count_, 0));
+  for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t t = hits.triangle[i];
-    if (t == RayScene::kMiss) continue;
-    float* weight = &weights_[i * bands_];
-    if (gather_->is_close(t, hits.distance[i])) {
-      const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
-      gather_->add_close(hit, keys_[i], weight, sums_[i]);
+    if (rays.is_doubtful(t, hits.front[i])) {
+      if (!second_look_[i]) keep_for_second_look(i);
       continue;
     }
-    const float* radiance = field.reflected(t, hits.u[i], hits.v[i], hits.front[i], keys_[i].part);
+    float* weight = &weights_[i * bands_];
+    const std::size_t zone = field.zone_number(t, hits.u[i], hits.v[i], hits.front[i]);
+    if (zone == RadianceField::kNoZone) continue;
+    if (gather_->continues(zone, hits.distance[i])) {
+      const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
+      gather_->add_continued(hit, keys_[i], weight, sums_[i]);
+      continue;
+    }
+    const float* radiance = field.reflected(ZoneId(zone), keys_[i].part);
     for (std::size_t b = 0; b < bands_; ++b) sums_[i][b] += weight[b] * radiance[b];
   }
-  count_ = 0;
 }
 
 }  // namespace reemit

@@ -13,17 +13,19 @@ namespace reemit {
 /// How gather rays read the zone solution.
 struct GatherSettings {
   /// A hit nearer than this many zone sizes is continued by another bounce instead of read, so that corners
-  /// show no zone-sized steps; >= 0, 0 = always read.
+  /// show no zone-sized steps; so are hits on uneven zones from any distance. >= 0, 0 = always read.
   double close_hit = 1.0;
-  int most_bounces = 4;  ///< Bounces after which a close hit is read all the same [0, 64].
+  int most_bounces = 4;  ///< Bounces after which a hit is read all the same [0, 64].
+  /// Look for uneven zones before the first ray, which takes some shadow rays for each zone.
+  bool continue_uneven = true;
   std::uint64_t seed = 1;
 };
 
 /// Indirect light at points: cosine-distributed rays that read the *reflected* radiance of the zones they hit
 /// ([GI98] final gather). Self-emission of what they hit is not read: DirectLight has counted it.
-/// A hit y closer than about the size of its zone is not read; its radiance is taken as
-/// rho_y/pi (E_direct(y) + pi L_reflected(z)) with its own shadow ray and one more cosine-distributed ray to
-/// z. Const members may be called from any thread.
+/// A hit y closer than about the size of its zone, or on a zone whose light is uneven (uneven_zones.h), is
+/// not read; its radiance is taken as rho_y/pi (E_direct(y) + pi L_reflected(z)) with its own shadow ray and
+/// one more cosine-distributed ray to z. Const members may be called from any thread.
 class HemisphereGather {
  public:
   HemisphereGather(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
@@ -31,20 +33,18 @@ class HemisphereGather {
 
   const RayScene& rays() const { return *rays_; }
   std::size_t band_count() const { return field_->band_count(); }
-  /// True if a hit at this distance [normalised units] is too close to be read.
-  bool is_close(std::size_t triangle, float distance) const {
-    return distance < close_hit_ * field_->zone_size(triangle);
-  }
+  /// True if a hit of this zone at this distance [normalised units] is continued instead of read.
+  bool continues(std::size_t zone, float distance) const { return distance < reach_[zone]; }
   const RadianceField& field() const { return *field_; }
 
-  /// Adds weight[b] times the reflected radiance of a close hit y to sum[b]. `weight` is used up.
-  void add_close(const Hit& y, const PathKey& key, float* weight, float* sum) const;
+  /// Adds weight[b] times the reflected radiance of a hit y that is continued to sum[b]. `weight` is used up.
+  void add_continued(const Hit& y, const PathKey& key, float* weight, float* sum) const;
 
  private:
   const RayScene* rays_;
   const RadianceField* field_;
   const DirectLight* direct_;
-  float close_hit_;
+  std::vector<float> reach_;  // by zone: hits nearer than this are continued
   int most_bounces_;
   CounterRng rng_;
 };
@@ -65,10 +65,14 @@ class GatherBatch {
  private:
   static constexpr int kWidth = 16;
 
+  void trace();
+  void keep_for_second_look(std::size_t lane);
+
   const HemisphereGather* gather_;
   std::size_t bands_;
   int count_ = 0;
   Ray16 rays_;
+  std::array<bool, kWidth> second_look_;
   std::array<PathKey, kWidth> keys_;
   std::array<float*, kWidth> sums_;
   std::vector<float> weights_;

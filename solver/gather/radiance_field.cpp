@@ -65,17 +65,17 @@ void RadianceField::read_zones(const Solution& solution) {
       sums.group_total.size() != ZoneSums::kGroups * values_)
     throw InputError(solution.room_path, "the solution does not hold one value per zone and band",
                      "Solve the room again: the file is damaged.");
-  const auto batches = static_cast<double>(sums.batches);
-  std::vector<double> part_batches(parts_, 0.0);
+  const auto weight = static_cast<double>(sums.weight());
+  std::vector<double> part_weight(parts_, 0.0);
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
-    part_batches[g % parts_] += static_cast<double>(sums.group_batches(g));
+    part_weight[g % parts_] += static_cast<double>(sums.group_weight[g]);
   for (std::size_t z = 0; z < zones; ++z) {
     const std::size_t surface = solution.mesh.zone_surface(ZoneId(z)).index();
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = z * bands_ + b;
       const float reflectance = surface_reflectance_[surface * bands_ + b];
       reflected_direct_[k] =
-          lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / batches));
+          lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / weight));
       for (std::size_t p = 0; p < parts_; ++p) {
         double total = 0;
         if (parts_ == 1)
@@ -83,7 +83,7 @@ void RadianceField::read_zones(const Solution& solution) {
         else
           for (std::size_t g = p; g < ZoneSums::kGroups; g += parts_)
             total += sums.group_total[g * values_ + k];
-        const auto irradiance = static_cast<float>(total / part_batches[p]);
+        const auto irradiance = static_cast<float>(total / part_weight[p]);
         reflected_[p * values_ + k] = lambert_reflected_radiance(reflectance, irradiance);
       }
     }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "scenes/model/scene.h"
@@ -22,6 +23,12 @@ class RadianceField {
   /// Parts that there are: one (the whole solution) or independent estimates from disjoint sets of batches.
   std::size_t parts() const { return parts_; }
 
+  static constexpr std::size_t kNoZone = std::numeric_limits<std::size_t>::max();
+  /// Number of the zone at a point; kNoZone on sides that have none.
+  std::size_t zone_number(std::size_t triangle, float u, float v, bool front) const {
+    const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
+    return side.divisions == 0 ? kNoZone : side.first_zone + zone_in_triangle(side.divisions, u, v);
+  }
   /// Reflected radiance rho (E_direct + E_indirect)/pi [W/(m2 sr)] of the zone at a point; self-emission is
   /// not in it. Zero on sides that have no zones.
   const float* reflected(std::size_t triangle, float u, float v, bool front, std::size_t part = 0) const {
@@ -35,6 +42,7 @@ class RadianceField {
   const float* reflected_direct(std::size_t triangle, float u, float v, bool front) const {
     return zone_value(reflected_direct_.data(), triangle, u, v, front);
   }
+  const float* reflected_direct(ZoneId zone) const { return &reflected_direct_[zone.index() * bands_]; }
   /// Self-emitted radiance [W/(m2 sr)] of one side of a triangle: exitance over pi, which is the radiance in
   /// every direction where emission is Lambertian. Zero where it does not emit.
   const float* emitted(std::size_t triangle, bool front) const {
@@ -63,9 +71,8 @@ class RadianceField {
   };
 
   const float* zone_value(const float* values, std::size_t triangle, float u, float v, bool front) const {
-    const TriangleSide& side = sides_[2 * triangle + (front ? 0 : 1)];
-    if (side.divisions == 0) return zero_.data();
-    return values + (side.first_zone + zone_in_triangle(side.divisions, u, v)) * bands_;
+    const std::size_t zone = zone_number(triangle, u, v, front);
+    return zone == kNoZone ? zero_.data() : values + zone * bands_;
   }
   void read_surfaces(const Scene& scene);
   void read_zones(const Solution& solution);

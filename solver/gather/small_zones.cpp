@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -72,10 +74,9 @@ struct ZoneReplicates {
 /// Gathers at zones; every replicate reads its own part of the zone solution.
 class Gatherer {
  public:
-  Gatherer(const Scene& scene, const RayScene& rays, const Solution& solution,
-           const std::atomic<bool>& interrupt)
+  Gatherer(const Scene& scene, const RayScene& rays, const Solution& solution, const StopToken& stop)
       : rays_(rays),
-        interrupt_(interrupt),
+        stop_(stop),
         bands_(scene.bands.count()),
         seed_(solution.settings.seed),
         field_(scene, solution, rays, kReplicates),
@@ -94,17 +95,17 @@ class Gatherer {
     const std::size_t chunks = (zones.size() + kChunk - 1) / kChunk;
     std::atomic<std::size_t> gathered{0};
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
-      if (interrupt_) return;
+      if (stop_.requested()) return;
       const std::size_t last = std::min((c + 1) * kChunk, zones.size());
-      gather_chunk(zones, c * kChunk, last, points, purpose, use);
-      gathered += last - c * kChunk;
+      if (gather_chunk(zones, c * kChunk, last, points, purpose, use)) gathered += last - c * kChunk;
     });
     return gathered;
   }
 
  private:
+  /// False if it was told to stop: then it has called use() for none of them.
   template <class Use>
-  void gather_chunk(const std::vector<ZoneId>& zones, std::size_t first, std::size_t last, int points,
+  bool gather_chunk(const std::vector<ZoneId>& zones, std::size_t first, std::size_t last, int points,
                     RngPurpose purpose, Use&& use) const {
     // Per zone and replicate: direct irradiance, then mean reflected radiance over the hemisphere.
     std::vector<float> found((last - first) * kReplicates * 2 * bands_, 0.0F);
@@ -112,6 +113,7 @@ class Gatherer {
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i)
       for (std::size_t r = 0; r < kReplicates; ++r, next += 2 * bands_) {
+        if (stop_.requested()) return false;
         const auto replicate = static_cast<std::uint32_t>(r);
         const PointSampler sampler(seed_, purpose, zones[i].index(), static_cast<int>(r),
                                    std::countr_zero(static_cast<unsigned>(points)));
@@ -130,10 +132,11 @@ class Gatherer {
         }
         use(i, b, replicates);
       }
+    return true;
   }
 
   const RayScene& rays_;
-  const std::atomic<bool>& interrupt_;
+  const StopToken& stop_;
   std::size_t bands_;
   std::uint64_t seed_;
   RadianceField field_;
@@ -173,13 +176,13 @@ std::vector<ZoneId> zones_left_to_packets(const ZoneMesh& mesh) {
   return zones_by_size(mesh, false);
 }
 
-void gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
-                        Solution& solution, const std::atomic<bool>& interrupt) {
-  if (solution.sums.batches < static_cast<std::int64_t>(kReplicates)) return;
+bool gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
+                        Solution& solution, const StopToken& stop) {
+  if (solution.sums.batches < static_cast<std::int64_t>(kReplicates)) return false;
   const ZoneMesh& mesh = solution.mesh;
   std::vector<ZoneId> zones = small_zones(mesh);
-  if (zones.empty()) return;
-  const Gatherer gatherer(scene, rays, solution, interrupt);
+  if (zones.empty()) return false;
+  const Gatherer gatherer(scene, rays, solution, stop);
   const double affordable = limits.solver_rays / cost_per_point(gatherer.luminaires_weighed());
   // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
   zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable / 3)));
@@ -197,20 +200,23 @@ void gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZon
   const auto packet_rays = static_cast<double>(solution.record.rays);
   const double watts_per_ray = power_per_ray(solution);
   solution.record.rays += piloted * kRaysPerPoint;
-  if (piloted < zones.size()) return;
+  if (piloted < zones.size()) return true;
 
   double points_left = affordable - static_cast<double>(piloted);
+  bool clock_had_a_say = false;
   if (limits.seconds) {
     // The pilot has shown how long a point takes.
     const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    points_left = std::min(points_left, (*limits.seconds / spent - 1) * static_cast<double>(piloted));
+    const double in_time = (*limits.seconds / spent - 1) * static_cast<double>(piloted);
+    clock_had_a_say = in_time < points_left;
+    points_left = std::min(points_left, in_time);
   }
   const double gain = whole_points(points_left / static_cast<double>(zones.size()));
   std::vector<ZoneId> chosen;
   for (std::size_t i = 0; i < zones.size(); ++i)
     if (is_worthwhile(pilots[i], gain, mesh.zone_area(zones[i]), watts_per_ray)) chosen.push_back(zones[i]);
   chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(std::max(0.0, points_left))));
-  if (chosen.empty()) return;
+  if (chosen.empty()) return clock_had_a_say;
 
   // As many rays as the mean zone meets packets leave about its error.
   const double enough = packet_rays / static_cast<double>(mesh.zone_count() * kRaysPerPoint);
@@ -221,6 +227,7 @@ void gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZon
       });
   solution.record.gathered_zones = gathered;
   solution.record.rays += gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);
+  return clock_had_a_say || gathered < chosen.size();
 }
 
 }  // namespace reemit

@@ -1,10 +1,10 @@
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "scenes/model/scene.h"
+#include "scenes/model/stop_token.h"
 #include "solver/solution/solution.h"
 #include "solver/trace/ray_scene.h"
 
@@ -28,9 +28,10 @@ struct SmallZoneLimits {
 /// replicate per batch group, so that the standard error holds the noise of the zones read. A short pilot
 /// gather of every small zone decides whether gathering it will beat its packets; the pilot's random numbers
 /// are its own, and what packets found has no say, so the choice biases nothing. `limits` bound the work.
-/// Adds to record.rays and sets record.gathered_zones. Does nothing with fewer than ZoneSums::kGroups
-/// batches. When `interrupt` becomes true the zones not yet done keep what packets found.
-void gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
-                        Solution& solution, const std::atomic<bool>& interrupt);
+/// Adds to record.rays and sets record.gathered_zones. Returns true if the clock had a say in what was
+/// gathered, by the limit or by `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When `stop`
+/// is requested the zones not yet done keep what packets found.
+bool gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
+                        Solution& solution, const StopToken& stop);
 
 }  // namespace reemit

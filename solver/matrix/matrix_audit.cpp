@@ -38,6 +38,7 @@ void book_matrix_solution(const TransportScene& transport, const Emission& emiss
                           EnergyAudit& audit) {
   const Eigen::VectorXd row_sums = factors.row_sums();
   audit.batches = batches;
+  audit.weight = batches;
   for (std::size_t b = 0; b < transport.bands(); ++b) {
     BandAudit& band = audit.bands[b];
     if (!(emission.watts_per_quantum[b] > 0)) continue;

@@ -49,7 +49,7 @@ struct ZonalSystem {
 };
 
 void add_punctual_lights(const TransportScene& transport, std::uint64_t seed, ZonalSystem& system) {
-  const std::vector<PunctualLight>& lights = transport.scene().lights;
+  const std::vector<PunctualLight>& lights = transport.lights();
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const Spectrum& emission = emission_of(lights[l]);
     const Spectrum power = light_power(lights[l], transport.rays());
@@ -165,7 +165,7 @@ ReplicateNoise replicate_noise(const ZonalSystem& system, const RowMatrix& radio
 }
 
 void store(const RowMatrix& direct, const RowMatrix& total, const ReplicateNoise& noise, ZoneSums& sums) {
-  sums.batches = to_index(kReplicates);
+  for (std::size_t r = 0; r < kReplicates; ++r) sums.count_batch(1);
   std::array<double, kReplicates> direct_values{};
   std::array<double, kReplicates> indirect_values{};
   for (Eigen::Index z = 0; z < direct.rows(); ++z)

@@ -21,6 +21,8 @@ enum class RngPurpose : std::uint32_t {
   kDiscretisation,
   kFormFactor,
   kDirectAudit,
+  kUnevenZone,
+  kZoneBias,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

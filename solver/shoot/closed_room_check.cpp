@@ -1,6 +1,9 @@
 #include "solver/shoot/closed_room_check.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "scenes/model/error.h"
@@ -12,51 +15,115 @@ namespace {
 constexpr std::uint32_t kProbes = 4096;
 constexpr std::uint32_t kMostBounces = 64;
 
+/// Follows light of one band from luminaires until it meets anything that takes some of it.
+class WayOut {
+ public:
+  WayOut(const TransportScene& transport, std::size_t band, std::uint64_t seed)
+      : transport_(transport),
+        band_(band),
+        numbers_(SamplingKind::kSobol, seed, 0, 0),
+        rng_(seed, RngPurpose::kProbe),
+        open_(transport.zones(), false) {}
+
+  /// True if light of this source is absorbed or gets out; else surfaces() are those that it met.
+  bool exists(const EmissionSource& source) {
+    if (source.zone.valid() && open_[source.zone.index()]) return true;
+    Flight flight;
+    flight.add(source, kProbes);
+    flight.quanta.assign(transport_.bands(), 0);
+    met_.clear();
+    for (std::uint32_t first = 0; first < kProbes; first += 16)
+      if (block_ends(flight, first)) {
+        // Light goes both ways between zones: from each of those that it met it finds the same way out.
+        for (const ZoneId zone : met_) open_[zone.index()] = true;
+        if (source.zone.valid()) open_[source.zone.index()] = true;
+        return true;
+      }
+    return false;
+  }
+
+  std::set<std::size_t> surfaces() const {
+    std::set<std::size_t> surfaces;
+    for (const ZoneId zone : met_) surfaces.insert(transport_.mesh().zone_surface(zone).index());
+    return surfaces;
+  }
+
+ private:
+  bool block_ends(const Flight& flight, std::uint32_t first) {
+    Ray16 rays;
+    Hit16 hits;
+    ZoneLanes lanes{};
+    UniformLanes numbers{};
+    FlightCursor cursor(transport_, flight, first);
+    std::vector<std::int64_t> power(16 * transport_.bands());
+    cursor.start16(first, 16, numbers_, rays, power.data());
+    for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
+      transport_.rays().closest16(rays, 16, hits);
+      transport_.rays().look_again16(rays, 16, hits);
+      for (int lane = 0; lane < 16; ++lane) {
+        if (hits.triangle[lane] == RayScene::kMiss) return true;
+        const ZoneId zone =
+            transport_.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
+        if (!zone.valid() || open_[zone.index()]) return true;
+        if (transport_.reflectance(transport_.mesh().zone_surface(zone))[band_] < 1) return true;
+        met_.push_back(zone);
+        const auto x = rng_.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
+        for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = x[d];
+        transport_.put_zone(zone, lanes, lane, lane + 1);
+      }
+      transport_.start(lanes, numbers, rays);
+    }
+    return false;
+  }
+
+  const TransportScene& transport_;
+  std::size_t band_;
+  FlightNumbers numbers_;
+  CounterRng rng_;
+  std::vector<bool> open_;
+  std::vector<ZoneId> met_;
+};
+
+std::string name_of(const EmissionSource& source, const TransportScene& transport) {
+  const Scene& scene = transport.scene();
+  if (source.zone.valid()) return scene.surfaces[transport.mesh().zone_surface(source.zone).index()].name;
+  return std::visit([](const auto& light) { return light.name; }, scene.lights[source.light]);
+}
+
+/// "'floor', 'lid' and 4 more".
+std::string list_of(const std::set<std::size_t>& surfaces, const Scene& scene) {
+  constexpr std::size_t kMostNames = 6;
+  std::string list;
+  std::size_t named = 0;
+  for (const std::size_t s : surfaces) {
+    if (named == kMostNames) return list + " and " + std::to_string(surfaces.size() - named) + " more";
+    list += (named++ == 0 ? "'" : ", '") + scene.surfaces[s].name + "'";
+  }
+  return list;
+}
+
 }  // namespace
 
 void refuse_closed_perfect_reflector(const TransportScene& transport, const Emission& emission,
                                      std::uint64_t seed) {
   const Scene& scene = transport.scene();
-  for (std::size_t b = 0; b < transport.bands(); ++b) {
-    if (!(emission.watts[b] > 0)) continue;
-    const bool all_perfect = std::all_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& s) {
+  const std::size_t bands = transport.bands();
+  for (std::size_t b = 0; b < bands; ++b) {
+    const bool any_perfect = std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& s) {
       return scene.material_of(s).reflectance[static_cast<Eigen::Index>(b)] >= 1;
     });
-    if (!all_perfect) continue;
-
-    // Nothing absorbs but the backs of one-sided faces and the world outside: look whether packets find
-    // either.
-    const Flight flight = plan_emission_flight(emission, transport.bands(), kProbes, 0.5);
-    const FlightNumbers numbers(SamplingKind::kSobol, seed, 0, 0);
-    const CounterRng rng(seed, RngPurpose::kProbe);
-    FlightCursor cursor(transport, flight, 0);
-    std::vector<std::int64_t> power(16 * transport.bands());
-    for (std::uint32_t first = 0; first < flight.packets(); first += 16) {
-      const int count = static_cast<int>(std::min<std::uint32_t>(16, flight.packets() - first));
-      Ray16 rays;
-      Hit16 hits;
-      ZoneLanes lanes{};
-      UniformLanes numbers_of_bounce{};
-      cursor.start16(first, count, numbers, rays, power.data());
-      for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
-        transport.rays().closest16(rays, count, hits);
-        transport.rays().look_again16(rays, count, hits);
-        for (int lane = 0; lane < count; ++lane) {
-          if (hits.triangle[lane] == RayScene::kMiss) return;
-          const ZoneId zone =
-              transport.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
-          if (!zone.valid()) return;
-          const auto x = rng.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
-          for (std::size_t d = 0; d < 4; ++d) numbers_of_bounce.u[d][lane] = x[d];
-          transport.put_zone(zone, lanes, lane, lane + 1);
-        }
-        transport.start(lanes, numbers_of_bounce, rays);
-      }
+    if (!any_perfect) continue;
+    WayOut way_out(transport, b, seed);
+    for (std::size_t s = 0; s < emission.sources.size(); ++s) {
+      if (emission.quanta[s * bands + b] == 0 || way_out.exists(emission.sources[s])) continue;
+      throw InputError(
+          scene.source,
+          "the luminaire '" + name_of(emission.sources[s], transport) +
+              "' shines into a sealed part of the room, and all that it meets reflects the light of band '" +
+              scene.bands.name(b) + "' entirely (" + list_of(way_out.surfaces(), scene) +
+              "): the radiosity there has no finite value",
+          "Give at least one of these surfaces a reflectance below 1, or open the part.");
     }
-    throw InputError(scene.source,
-                     "every surface reflects all light of band '" + scene.bands.name(b) +
-                         "' and none can leave: the radiosity has no finite value",
-                     "Give at least one surface a reflectance below 1, or open the room.");
   }
 }
 

@@ -6,9 +6,11 @@
 
 namespace reemit {
 
-/// Throws InputError when some band is reflected entirely by every surface that packets from the luminaires
-/// can meet and no packet leaves the room: radiosity would grow without bound. A room of reflectance 1 with a
-/// way out passes.
+/// Throws InputError when a luminaire shines into a part of the room that nothing leaves and whose surfaces
+/// reflect some band entirely: radiosity there would grow without bound. It names the luminaire, the surfaces
+/// of the part and the band. Each luminaire (zone by zone) is looked at by itself, so a sealed cell is found
+/// within a room that absorbs. A part with a way out passes; one whose way out is met by less than one in
+/// some 100,000 bounces may be taken for sealed. Sealed parts in the dark are of no concern.
 void refuse_closed_perfect_reflector(const TransportScene& transport, const Emission& emission,
                                      std::uint64_t seed);
 

@@ -31,6 +31,24 @@ Flight plan_emission_flight(const Emission& emission, std::size_t bands, std::ui
   return flight;
 }
 
+void leave_unshot(const Flight& flight, std::uint32_t begin, std::uint32_t end, BatchBooks& books) {
+  const auto& first = flight.first_packet;
+  auto source =
+      static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), begin) - first.begin()) - 1;
+  for (; source < flight.sources.size() && first[source] < end; ++source) {
+    // As FlightCursor deals it out: equal shares, and the first packets carry what does not divide.
+    const std::int64_t packets = first[source + 1] - first[source];
+    const std::int64_t from = std::max(begin, first[source]) - first[source];
+    const std::int64_t until = std::min(end, first[source + 1]) - first[source];
+    for (std::size_t b = 0; b < books.bands; ++b) {
+      const std::int64_t quanta = flight.quanta[source * books.bands + b];
+      const std::int64_t remainder = quanta % packets;
+      book(books.unshot[b],
+           (until - from) * (quanta / packets) + std::min(until, remainder) - std::min(from, remainder));
+    }
+  }
+}
+
 FlightNumbers::FlightNumbers(SamplingKind kind, std::uint64_t seed, std::uint32_t batch, std::uint32_t flight)
     : kind_(kind),
       rng_(seed, RngPurpose::kEmission),
@@ -100,7 +118,7 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
       transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane],
                             sample_cosine_power(x.u[2][lane], x.u[3][lane], s->exponent + 1), rays, lane);
     else
-      start_light_ray(transport_.scene().lights[s->light], transport_.rays(), x.u[0][lane], x.u[1][lane],
+      start_light_ray(transport_.lights()[s->light], transport_.rays(), x.u[0][lane], x.u[1][lane],
                       x.u[2][lane], x.u[3][lane], rays, lane);
   }
 }

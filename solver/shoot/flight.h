@@ -7,6 +7,7 @@
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
 #include "solver/solver_settings.h"
+#include "solver/tally/batch_books.h"
 
 namespace reemit {
 
@@ -33,6 +34,9 @@ struct Flight {
 /// each. Sources keep exactly their own power; only how many packets carry it depends on `offset` in [0,1).
 Flight plan_emission_flight(const Emission& emission, std::size_t bands, std::uint32_t packets,
                             double offset);
+
+/// Books the power of packets begin .. end-1, which stay where they are, as unshot. Any thread may call it.
+void leave_unshot(const Flight& flight, std::uint32_t begin, std::uint32_t end, BatchBooks& books);
 
 /// Uniform numbers of the packets of one flight: point on the source (2) and direction (2).
 class FlightNumbers {

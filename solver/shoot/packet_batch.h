@@ -1,8 +1,8 @@
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <functional>
 
+#include "scenes/model/stop_token.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
 #include "solver/solver_settings.h"
@@ -18,22 +18,25 @@ struct BatchTask {
   const TransportScene& transport;
   const Emission& emission;
   const SolverSettings& settings;
-  std::uint32_t batch;                         ///< Number of the batch: selects its random numbers.
-  std::uint32_t packets;                       ///< Aimed at; each luminaire zone sends at least one.
-  const std::atomic<bool>* abandon = nullptr;  ///< Looked at now and then; may be null.
-  const RayObserver* ray_observer = nullptr;   ///< May be null.
+  std::uint32_t batch;    ///< Number of the batch: selects its random numbers.
+  std::uint32_t packets;  ///< Aimed at; each luminaire zone sends at least one.
+  /// Looked at in every sweep and bounce, and every few thousand packets; may be null.
+  const StopToken* stop = nullptr;
+  const RayObserver* ray_observer = nullptr;  ///< May be null.
 };
 
 /// One batch of absorb-and-re-emit shooting: an independent estimate of the whole solution ([GI98] Monte
 /// Carlo notes, section 3; all zones at once in the manner of stochastic Jacobi iterations). Zones re-emit
-/// uniformly over their area. False if it was abandoned; the books are then of no use. Must run inside the
-/// task arena of the caller.
+/// uniformly over their area. False if it was cut off: the books balance all the same, with what was on its
+/// way, or had not set out, as unshot. A batch of more than 200,000 sweeps ends there, whole, with the rest
+/// unshot. Must run inside the task arena of the caller.
 bool shoot_batch(const BatchTask& task, BatchBooks& books);
 
 /// One batch of walks: each packet is followed until Russian roulette absorbs it. It survives a hit with the
 /// largest reflectance over the bands and keeps rho/largest of its power, so its power never grows and what
 /// it loses is absorbed: the books need no correction for roulette. A packet leaves from a uniform point of
-/// the zone that it met, so that both methods solve the same zonal system. False if it was abandoned.
+/// the zone that it met, so that both methods solve the same zonal system. False if it was cut off, as above;
+/// a walk ends after 200,000 bounces.
 bool walk_batch(const BatchTask& task, BatchBooks& books);
 
 }  // namespace reemit

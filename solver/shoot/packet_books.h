@@ -49,8 +49,8 @@ struct PacketBlock {
   std::vector<std::int64_t> power;  ///< [lane * bands + band]
 };
 
-/// Packets whose rays met nothing, waiting for their second look until there are enough for a block: traced
-/// one by one beside rays that hit, they would cost as much as a whole block.
+/// Packets whose rays met nothing or a back, waiting for their second look until there are enough for a
+/// block: traced one by one beside rays that hit, they would cost as much as a whole block.
 class MissedPackets {
  public:
   explicit MissedPackets(std::size_t bands) : bands_(bands) {}

@@ -12,8 +12,9 @@ struct alignas(64) ZoneLanes {
   float corner[3][16], edge1[3][16], edge2[3][16];
   float middle[3][16];  ///< Of the parent triangle: rays are drawn towards it.
   float tangent[3][16], bitangent[3][16], normal[3][16];
-  std::uint32_t zone[16];    ///< Where the zone is curved.
+  std::uint32_t zone[16];    ///< Where the zone is curved; else, at feet, the triangle that it is in.
   std::uint32_t curved = 0;  ///< Lanes of curved zones as bits; the geometry above is not theirs.
+  std::uint32_t feet = 0;    ///< Lanes of flat zones that rays leave clear of shapes (RayScene::is_foot).
 };
 
 /// Four uniform numbers of each of 16 packets: u[dimension][lane].

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -21,14 +22,15 @@ constexpr std::uint32_t kMostSweeps = 200'000;
 
 /// Account that a packet is booked to, and whether other threads may book to it at the same time.
 struct Account {
-  std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room.
+  std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room or needs a second look.
   bool shared = false;
 };
 
 /// Accounts of 16 packets. Their memory is asked for at once, before the first is needed: with many zones the
 /// books are larger than the caches.
 void find_accounts(const TransportScene& transport, const Hit16& hits, int count,
-                   SweepAccounts::Incident& incident, bool shared, BatchBooks& books, Account* accounts) {
+                   SweepAccounts::Incident& incident, bool shared, bool second_look, BatchBooks& books,
+                   Account* accounts) {
   const std::size_t bands = transport.bands();
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t t = hits.triangle[lane];
@@ -38,7 +40,7 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
     if (zone.valid()) {
       accounts[lane] = {&incident.quanta[zone.index() * bands], shared};
       incident.touch(zone.index());
-    } else {
+    } else if (second_look) {
       const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
       accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true};
     }
@@ -46,13 +48,15 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
   }
 }
 
-/// Traces a flight and books every packet where it ends; sweep.incident receives what zones catch.
-void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumbers& numbers,
+/// Traces a flight and books every packet where it ends; sweep.incident receives what zones catch. False if
+/// it was cut off: packets that have not set out are unshot.
+bool trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumbers& numbers,
                   SweepAccounts& sweep, BatchBooks& books) {
   const TransportScene& transport = batch.transport;
   const std::size_t bands = transport.bands();
   const bool shared = accounts_are_shared(sweep.incident.size());
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
+  std::atomic<std::uint64_t> started{0};
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     LocalBooks local(books);
     SweepAccounts::Incident& incident = sweep.mine();
@@ -64,7 +68,7 @@ void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
     const auto trace_and_book = [&](const Ray16& rays, int count, const std::int64_t* quanta,
                                     bool second_look) {
       transport.rays().closest16(rays, count, hits);
-      find_accounts(transport, hits, count, incident, shared, books, accounts);
+      find_accounts(transport, hits, count, incident, shared, second_look, books, accounts);
       for (int lane = 0; lane < count; ++lane, quanta += bands) {
         const Account& account = accounts[lane];
         if (account.quanta == nullptr && !second_look) {
@@ -85,6 +89,11 @@ void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
       const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
+      if (batch.stop != nullptr && batch.stop->requested()) {
+        leave_unshot(flight, begin, end, books);
+        continue;
+      }
+      started += end - begin;
       FlightCursor cursor(transport, flight, begin);
       Ray16 rays;
       for (std::uint32_t first = begin; first < end; first += 16) {
@@ -97,7 +106,8 @@ void trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
     }
     look_again();
   });
-  books.rays += flight.packets();
+  books.rays += started;
+  return started == flight.packets();
 }
 
 /// Moves what a sweep brought in into `part` of the books; the reflected share becomes unshot power.
@@ -161,18 +171,22 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   const double quantum = emitted / flight.packets();
 
   Allocation allocation(transport.zones(), bands);
-  for (std::uint32_t sweep = 0; sweep < kMostSweeps; ++sweep) {
-    if (task.abandon != nullptr && task.abandon->load(std::memory_order_relaxed)) return false;
-    trace_flight(task, flight, FlightNumbers(task.settings.sampling, task.settings.seed, task.batch, sweep),
-                 accounts, books);
+  bool whole = true;
+  for (std::uint32_t sweep = 0;; ++sweep) {
+    whole = trace_flight(task, flight,
+                         FlightNumbers(task.settings.sampling, task.settings.seed, task.batch, sweep),
+                         accounts, books);
     reflect(transport, accounts, sweep == 0 ? books.direct : books.indirect, books);
     const auto left = static_cast<double>(allocation.measure(accounts));
-    if (left <= task.settings.stop_share * emitted) break;
+    if (!whole || left <= task.settings.stop_share * emitted || sweep + 1 == kMostSweeps) break;
+    whole = task.stop == nullptr || !task.stop->requested();
+    if (!whole) break;
+    // From here on the power is in the flight, which must be traced before the batch may end.
     const double packets = std::max(1.0, std::round(left / quantum));
     allocation.plan(accounts, left / packets, offsets.uniform4(0, task.batch, sweep + 1)[0], flight, books);
   }
   for (std::size_t i = 0; i < accounts.unshot.size(); ++i) books.unshot[i % bands] += accounts.unshot[i];
-  return true;
+  return whole;
 }
 
 }  // namespace reemit

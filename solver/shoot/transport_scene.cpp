@@ -1,9 +1,15 @@
 #include "solver/shoot/transport_scene.h"
 
+#include "solver/emit/light_places.h"
+
 namespace reemit {
 
 TransportScene::TransportScene(const Scene& scene, const ZoneMesh& mesh, const RayScene& rays)
-    : scene_(&scene), mesh_(&mesh), rays_(&rays), bands_(scene.bands.count()) {
+    : scene_(&scene),
+      mesh_(&mesh),
+      rays_(&rays),
+      bands_(scene.bands.count()),
+      lights_(lights_before_faces(scene, rays)) {
   for (const Surface& s : scene.surfaces) {
     const Spectrum& rho = scene.material_of(s).reflectance;
     reflectance_.insert(reflectance_.end(), rho.begin(), rho.end());
@@ -18,7 +24,7 @@ TransportScene::TransportScene(const Scene& scene, const ZoneMesh& mesh, const R
     const Vec3f e2 = rays.corner(t, 2) - p0;
     const auto scale = 1.0F / static_cast<float>(n);
     patches_.push_back({p0, scale * e1, scale * e2, p0 + (e1 + e2) / 3.0F, Frame(rays.normal(t)), n,
-                        mesh.triangle(t).two_sided, mesh.first_zone(t, true).index()});
+                        mesh.triangle(t).two_sided, rays.is_foot(t), mesh.first_zone(t, true).index()});
   }
 }
 
@@ -47,6 +53,17 @@ void TransportScene::start_curved(const ZoneLanes& lanes, const UniformLanes& nu
     if ((lanes.curved >> lane & 1U) != 0)
       start_from(ZoneId(lanes.zone[lane]), numbers.u[0][lane], numbers.u[1][lane],
                  sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]), rays, lane);
+}
+
+void TransportScene::start_at_feet(const ZoneLanes& lanes, Ray16& rays) const {
+  for (int lane = 0; lane < 16; ++lane) {
+    if ((lanes.feet >> lane & 1U) == 0) continue;
+    const Vec3f start =
+        rays_->clear_of_shapes(TriangleId(lanes.zone[lane]), {rays.ox[lane], rays.oy[lane], rays.oz[lane]});
+    rays.ox[lane] = start.x();
+    rays.oy[lane] = start.y();
+    rays.oz[lane] = start.z();
+  }
 }
 
 }  // namespace reemit

@@ -18,6 +18,8 @@ class TransportScene {
   TransportScene(const Scene& scene, const ZoneMesh& mesh, const RayScene& rays);
 
   const Scene& scene() const { return *scene_; }
+  /// The lights of the room where their rays start (lights_before_faces).
+  const std::vector<PunctualLight>& lights() const { return lights_; }
   const ZoneMesh& mesh() const { return *mesh_; }
   const RayScene& rays() const { return *rays_; }
   std::size_t bands() const { return bands_; }
@@ -34,11 +36,17 @@ class TransportScene {
     const std::uint32_t bits = ((1U << last) - 1) & ~((1U << first) - 1);
     if (t.index() >= mesh_->flat_count()) {
       lanes.curved |= bits;
+      lanes.feet &= ~bits;
       std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(z.index()));
       return;
     }
     lanes.curved &= ~bits;
     const TrianglePatch& p = patches_[t.index()];
+    lanes.feet &= ~bits;
+    if (p.is_foot) {
+      lanes.feet |= bits;
+      std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(t.index()));
+    }
     std::size_t in_side = z.index() - p.first_zone;
     const std::size_t per_side = std::size_t{p.divisions} * p.divisions;
     const float side = in_side < per_side ? 1.0F : -1.0F;
@@ -64,6 +72,7 @@ class TransportScene {
   void start(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
     start_rays(lanes, numbers, rays);
     if (lanes.curved != 0) start_curved(lanes, numbers, rays);
+    if (lanes.feet != 0) start_at_feet(lanes, rays);
   }
   /// Starts one ray from a uniform point of a zone with a direction given in the frame of its normal (z up).
   void start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const;
@@ -78,6 +87,7 @@ class TransportScene {
 
  private:
   void start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
+  void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;
 
   /// A base triangle with the edges of one of its zones (normalised space).
   struct TrianglePatch {
@@ -85,6 +95,7 @@ class TransportScene {
     Frame frame;  // about the front normal
     std::uint32_t divisions;
     bool two_sided;
+    bool is_foot;
     std::size_t first_zone;
   };
 
@@ -92,6 +103,7 @@ class TransportScene {
   const ZoneMesh* mesh_;
   const RayScene* rays_;
   std::size_t bands_;
+  std::vector<PunctualLight> lights_;
   std::vector<TrianglePatch> patches_;
   std::vector<double> reflectance_;
   std::vector<double> largest_reflectance_;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <numeric>
 #include <utility>
 
@@ -58,6 +59,7 @@ class WalkTask {
         bands_(task.transport.bands()),
         rng_(task.settings.seed, RngPurpose::kReflection),
         batch_(task.batch),
+        stop_(task.stop),
         observer_(task.ray_observer),
         books_(books),
         local_(books),
@@ -67,17 +69,29 @@ class WalkTask {
         absorbed_(absorbed),
         shared_(shared) {}
 
-  void run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
+  /// False if it was cut off: packets that have not ended, or not set out, are unshot.
+  bool run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
+    if (stop_requested()) {
+      leave_unshot(flight, begin, end, books_);
+      return false;
+    }
     start(flight, numbers, begin, end);
     for (std::uint32_t bounce = 1; !waiting_.packets.empty(); ++bounce) {
-      if (bounce == kMostBounces) return leave_unshot();
+      const bool whole = !stop_requested();
+      if (!whole || bounce == kMostBounces) {
+        leave_waiting_unshot();
+        return whole;
+      }
       trace_on(bounce);
     }
+    return true;
   }
 
   std::uint64_t rays() const { return ray_count_; }
 
  private:
+  bool stop_requested() const { return stop_ != nullptr && stop_->requested(); }
+
   void start(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
     waiting_.clear();
     FlightCursor cursor(transport_, flight, begin);
@@ -139,9 +153,12 @@ class WalkTask {
     rng_.bits4x16(id, batch_, bounce, bits);
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
+      if (!zone[lane].valid() && !second_look) {
+        missed_.add(rays, lane, id[lane], quanta);
+        continue;
+      }
       if (hits_.triangle[lane] == RayScene::kMiss) {
-        if (!second_look) missed_.add(rays, lane, id[lane], quanta);
-        for (std::size_t b = 0; second_look && b < bands_; ++b)
+        for (std::size_t b = 0; b < bands_; ++b)
           local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
         continue;
       }
@@ -178,7 +195,7 @@ class WalkTask {
     }
   }
 
-  void leave_unshot() {
+  void leave_waiting_unshot() {
     for (std::size_t i = 0; i < waiting_.quanta.size(); ++i)
       book(books_.unshot[i % bands_], waiting_.quanta[i]);
   }
@@ -187,6 +204,7 @@ class WalkTask {
   std::size_t bands_;
   CounterRng rng_;
   std::uint32_t batch_;
+  const StopToken* stop_;
   const RayObserver* observer_;
   BatchBooks& books_;
   LocalBooks local_;
@@ -231,17 +249,14 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
     accounts[i].direct.resize(books.direct.size());
     accounts[i].indirect.resize(books.indirect.size());
   }
-  std::atomic<bool> abandoned = false;
+  std::atomic<bool> whole = true;
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     const std::size_t thread = current_copy();
     WalkTask walk(task, books, accounts[shared ? 0 : thread], accounts[thread].absorbed, shared);
     for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
-      if (task.abandon != nullptr && task.abandon->load(std::memory_order_relaxed)) {
-        abandoned = true;
-        return;
-      }
-      walk.run(flight, numbers, t * kPacketsPerTask, std::min(flight.packets(), (t + 1) * kPacketsPerTask));
+      const std::uint32_t end = std::min(flight.packets(), (t + 1) * kPacketsPerTask);
+      if (!walk.run(flight, numbers, t * kPacketsPerTask, end)) whole = false;
     }
     accounts[thread].rays += walk.rays();
   });
@@ -251,7 +266,7 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
     add(a.absorbed, books.absorbed);
     books.rays += a.rays;
   }
-  return !abandoned;
+  return whole;
 }
 
 }  // namespace reemit

@@ -4,17 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace reemit {
 namespace {
 
-Estimate batch_mean(double sum, double sum_of_squares, std::int64_t batches) {
-  if (batches == 0) return {};
-  const auto n = static_cast<double>(batches);
-  if (batches == 1) return {sum, std::numeric_limits<double>::infinity()};
-  // Rounding can push the difference below 0 when all batches agree.
-  const double spread = std::max(0.0, sum_of_squares - sum * sum / n);
-  return {sum / n, std::sqrt(spread / (n * (n - 1)))};
+Estimate batch_mean(const ZoneSums& sums, double sum, double cross, double squares) {
+  if (sums.batches == 0) return {};
+  const double mean = sum / static_cast<double>(sums.weight());
+  if (sums.batches == 1) return {mean, std::numeric_limits<double>::infinity()};
+  return {mean, std::sqrt(sums.squared_error(sum, cross, squares))};
 }
 
 Eigen::Index to_index(std::size_t band) {
@@ -25,9 +24,36 @@ Eigen::Index to_index(std::size_t band) {
 
 void ZoneSums::clear(std::size_t values) {
   batches = 0;
-  for (auto* sum : {&direct, &direct_squared, &indirect, &indirect_squared, &total_squared})
+  group_weight.fill(0);
+  weight_squared = 0;
+  for (auto* sum : {&direct, &indirect, &direct_cross, &indirect_cross, &direct_squared, &indirect_squared,
+                    &total_squared})
     sum->assign(values, 0.0);
   group_total.assign(kGroups * values, 0.0);
+}
+
+std::size_t ZoneSums::count_batch(std::int64_t w) {
+  const std::size_t group = static_cast<std::size_t>(batches) % kGroups;
+  ++batches;
+  group_weight[group] += w;
+  weight_squared += static_cast<double>(w) * static_cast<double>(w);
+  return group;
+}
+
+std::int64_t ZoneSums::weight() const {
+  return std::accumulate(group_weight.begin(), group_weight.end(), std::int64_t{0});
+}
+
+double ZoneSums::degrees_of_freedom() const {
+  const auto w = static_cast<double>(weight());
+  return batches == 0 ? 0.0 : w * w / weight_squared - 1;
+}
+
+double ZoneSums::squared_error(double sum, double cross, double squares) const {
+  const auto w = static_cast<double>(weight());
+  const double mean = sum / w;
+  // Rounding can push the spread below 0 when all batches agree.
+  return std::max(0.0, squares - 2 * mean * cross + mean * mean * weight_squared) / (w * w - weight_squared);
 }
 
 std::string to_string(StopReason reason) {
@@ -42,6 +68,8 @@ std::string to_string(StopReason reason) {
       return "interrupted";
     case StopReason::kBatchLimit:
       return "batch limit reached";
+    case StopReason::kBounceLimit:
+      return "bounce limit reached";
     case StopReason::kNoLuminaire:
       return "no luminaire in the room";
     case StopReason::kSystemSolved:
@@ -52,17 +80,18 @@ std::string to_string(StopReason reason) {
 
 Estimate Solution::direct_irradiance(ZoneId z, std::size_t band) const {
   const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums.direct[i], sums.direct_squared[i], sums.batches);
+  return batch_mean(sums, sums.direct[i], sums.direct_cross[i], sums.direct_squared[i]);
 }
 
 Estimate Solution::indirect_irradiance(ZoneId z, std::size_t band) const {
   const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums.indirect[i], sums.indirect_squared[i], sums.batches);
+  return batch_mean(sums, sums.indirect[i], sums.indirect_cross[i], sums.indirect_squared[i]);
 }
 
 Estimate Solution::irradiance(ZoneId z, std::size_t band) const {
   const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums.direct[i] + sums.indirect[i], sums.total_squared[i], sums.batches);
+  return batch_mean(sums, sums.direct[i] + sums.indirect[i], sums.direct_cross[i] + sums.indirect_cross[i],
+                    sums.total_squared[i]);
 }
 
 double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {

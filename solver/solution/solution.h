@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,12 +13,16 @@
 #include "solver/matrix/form_factor_report.h"
 #include "solver/solver_settings.h"
 #include "solver/tally/energy_audit.h"
+#include "solver/tally/zone_bias.h"
 
 namespace reemit {
 
-/// Sums over batches of the irradiance of every zone [W/m2], index zone * bands + band. One batch is one
-/// independent estimate, so means and standard errors follow from the sums alone, and more batches can be
-/// added later.
+/// Sums over batches of the irradiance x of every zone [W/m2], index zone * bands + band. One batch is one
+/// independent estimate, of weight w: its packets over those of the smallest batch. Means and standard errors
+/// follow from the sums alone, and more batches can be added later. The mean is sum(w x)/sum(w), and its
+/// squared standard error sum(w^2 (x - mean)^2) / (sum(w)^2 - sum(w^2)): that of a ratio estimate
+/// ([COC77] 6.4), which does not presume that the variance of a batch falls as 1/w, with the correction for
+/// few batches that is exact if it does. With equal weights it is the textbook's.
 struct ZoneSums {
   /// Batch k belongs to group k mod kGroups. What reads the zone solution in as many independent replicates
   /// as there are groups, each replicate its own group, gets an error bar that holds the noise of the zones
@@ -25,19 +30,26 @@ struct ZoneSums {
   static constexpr std::size_t kGroups = 16;
 
   std::int64_t batches = 0;
-  std::vector<double> direct, direct_squared;      ///< First hit from a luminaire.
-  std::vector<double> indirect, indirect_squared;  ///< Everything after a reflection.
-  std::vector<double> total_squared;               ///< (direct + indirect)^2.
-  /// direct + indirect over the batches of one group: index group * values + zone * bands + band, with
-  /// values = zones * bands.
+  std::array<std::int64_t, kGroups> group_weight{};  ///< Sum of w over the batches of a group.
+  double weight_squared = 0;                         ///< Sum of w^2 over all batches.
+  std::vector<double> direct,
+      indirect;  ///< Sum of w x: first hit from a luminaire; everything after a reflection.
+  std::vector<double> direct_cross, indirect_cross;  ///< Sum of w^2 x.
+  std::vector<double> direct_squared, indirect_squared,
+      total_squared;  ///< Sum of (w x)^2; of direct + indirect.
+  /// Sum of w (direct + indirect) over the batches of one group: index group * values + zone * bands + band,
+  /// with values = zones * bands.
   std::vector<double> group_total;
 
   /// No batches, and all sums 0, for `values` = zones * bands.
   void clear(std::size_t values);
-  std::int64_t group_batches(std::size_t group) const {
-    const auto groups = static_cast<std::int64_t>(kGroups);
-    return (batches + groups - 1 - static_cast<std::int64_t>(group)) / groups;
-  }
+  /// Notes a batch of weight `w`, whose values must be added too; returns its group.
+  std::size_t count_batch(std::int64_t w);
+  std::int64_t weight() const;  ///< Sum of w over all batches.
+  /// Of a standard error, for Student's t: as many as that many batches of equal weight leave.
+  double degrees_of_freedom() const;
+  /// Squared standard error of a mean, from sum(w x), sum(w^2 x) and sum((w x)^2). Pre: batches >= 2.
+  double squared_error(double sum, double cross, double squares) const;
 };
 
 /// A mean and its standard error, both in the unit of the quantity.
@@ -53,6 +65,7 @@ enum class StopReason {
   kInterrupted,
   kNoLuminaire,
   kBatchLimit,
+  kBounceLimit,   ///< The noise met the error target, but too much power was unshot when batches ended.
   kSystemSolved,  ///< By the matrix method, which has no stopping rule.
 };
 std::string to_string(StopReason reason);  ///< In words, as printed and stored.
@@ -62,7 +75,7 @@ struct SolveRecord {
   StopReason stopped = StopReason::kNoLuminaire;
   std::uint64_t packets = 0;  ///< Emitted by luminaires.
   std::uint64_t rays = 0;     ///< Traced in all.
-  double seconds = 0;         ///< Wall time of the solve without meshing.
+  double seconds = 0;         ///< Wall time of the solve without meshing and saving.
   double error = 0;        ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
   double error_bound = 0;  ///< The true rms error stays below this with odds of 99.9 %, worst band.
   double error_95th_percentile = 0;   ///< 95th percentile over zones of s/B, worst band; lit zones only.
@@ -71,6 +84,9 @@ struct SolveRecord {
   /// How far radiosity at points lies from that of their zones, relative rms, worst band: an error that more
   /// packets do not lessen. Nothing if it was not estimated.
   std::optional<double> discretisation;
+  /// The same for light gathered at points of the room, what stills and vertices show. Nothing if it was not
+  /// estimated.
+  std::optional<ZoneBias> gather_bias;
 };
 
 /// The view-independent solution of a room and all that later questions need.
@@ -92,9 +108,10 @@ struct Solution {
   ZoneMesh mesh{BaseMesh{}};
   ZoneSums sums;
   EnergyAudit audit;
+  std::vector<std::string> light_warnings;  ///< Of light that is lost where it should not be (lost_light.h).
   std::optional<FormFactorReport> form_factors;  ///< Of the matrix method; not kept in the file.
 
-  // Batch means: mean = sum/n, standard error = sqrt((sum of squares - sum^2/n) / (n(n-1))). One batch alone
+  // Batch means and their standard errors, as ZoneSums has them. One batch alone
   // says nothing about its error: the standard error is then +infinity, never 0. Exceptions that are known to
   // be exact: no batch at all, which only a room without luminaire ends with, and a zone that met no packet
   // in n >= 2 batches.

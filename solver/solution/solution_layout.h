@@ -12,6 +12,7 @@ namespace reemit {
 template <class Archive, class Options>
 void transfer_read_options(Archive& archive, Options& options) {
   archive.attribute("gltf_emissive_units", options.gltf_emissive_units);
+  archive.attribute("gltf_light_efficacy_lm_per_W", options.gltf_light_efficacy);
   archive.attribute("force_two_sided", options.force_two_sided);
 }
 
@@ -50,6 +51,7 @@ void transfer_record(Archive& archive, Record& record) {
   archive.attribute("unreached_zones", record.unreached_zones);
   archive.attribute("gathered_zones", record.gathered_zones);
   archive.attribute("discretisation", record.discretisation);
+  archive.attribute("gather_bias", record.gather_bias);
 }
 
 template <class Archive, class Report>
@@ -64,19 +66,22 @@ void transfer_mesh_counts(Archive& archive, Report& report) {
 
 /// The values an enumeration can have, in words, as stored.
 inline std::string to_string(EmissiveUnits units) {
-  return units == EmissiveUnits::kWatt ? "W/(sr m2)" : "cd/m2";
+  return units == EmissiveUnits::kWatt      ? "W/(sr m2)"
+         : units == EmissiveUnits::kCandela ? "cd/m2"
+                                            : "by generator";
 }
 inline std::string to_string(BandKind kind) {
   return kind == BandKind::kGrey ? "grey" : kind == BandKind::kRgb ? "rgb" : "spectral";
 }
 
-inline constexpr EmissiveUnits kAllEmissiveUnits[] = {EmissiveUnits::kCandela, EmissiveUnits::kWatt};
+inline constexpr EmissiveUnits kAllEmissiveUnits[] = {EmissiveUnits::kByGenerator, EmissiveUnits::kCandela,
+                                                      EmissiveUnits::kWatt};
 inline constexpr BandKind kAllBandKinds[] = {BandKind::kGrey, BandKind::kRgb, BandKind::kSpectral};
 inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, SolveMethod::kWalk,
                                                    SolveMethod::kMatrix};
 inline constexpr SamplingKind kAllSamplingKinds[] = {SamplingKind::kRandom, SamplingKind::kSobol};
 inline constexpr StopReason kAllStopReasons[] = {
     StopReason::kErrorTarget, StopReason::kTimeLimit,   StopReason::kPacketCount, StopReason::kBatchLimit,
-    StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};
+    StopReason::kBounceLimit, StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};
 
 }  // namespace reemit

@@ -42,6 +42,11 @@ struct AttributeReader {
   void attribute(const char* name, std::optional<double>& value) {
     if (group.has_attribute(name)) value = group.read_attribute<double>(name);
   }
+  void attribute(const char* name, std::optional<ZoneBias>& value) {
+    if (group.has_attribute(name))
+      value = ZoneBias{group.read_attribute<double>(name),
+                       group.read_attribute<double>((std::string(name) + "_bound").c_str())};
+  }
   void attribute(const char* name, EmissiveUnits& value) {
     parse<EmissiveUnits>(name, value, kAllEmissiveUnits);
   }
@@ -196,16 +201,31 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   return ZoneMesh(std::move(base));
 }
 
+/// No sum of sixteen of these overflows.
+constexpr std::int64_t kMostGroupWeight = std::int64_t{1} << 53;
+
 ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
   const Hdf5Group group = root.open_group("sums");
   ZoneSums sums;
   sums.batches = group.read_attribute<std::int64_t>("batches");
   require(sums.batches >= 0, "a negative number of batches");
+  sums.weight_squared = group.read_attribute<double>("weight_squared");
+  const auto weights = group.read<std::int64_t>("group_weight", {ZoneSums::kGroups});
+  std::copy(weights.begin(), weights.end(), sums.group_weight.begin());
+  for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
+    require(weights[g] > 0 ? static_cast<std::int64_t>(g) < sums.batches && weights[g] <= kMostGroupWeight
+                           : weights[g] == 0 && static_cast<std::int64_t>(g) >= sums.batches,
+            "weights of batch groups that do not go with the number of batches");
+  const auto weight = static_cast<double>(sums.weight());
+  require(sums.weight_squared >= weight && (sums.batches < 2 || sums.weight_squared < weight * weight),
+          "squares of weights that do not go with the weights");
   const Hdf5Shape shape{rows_of(group, "direct"), bands};
   const std::pair<const char*, std::vector<double>*> columns[] = {
       {"direct", &sums.direct},
+      {"direct_cross", &sums.direct_cross},
       {"direct_squared", &sums.direct_squared},
       {"indirect", &sums.indirect},
+      {"indirect_cross", &sums.indirect_cross},
       {"indirect_squared", &sums.indirect_squared},
       {"total_squared", &sums.total_squared}};
   for (const auto& [name, values] : columns) {
@@ -224,10 +244,13 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
   const std::uint64_t surfaces = solution.surface_names.size();
   EnergyAudit audit;
   audit.batches = group.read_attribute<std::int64_t>("batches");
-  require(audit.batches >= 0, "a negative number of batches");
+  audit.weight = group.read_attribute<std::int64_t>("weight");
+  require(audit.batches >= 0 && audit.weight >= audit.batches, "a negative number of batches");
   const std::vector<std::string> names = group.read_texts("band");
   require(names.size() == bands, "an audit of another number of bands");
   const auto watts = group.read<double>("watts_per_quantum", {bands});
+  const auto gain = group.read<double>("roulette_gain", {bands});
+  require(all_finite(gain), "roulette that is not finite");
   const auto escaped = group.read<std::int64_t>("escaped", {bands, 6});
   const auto absorbed = group.read<std::int64_t>("absorbed", {bands, surfaces});
   const auto on_backs = group.read<std::int64_t>("absorbed_on_backs", {bands, surfaces});
@@ -239,6 +262,7 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
     BandAudit& band = audit.bands[b];
     band.band = names[b];
     band.watts_per_quantum = watts[b];
+    band.roulette_gain = gain[b];
     std::copy_n(row(escaped, b, 6), 6, band.escaped.begin());
     band.absorbed.assign(row(absorbed, b, surfaces), row(absorbed, b + 1, surfaces));
     band.absorbed_on_backs.assign(row(on_backs, b, surfaces), row(on_backs, b + 1, surfaces));
@@ -246,8 +270,7 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
   const std::pair<const char*, std::int64_t BandAudit::*> columns[] = {
       {"emitted", &BandAudit::emitted},
       {"unshot", &BandAudit::unshot},
-      {"roulette_gain", &BandAudit::roulette_gain},
-      {"roulette_loss", &BandAudit::roulette_loss}};
+      {"roulette_net", &BandAudit::roulette_net}};
   for (const auto& [name, member] : columns) {
     const auto values = group.read<std::int64_t>(name, {bands});
     for (std::size_t b = 0; b < bands; ++b) audit.bands[b].*member = values[b];
@@ -268,6 +291,7 @@ Solution read_all(const Hdf5Group& root) {
   solution.sums = read_sums(root, bands);
   solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / bands);
   solution.audit = read_audit(root, solution);
+  solution.light_warnings = root.open_group("audit").read_texts("warnings");
   return solution;
 }
 

@@ -27,6 +27,11 @@ struct AttributeWriter {
   void attribute(const char* name, const std::optional<double>& value) {
     if (value) group.write_attribute(name, *value);
   }
+  void attribute(const char* name, const std::optional<ZoneBias>& value) {
+    if (!value) return;
+    group.write_attribute(name, value->rms);
+    group.write_attribute((std::string(name) + "_bound").c_str(), value->bound);
+  }
   template <class Enum>
   requires std::is_enum_v<Enum>
   void attribute(const char* name, Enum value) { group.write_attribute(name, to_string(value)); }
@@ -51,8 +56,8 @@ void check_consistent(const Solution& solution) {
   require(solution.mesh_report.surfaces.size() == surfaces,
           "one row of the mesh report per surface expected");
   const ZoneSums& sums = solution.sums;
-  for (const auto* values :
-       {&sums.direct, &sums.direct_squared, &sums.indirect, &sums.indirect_squared, &sums.total_squared})
+  for (const auto* values : {&sums.direct, &sums.direct_cross, &sums.direct_squared, &sums.indirect,
+                             &sums.indirect_cross, &sums.indirect_squared, &sums.total_squared})
     require(values->size() == solution.mesh.zone_count() * bands, "one sum per zone and band expected");
   require(sums.group_total.size() == ZoneSums::kGroups * solution.mesh.zone_count() * bands,
           "one sum per group, zone and band expected");
@@ -254,15 +259,26 @@ void write_sums(const Hdf5Group& root, const Solution& solution) {
   const ZoneSums& sums = solution.sums;
   const std::size_t bands = solution.bands.count();
   group.write_attribute("batches", sums.batches);
-  put_bands(group, "direct", sums.direct, bands, "W/m2", "sum over batches of the direct irradiance");
-  put_bands(group, "direct_squared", sums.direct_squared, bands, "W2/m4", "sum of its squares");
-  put_bands(group, "indirect", sums.indirect, bands, "W/m2", "sum over batches of the indirect irradiance");
-  put_bands(group, "indirect_squared", sums.indirect_squared, bands, "W2/m4", "sum of its squares");
+  group.write_attribute("weight_squared", sums.weight_squared);
+  group.write<std::int64_t>("group_weight", {sums.group_weight.begin(), sums.group_weight.end()},
+                            {ZoneSums::kGroups}, "1",
+                            "sum over the batches of each group of their weights w");
+  put_bands(group, "direct", sums.direct, bands, "W/m2", "sum over batches of w times the direct irradiance");
+  put_bands(group, "direct_cross", sums.direct_cross, bands, "W/m2",
+            "sum of w^2 times the direct irradiance");
+  put_bands(group, "direct_squared", sums.direct_squared, bands, "W2/m4",
+            "sum of the squares of w times the direct irradiance");
+  put_bands(group, "indirect", sums.indirect, bands, "W/m2",
+            "sum over batches of w times the indirect irradiance");
+  put_bands(group, "indirect_cross", sums.indirect_cross, bands, "W/m2",
+            "sum of w^2 times the indirect irradiance");
+  put_bands(group, "indirect_squared", sums.indirect_squared, bands, "W2/m4",
+            "sum of the squares of w times the indirect irradiance");
   put_bands(group, "total_squared", sums.total_squared, bands, "W2/m4",
-            "sum of the squares of direct + indirect");
+            "sum of the squares of w times direct + indirect");
   const std::vector<float> groups(sums.group_total.begin(), sums.group_total.end());
   group.write<float>("group_total", groups, {ZoneSums::kGroups, sums.direct.size() / bands, bands}, "W/m2",
-                     "sum of direct + indirect over batches k, k + 16, k + 32 ... for k = 0 ... 15");
+                     "sum of w times direct + indirect over batches k, k + 16, k + 32 ... for k = 0 ... 15");
 }
 
 void write_audit(const Hdf5Group& root, const Solution& solution) {
@@ -270,16 +286,18 @@ void write_audit(const Hdf5Group& root, const Solution& solution) {
   const auto& bands = solution.audit.bands;
   const std::size_t surfaces = solution.surface_names.size();
   group.write_attribute("batches", solution.audit.batches);
+  group.write_attribute("weight", solution.audit.weight);
   group.write("band", column<std::string>(bands, std::mem_fn(&BandAudit::band)), "name of each band");
   put(group, "watts_per_quantum", column<double>(bands, std::mem_fn(&BandAudit::watts_per_quantum)), 1, "W",
-      "power [W] = quanta * watts_per_quantum / batches");
+      "power [W] = quanta * watts_per_quantum / weight");
   const auto put_column = [&](const char* name, std::int64_t BandAudit::*member, const char* description) {
     put(group, name, column<std::int64_t>(bands, std::mem_fn(member)), 1, "quanta", description);
   };
   put_column("emitted", &BandAudit::emitted, "sent out by luminaires");
-  put_column("unshot", &BandAudit::unshot, "reflected but not sent on when a batch ended");
-  put_column("roulette_gain", &BandAudit::roulette_gain, "created by Russian roulette");
-  put_column("roulette_loss", &BandAudit::roulette_loss, "destroyed by Russian roulette");
+  put_column("unshot", &BandAudit::unshot, "not sent on when a batch ended");
+  put_column("roulette_net", &BandAudit::roulette_net, "created less destroyed by Russian roulette");
+  put(group, "roulette_gain", column<double>(bands, std::mem_fn(&BandAudit::roulette_gain)), 1, "quanta",
+      "created by Russian roulette");
   group.write<std::int64_t>("absorbed", flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::absorbed)),
                             {bands.size(), surfaces}, "quanta", "absorbed by each surface");
   group.write<std::int64_t>("absorbed_on_backs",
@@ -287,6 +305,7 @@ void write_audit(const Hdf5Group& root, const Solution& solution) {
                             {bands.size(), surfaces}, "quanta", "absorbed on the backs of one-sided faces");
   put(group, "escaped", flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::escaped)), 6, "quanta",
       "left the room towards +x -x +y -y +z -z");
+  group.write("warnings", solution.light_warnings, "what was found about light that is lost");
 }
 
 void write_all(const Hdf5Group& root, const Solution& solution) {

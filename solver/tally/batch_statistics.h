@@ -16,23 +16,25 @@ namespace reemit {
 struct ZoneError {
   double rms = 0;  ///< sqrt(sum A s^2 / sum A (rho E)^2), s = standard error of rho E, worst band.
   /// What the true rms error of these very values stays below with odds of 99.9 %. rms is the mean of what it
-  /// can be; how far one run strays from that mean shows in how much the batch groups differ among each
-  /// other.
+  /// can be; how far one run strays from that mean shows in how the deviations of the batch groups are
+  /// correlated (largest_error_quotient).
   double bound = 0;
   double percentile_95 = 0;     ///< 95th percentile of s/(rho E) over the zones with E > 0, worst band.
   std::uint64_t unreached = 0;  ///< Zones that no packet met; they count with s = 0 and cannot block a stop.
 };
 
-/// Adds one batch to the sums. `watts_per_quantum`: per band [W]. Deterministic for any number of threads.
+/// Adds one batch of weight `weight` >= 1 (ZoneSums) to the sums. `watts_per_quantum`: per band [W].
+/// Deterministic for any number of threads.
 void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<double>& watts_per_quantum,
-               ZoneSums& sums);
+               std::int64_t weight, ZoneSums& sums);
 
-/// Adds one batch to the audit. Throws std::logic_error if the books of the batch do not balance.
-void add_batch(const BatchBooks& books, EnergyAudit& audit);
+/// Adds one batch to the audit, with the same weight, so that powers are those of the sums. Throws
+/// std::logic_error if the books of the batch do not balance.
+void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit);
 
 /// Replaces the sums of value i = zone * bands + band by what gives the means, and the standard errors that
 /// follow from the spread, of independent estimates of its irradiance [W/m2]: one per group that has batches,
-/// that is min(kGroups, batches) of them. Pre: batches > 0.
+/// that is min(kGroups, batches) of them, taken as equally good. Pre: batches > 0.
 void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> direct,
                       std::span<const double> indirect);
 

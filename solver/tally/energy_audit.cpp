@@ -14,12 +14,32 @@ std::int64_t BandAudit::total_escaped() const {
   return std::accumulate(escaped.begin(), escaped.end(), std::int64_t{0});
 }
 
+double BandAudit::unshot_share() const {
+  return emitted > 0 ? static_cast<double>(unshot) / static_cast<double>(emitted) : 0.0;
+}
+
 std::int64_t BandAudit::balance() const {
-  return emitted + roulette_gain - roulette_loss - total_absorbed() - total_escaped() - unshot;
+  return emitted + roulette_net - total_absorbed() - total_escaped() - unshot;
 }
 
 bool EnergyAudit::balanced() const {
   return std::all_of(bands.begin(), bands.end(), [](const BandAudit& b) { return b.balance() == 0; });
+}
+
+double EnergyAudit::unshot_share() const {
+  double unshot = 0;
+  double emitted = 0;
+  for (const BandAudit& b : bands) {
+    unshot += static_cast<double>(b.unshot);
+    emitted += static_cast<double>(b.emitted);
+  }
+  return emitted > 0 ? unshot / emitted : 0.0;
+}
+
+double EnergyAudit::worst_unshot_share() const {
+  double worst = 0;
+  for (const BandAudit& b : bands) worst = std::max(worst, b.unshot_share());
+  return worst;
 }
 
 }  // namespace reemit

@@ -6,49 +6,36 @@
 namespace reemit {
 namespace {
 
-/// Smallest batch by default: large enough that starting one costs little beside its rays.
-constexpr std::uint64_t kSmallestBatch = 65536;
-/// Packets per zone in a batch by default. Each sweep looks at all zones with power: fewer packets make that
-/// the larger part of the work. Eight such batches leave a relative error of about 8 %.
-constexpr std::uint64_t kPacketsPerZone = 16;
-/// Batches whose sums still fit into 63 bits of quanta (kBatchQuanta = 2^42).
-constexpr std::int64_t kMostBatches = std::int64_t{1} << 20;
+/// Batches from which on there is an error to state; until then the time limit waits for its deadline.
+constexpr std::int64_t kFewestBatches = 2;
 
 }  // namespace
 
-StopRule::StopRule(const SolverSettings& settings, std::size_t zones) : settings_(settings) {
-  std::uint64_t per_batch = settings.batch_packets > 0
-                                ? settings.batch_packets
-                                : std::max<std::uint64_t>(kSmallestBatch, kPacketsPerZone * zones);
-  const auto least = static_cast<std::uint64_t>(std::max(2, settings.smallest_batch_count));
-  if (settings.packets > 0) {
-    const std::uint64_t batches = std::max(settings.batch_packets > 0 ? std::uint64_t{1} : least,
-                                           (settings.packets + per_batch - 1) / per_batch);
-    if (settings.batch_packets == 0) per_batch = std::max<std::uint64_t>(1, settings.packets / batches);
-    batches_for_packets_ =
-        static_cast<std::int64_t>(std::max<std::uint64_t>(1, settings.packets / per_batch));
-  }
-  batch_packets_ =
-      static_cast<std::uint32_t>(std::clamp<std::uint64_t>(per_batch, 1, std::uint64_t{1} << 31));
-}
+StopRule::StopRule(const SolverSettings& settings, const BatchPlan& plan, double batch_time_s)
+    : settings_(settings), plan_(plan), batch_time_s_(batch_time_s) {}
 
 bool StopRule::may_reach_target(std::int64_t batches, double rms_error) const {
   return settings_.error_target > 0 && batches >= settings_.smallest_batch_count &&
          rms_error <= settings_.error_target;
 }
 
+std::int64_t StopRule::next_weight(const RunState& state) const {
+  const std::int64_t planned = plan_.next_weight(state.batches, state.weight);
+  if (!(settings_.time_limit_s > 0) || state.batches < kFewestBatches || !(state.batch_seconds > 0))
+    return planned;
+  const double fits = std::floor((batch_time_s_ - state.seconds) / state.batch_seconds);
+  return fits < static_cast<double>(planned) ? static_cast<std::int64_t>(std::max(0.0, fits)) : planned;
+}
+
 std::optional<StopReason> StopRule::stop(const RunState& state) const {
-  if (state.interrupted) return StopReason::kInterrupted;
+  // Whatever a shortened batch has brought about, the clock had a hand in it.
+  if (state.shortened) return StopReason::kTimeLimit;
   if (settings_.error_target > 0 && state.batches >= settings_.smallest_batch_count &&
       state.error <= settings_.error_target)
-    return StopReason::kErrorTarget;
-  if (batches_for_packets_ > 0 && state.batches >= batches_for_packets_) return StopReason::kPacketCount;
-  // Another batch would end beyond the limit: stop on this side of it.
-  const double batch_seconds = state.batches > 0 ? state.seconds / static_cast<double>(state.batches) : 0.0;
-  if (settings_.time_limit_s > 0 && state.batches >= 2 &&
-      state.seconds + 0.5 * batch_seconds >= settings_.time_limit_s)
-    return StopReason::kTimeLimit;
-  if (state.batches >= kMostBatches) return StopReason::kBatchLimit;
+    return state.unshot_share <= settings_.error_target ? StopReason::kErrorTarget : StopReason::kBounceLimit;
+  if (plan_.next_weight(state.batches, state.weight) == 0)
+    return plan_.weight_of_packets() > 0 ? StopReason::kPacketCount : StopReason::kBatchLimit;
+  if (next_weight(state) == 0) return StopReason::kTimeLimit;
   return std::nullopt;
 }
 
@@ -60,8 +47,8 @@ double StopRule::fraction_done(const RunState& state) const {
     const double by_batches = static_cast<double>(state.batches) / settings_.smallest_batch_count;
     done = std::max(done, std::min(by_error, by_batches));
   }
-  if (batches_for_packets_ > 0)
-    done = std::max(done, static_cast<double>(state.batches) / static_cast<double>(batches_for_packets_));
+  if (plan_.weight_of_packets() > 0)
+    done = std::max(done, static_cast<double>(state.weight) / static_cast<double>(plan_.weight_of_packets()));
   if (settings_.time_limit_s > 0) done = std::max(done, state.seconds / settings_.time_limit_s);
   return std::min(1.0, done);
 }

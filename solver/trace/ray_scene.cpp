@@ -1,17 +1,10 @@
 #include "solver/trace/ray_scene.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "scenes/model/error.h"
-#include "solver/trace/shape_hit.h"
+#include "solver/trace/embree_scene.h"
 
 namespace reemit {
 namespace {
@@ -62,76 +55,7 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float f
   return ray;
 }
 
-constexpr unsigned kTriangles = 0;  // geometry numbers
-constexpr unsigned kShapes = 1;
-
-void shape_bounds_callback(const RTCBoundsFunctionArguments* args) {
-  const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];
-  const auto below = [](double x) { return std::nextafter(static_cast<float>(x), -kInfinity); };
-  const auto above = [](double x) { return std::nextafter(static_cast<float>(x), kInfinity); };
-  RTCBounds& box = *args->bounds_o;
-  box.lower_x = below(shape.low().x());
-  box.lower_y = below(shape.low().y());
-  box.lower_z = below(shape.low().z());
-  box.upper_x = above(shape.high().x());
-  box.upper_y = above(shape.high().y());
-  box.upper_z = above(shape.high().z());
-}
-
-/// Nearest hit of ray i of a packet of n, as a float inside the ray's range; infinity if there is none.
-float nearest_hit(const ShapeTarget& shape, RTCRayN* rays, unsigned n, unsigned i) {
-  const Vec3 origin(RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i));
-  const Vec3 direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i));
-  const float near = RTCRayN_tnear(rays, n, i);
-  const float far = RTCRayN_tfar(rays, n, i);
-  const auto t = static_cast<float>(shape.nearest(origin, direction, near, far));
-  return t > near && t < far ? t : kInfinity;
-}
-
-void intersect_shape(const RTCIntersectFunctionNArguments* args) {
-  const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];
-  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] == 0) continue;
-    const float t = nearest_hit(shape, rays, args->N, i);
-    if (t == kInfinity) continue;
-    RTCRayN_tfar(rays, args->N, i) = t;
-    RTCHitN_geomID(hits, args->N, i) = args->geomID;
-    RTCHitN_primID(hits, args->N, i) = args->primID;
-    RTCHitN_instID(hits, args->N, i, 0) = RTC_INVALID_GEOMETRY_ID;
-  }
-}
-
-void occlude_shape(const RTCOccludedFunctionNArguments* args) {
-  const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];
-  for (unsigned i = 0; i < args->N; ++i)
-    if (args->valid[i] != 0 && nearest_hit(shape, args->ray, args->N, i) < kInfinity)
-      RTCRayN_tfar(args->ray, args->N, i) = -kInfinity;
-}
-
 }  // namespace
-
-struct RayScene::EmbreeScene {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  std::vector<ShapeTarget> targets;  // Embree keeps a pointer to them
-
-  EmbreeScene() : device(rtcNewDevice(nullptr)) {
-    if (device == nullptr)
-      throw ResourceError("ray tracing",
-                          "Embree could not be started (error " +
-                              std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))) + ")",
-                          "Check that this processor supports SSE2 and that memory is available.");
-    scene = rtcNewScene(device);
-  }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-  ~EmbreeScene() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-};
 
 RayScene::RayScene(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_unique<EmbreeScene>()) {
   const BaseMesh& base = mesh.base();
@@ -153,68 +77,28 @@ RayScene::RayScene(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_uniqu
   }
 
   flat_count_ = mesh.flat_count();
-  add_triangles();
-  if (!base.shapes.empty()) add_shapes();
-  rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(embree_->scene, RTC_BUILD_QUALITY_HIGH);
-  rtcCommitScene(embree_->scene);
-  const RTCError error = rtcGetDeviceError(embree_->device);
-  if (error != RTC_ERROR_NONE)
-    throw ResourceError(
-        "ray tracing",
-        "Embree could not build its tree (error " + std::to_string(static_cast<int>(error)) + ")",
-        "Free memory or use a coarser room.");
-}
-
-void RayScene::add_triangles() {
-  const BaseMesh& base = mesh_->base();
   corners_.reserve(3 * base.triangles.size());
   normals_.reserve(base.triangles.size());
   for (std::size_t t = 0; t < base.triangles.size(); ++t) {
     for (const std::uint32_t v : base.triangles[t].vertex) corners_.push_back(normalised(base.vertices[v]));
-    normals_.push_back(mesh_->triangle_normal(TriangleId(t)).cast<float>());
+    normals_.push_back(mesh.triangle_normal(TriangleId(t)).cast<float>());
   }
-
-  RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), base.vertices.size()));
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), flat_count_));
-  if ((vertices == nullptr && !base.vertices.empty()) || (indices == nullptr && flat_count_ > 0)) {
-    rtcReleaseGeometry(geometry);
-    throw ResourceError("ray tracing", "out of memory for " + std::to_string(flat_count_) + " triangles",
-                        "Free memory or use a coarser room.");
-  }
-  for (std::size_t i = 0; i < base.vertices.size(); ++i) {
-    const Vec3f p = normalised(base.vertices[i]);
-    for (int k = 0; k < 3; ++k) vertices[3 * i + static_cast<std::size_t>(k)] = p[k];
-  }
-  for (std::size_t t = 0; t < flat_count_; ++t)
-    for (std::size_t k = 0; k < 3; ++k) indices[3 * t + k] = base.triangles[t].vertex[k];
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(embree_->scene, geometry, kTriangles);
-  rtcReleaseGeometry(geometry);
-}
-
-void RayScene::add_shapes() {
-  const double scale = 1 / metres_per_unit_;
   Eigen::Affine3d to_normalised = Eigen::Affine3d::Identity();
-  to_normalised.scale(scale).translate(-centre_);
-  for (const CurvedShape& shape : mesh_->base().shapes) {
-    const CurvedShape normalised_shape = transformed(shape, to_normalised);
-    shapes_.emplace_back(normalised_shape);
-    embree_->targets.emplace_back(normalised_shape);
+  to_normalised.scale(1 / metres_per_unit_).translate(-centre_);
+  std::vector<CurvedShape> shapes;
+  for (const CurvedShape& shape : base.shapes) {
+    shapes.push_back(transformed(shape, to_normalised));
+    shapes_.emplace_back(shapes.back());
   }
-  RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(shapes_.size()));
-  rtcSetGeometryUserData(geometry, embree_->targets.data());
-  rtcSetGeometryBoundsFunction(
-      geometry, [](const RTCBoundsFunctionArguments* args) { shape_bounds_callback(args); }, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect_shape);
-  rtcSetGeometryOccludedFunction(geometry, occlude_shape);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(embree_->scene, geometry, kShapes);
-  rtcReleaseGeometry(geometry);
+  if (!shapes.empty()) feet_ = ShapeFeet(mesh, corners_, shapes);
+
+  std::vector<Vec3f> vertices;
+  vertices.reserve(base.vertices.size());
+  for (const Vec3& p : base.vertices) vertices.push_back(normalised(p));
+  const auto flat = std::span(base.triangles).first(flat_count_);
+  embree_->add_triangles(vertices, flat, feet_.triangles());
+  if (!shapes.empty()) embree_->add_shapes(shapes);
+  embree_->commit();
 }
 
 Vec3 RayScene::curved_point(TriangleId t, float u, float v) const {
@@ -230,7 +114,7 @@ Vec3f RayScene::curved_normal(TriangleId t, float u, float v) const {
 void RayScene::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
                         const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
   hit.distance = distance;
-  if (geometry == kTriangles) {
+  if (geometry == EmbreeScene::kTriangles) {
     hit.triangle = TriangleId(primitive);
     hit.u = u;
     hit.v = v;
@@ -238,6 +122,15 @@ void RayScene::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u
     return;
   }
   const Vec3 d = direction.cast<double>();
+  if (geometry == EmbreeScene::kFeet) {
+    const ShapeFeet::Place place = feet_.place_of({feet_.triangles()[primitive], u, v}, origin.cast<double>(),
+                                                  d, static_cast<double>(distance));
+    hit.triangle = TriangleId(place.triangle);
+    hit.u = place.u;
+    hit.v = place.v;
+    hit.front = normals_[place.triangle].dot(direction) < 0;
+    return;
+  }
   const Vec3 point = origin.cast<double>() + static_cast<double>(distance) * d;
   const CurvedPatches& patches = shapes_[primitive];
   const CurvedPatches::Place place = patches.place_of(point);
@@ -263,39 +156,56 @@ Vec3f RayScene::ray_origin(TriangleId t, float u, float v, bool front) const {
     const float inset = inset_share((curved_point(t, kMiddle, kMiddle) - curved_point(t, u, v)).norm());
     const float s = u + inset * (kMiddle - u);
     const float r = v + inset * (kMiddle - v);
-    const Vec3 n = curved_normal(t, s, r).cast<double>();
-    return (curved_point(t, s, r) + (front ? kLift : -kLift) * n).cast<float>();
+    Vec3 n = curved_normal(t, s, r).cast<double>();
+    Vec3 p = curved_point(t, s, r);
+    if (feet_.touches_faces(shape_of(t))) {
+      p = feet_.clear_of_faces(shape_of(t), p);
+      n = shapes_[shape_of(t)].normal_at(p);
+    }
+    return (p + (front ? kLift : -kLift) * n).cast<float>();
   }
   const Vec3f& n = normal(t);
-  return lifted(point(t, u, v), front ? n : Vec3f(-n), (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0F);
+  const Vec3f start =
+      lifted(point(t, u, v), front ? n : Vec3f(-n), (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0F);
+  return is_foot(t) ? clear_of_shapes(t, start) : start;
 }
 
 bool RayScene::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
-  const auto trace = [&](const Vec3f& d) {
+  const auto trace = [&](const Vec3f& d, Hit& found) {
     RTCRayHit query{};
     query.ray = make_ray(origin, d, 0, kInfinity);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    intersect1(embree_->scene, query);
+    intersect1(embree_->scene(), query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, d, hit);
+    read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, d, found);
     return true;
   };
-  return trace(direction) || trace(nudged(direction));
+  const auto is_certain = [&](const Hit& found) {
+    return !is_doubtful(static_cast<std::uint32_t>(found.triangle.index()), found.front);
+  };
+  const bool any = trace(direction, hit);
+  if (any && is_certain(hit)) return true;
+  Hit second;
+  if (!trace(nudged(direction), second)) return any;
+  if (!any || is_certain(second)) hit = second;
+  return true;
 }
 
 bool RayScene::closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
-  float near = 0;
-  for (;;) {
-    RTCRayHit query{};
-    query.ray = make_ray(origin, direction, near, kInfinity);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    intersect1(embree_->scene, query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, direction,
-             hit);
-    if (hit.front || mesh_->triangle(hit.triangle).two_sided) return true;
-    near = std::max(query.ray.tfar * (1 + 1e-6F), std::nextafter(query.ray.tfar, kInfinity));
-  }
+  const auto look = [&](const Vec3f& d) {
+    float near = 0;
+    for (;;) {
+      RTCRayHit query{};
+      query.ray = make_ray(origin, d, near, kInfinity);
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      intersect1(embree_->scene(), query);
+      if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+      read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, d, hit);
+      if (!is_doubtful(static_cast<std::uint32_t>(hit.triangle.index()), hit.front)) return true;
+      near = std::max(query.ray.tfar * (1 + 1e-6F), std::nextafter(query.ray.tfar, kInfinity));
+    }
+  };
+  return look(direction) || look(nudged(direction));
 }
 
 void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
@@ -319,15 +229,15 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.hit.primID[i] = kMiss;
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  intersect16(valid, embree_->scene, query);
+  intersect16(valid, embree_->scene(), query);
   for (int i = 0; i < count; ++i) {
     const std::uint32_t t = query.hit.primID[i];
     hits.triangle[i] = t;
     if (t == kMiss) continue;
-    if (query.hit.geomID[i] != kTriangles) {
+    if (query.hit.geomID[i] != EmbreeScene::kTriangles) {
       Hit hit;
-      read_hit(query.hit.geomID[i], t, 0, 0, query.ray.tfar[i], {rays.ox[i], rays.oy[i], rays.oz[i]},
-               {rays.dx[i], rays.dy[i], rays.dz[i]}, hit);
+      read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i],
+               {rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, hit);
       hits.triangle[i] = static_cast<std::uint32_t>(hit.triangle.index());
       hits.u[i] = hit.u;
       hits.v[i] = hit.v;
@@ -350,25 +260,27 @@ Vec3f RayScene::nudged(const Vec3f& direction) {
 }
 
 void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
-  Ray16 missed;
+  Ray16 doubtful;
   int lanes[16];
-  int missed_count = 0;
+  int doubtful_count = 0;
   for (int i = 0; i < count; ++i) {
-    if (hits.triangle[i] != kMiss) continue;
-    missed.ox[missed_count] = rays.ox[i];
-    missed.oy[missed_count] = rays.oy[i];
-    missed.oz[missed_count] = rays.oz[i];
+    if (!is_doubtful(hits.triangle[i], hits.front[i])) continue;
+    doubtful.ox[doubtful_count] = rays.ox[i];
+    doubtful.oy[doubtful_count] = rays.oy[i];
+    doubtful.oz[doubtful_count] = rays.oz[i];
     const Vec3f d = nudged({rays.dx[i], rays.dy[i], rays.dz[i]});
-    missed.dx[missed_count] = d.x();
-    missed.dy[missed_count] = d.y();
-    missed.dz[missed_count] = d.z();
-    lanes[missed_count++] = i;
+    doubtful.dx[doubtful_count] = d.x();
+    doubtful.dy[doubtful_count] = d.y();
+    doubtful.dz[doubtful_count] = d.z();
+    lanes[doubtful_count++] = i;
   }
-  if (missed_count == 0) return;
+  if (doubtful_count == 0) return;
   Hit16 again;
-  closest16(missed, missed_count, again);
-  for (int k = 0; k < missed_count; ++k) {
+  closest16(doubtful, doubtful_count, again);
+  for (int k = 0; k < doubtful_count; ++k) {
     const int i = lanes[k];
+    // A back is believed when it is met again.
+    if (hits.triangle[i] != kMiss && is_doubtful(again.triangle[k], again.front[k])) continue;
     hits.triangle[i] = again.triangle[k];
     hits.u[i] = again.u[k];
     hits.v[i] = again.v[k];
@@ -382,16 +294,16 @@ bool RayScene::visible(const Vec3f& from, const Vec3f& to) const {
   const float distance = d.norm();
   if (!(distance > 0)) return true;
   RTCRay ray = make_ray(from, d / distance, 0, distance * (1 - 1e-6F));
-  occluded1(embree_->scene, ray);
+  occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;
 }
 
 bool RayScene::escapes(const Vec3f& origin, const Vec3f& direction) const {
   RTCRay ray = make_ray(origin, direction, 0, kInfinity);
-  occluded1(embree_->scene, ray);
+  occluded1(embree_->scene(), ray);
   if (ray.tfar < 0) return false;
   ray = make_ray(origin, nudged(direction), 0, kInfinity);
-  occluded1(embree_->scene, ray);
+  occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;
 }
 

@@ -4,8 +4,11 @@
 #include <vector>
 
 #include "mesh/zone_mesh.h"
+#include "solver/trace/shape_feet.h"
 
 namespace reemit {
+
+class EmbreeScene;
 
 /// Where a ray met the room.
 struct Hit {
@@ -72,21 +75,32 @@ class RayScene {
   /// The one self-intersection rule of the program: start of a ray that leaves a triangle with centroid
   /// `middle` at `point` on the side that `side_normal` (unit) points to.
   static Vec3f lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle);
+  /// Whether a curved shape stands on a flat triangle, so that rays start clear_of_shapes (ShapeFeet).
+  bool is_foot(TriangleId t) const { return feet_.is_foot_at(t.index()); }
+  Vec3f clear_of_shapes(TriangleId t, const Vec3f& start) const {
+    return feet_.clear_of_shapes(t.index(), start);
+  }
   /// Start of a ray that leaves the given side at (u,v).
   Vec3f ray_origin(TriangleId t, float u, float v, bool front) const;
 
-  /// Nearest hit along a ray of unit direction. False if there is none.
+  /// Nearest hit along a ray of unit direction, after a second look if needed. False if there is none.
   bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hit that is not the back of a one-sided triangle: what a camera sees.
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
-  /// Nearest hits of the first `count` rays, count <= 16. Unlike closest() it does not look twice where a ray
-  /// meets nothing: the caller does, with look_again16 or, cheaper, with full blocks of nudged() rays.
+  /// Nearest hits of the first `count` rays, count <= 16. Unlike closest() it does not look twice: the caller
+  /// does, with look_again16 or, cheaper, with full blocks of nudged() rays.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
-  /// Second look at the rays that `hits` says met nothing.
+  /// True if a ray that ended so deserves a second look: it met nothing, or the back of a one-sided triangle.
+  bool is_doubtful(std::uint32_t triangle, bool front) const {
+    return triangle == kMiss || (!front && !mesh_->triangle(TriangleId(triangle)).two_sided);
+  }
+  /// Second look at the doubtful ones of `hits`.
   void look_again16(const Ray16& rays, int count, Hit16& hits) const;
   /// Direction of the second look. A ray that meets nothing may have slipped through the hairline where
-  /// triangles with different vertices meet. It is traced once more, turned by a few millionths: a second
-  /// miss is a true one. Closed rooms so lose no light, and open ones are not changed measurably.
+  /// triangles with different vertices meet; one that meets a back may have passed by an edge within
+  /// rounding, where the front that hides the back is equally far. Either is traced once more, turned by a
+  /// few millionths, and what it meets then is true. Closed rooms so lose no light; where rays do leave, or
+  /// do come to backs, they do so again, at the cost of one more ray each.
   static Vec3f nudged(const Vec3f& direction);
   /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
   /// eye).
@@ -97,9 +111,6 @@ class RayScene {
   const ZoneMesh& mesh() const { return *mesh_; }
 
  private:
-  struct EmbreeScene;
-  void add_triangles();
-  void add_shapes();
   std::uint32_t shape_of(TriangleId t) const { return mesh_->triangle(t).shape; }
   Vec3 curved_point(TriangleId t, float u, float v) const;
   Vec3f curved_normal(TriangleId t, float u, float v) const;
@@ -113,6 +124,7 @@ class RayScene {
   std::vector<Vec3f> normals_;
   std::size_t flat_count_ = 0;
   std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
+  ShapeFeet feet_;
   std::unique_ptr<EmbreeScene> embree_;
 };
 

@@ -265,6 +265,17 @@ TEST(BadRooms, BrokenPhotometricFiles) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
+TEST(BadRooms, ALampTooSmallOrThinToMeshIsRefused) {
+  const std::string lamp = R"("quad": {"corner": [0.4, 0.98, 0.4], "u": [0.2, 0, 0], "v": [0, 0, 0.2]})";
+  for (const char* outline :
+       {R"("quad": {"corner": [0.4, 0.9, 0.4], "u": [1e-10, 0, 0], "v": [0, 0, 1e-10]})",
+        R"("polygon": {"vertices": [[0.2, 0.9, 0.2], [0.8, 0.9, 0.2], [0.5, 0.9, 0.20000001]]})"}) {
+    const TempFolder folder;
+    folder.write("room.json", replaced(small_json_room(), lamp, outline));
+    expect_refused(folder, "room.json", {"luminaire 'lamp'", "room.json, face 0", "smaller or thinner"});
+  }
+}
+
 TEST(BadRooms, NoLuminaireIsBlackAndWarned) {
   const TempFolder folder;
   folder.write("room.json", replaced(small_json_room(), R"(, "exitance": [30, 25, 20])", ""));

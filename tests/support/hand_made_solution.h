@@ -16,10 +16,12 @@ inline Solution uniform_solution(const RoomBuilder& room, double direct, double 
   const std::size_t values = solution.mesh.zone_count() * solution.bands.count();
   ZoneSums& sums = solution.sums;
   sums.clear(values);
-  sums.batches = 1;
+  sums.count_batch(1);
   sums.direct.assign(values, direct);
+  sums.direct_cross = sums.direct;
   sums.direct_squared.assign(values, direct * direct);
   sums.indirect.assign(values, indirect);
+  sums.indirect_cross = sums.indirect;
   sums.indirect_squared.assign(values, indirect * indirect);
   const double total = direct + indirect;
   sums.total_squared.assign(values, total * total);

@@ -43,7 +43,7 @@ inline std::vector<double> surface_deviations(const Solution& a, const Solution&
       sum[ZoneSums::kGroups] += area;
       for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
         sum[g] += area * s.sums.group_total[(g * s.mesh.zone_count() + z) * bands] /
-                  static_cast<double>(s.sums.group_batches(g));
+                  static_cast<double>(s.sums.group_weight[g]);
     }
     std::vector<ReplicateMean> result;
     for (const auto& sum : sums)

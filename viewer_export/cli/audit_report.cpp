@@ -47,7 +47,7 @@ class AuditTable {
   }
 
   /// One line: `quanta_of` picks the power from each band's books.
-  void line(const std::string& label, const std::function<std::int64_t(const BandAudit&)>& quanta_of) {
+  void line(const std::string& label, const std::function<double(const BandAudit&)>& quanta_of) {
     std::vector<std::string> cells{label};
     double sum = 0;
     for (const BandAudit& band : audit_.bands) {
@@ -85,8 +85,12 @@ std::int64_t sum(const std::vector<std::int64_t>& quanta) {
   return std::accumulate(quanta.begin(), quanta.end(), std::int64_t{0});
 }
 
+double roulette_loss(const BandAudit& band) {
+  return band.roulette_gain - static_cast<double>(band.roulette_net);
+}
+
 Json band_json(const EnergyAudit& audit, const BandAudit& band) {
-  const auto watts = [&](std::int64_t quanta) { return audit.watts(band, quanta); };
+  const auto watts = [&](auto quanta) { return audit.watts(band, quanta); };
   Json escaped_by_direction;
   for (std::size_t d = 0; d < kDirections.size(); ++d)
     escaped_by_direction[kDirections[d]] = watts(band.escaped[d]);
@@ -97,9 +101,10 @@ Json band_json(const EnergyAudit& audit, const BandAudit& band) {
           {"escaped_W", watts(band.total_escaped())},
           {"escaped_by_direction_W", escaped_by_direction},
           {"unshot_W", watts(band.unshot)},
-          {"roulette_W", watts(band.roulette_loss - band.roulette_gain)},
+          {"unshot_share", band.unshot_share()},
+          {"roulette_W", watts(-band.roulette_net)},
           {"roulette_gain_W", watts(band.roulette_gain)},
-          {"roulette_loss_W", watts(band.roulette_loss)},
+          {"roulette_loss_W", watts(roulette_loss(band))},
           {"balance_quanta", band.balance()},
           {"watts_per_quantum", band.watts_per_quantum}};
 }
@@ -130,7 +135,7 @@ std::string audit_text(const EnergyAudit& audit, const std::vector<std::string>&
     if (any) table.line(fmt::format("  towards {}", kDirections[d]), escaped);
   }
   table.line("unshot", [](const BandAudit& band) { return band.unshot; });
-  table.line("roulette loss", [](const BandAudit& band) { return band.roulette_loss; });
+  table.line("roulette loss", roulette_loss);
   table.line("roulette gain", [](const BandAudit& band) { return band.roulette_gain; });
   table.balance();
   return table.text() +

@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "scenes/io/scene_reader.h"
 #include "viewer_export/cli/option_values.h"
 
 namespace reemit::cli {
@@ -81,6 +82,19 @@ inline void add_seed_and_threads(CLI::App& command, std::uint64_t& seed, int& th
   add_integer_option(command, "--seed", seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max(),
                      "Seed; the same seed gives the same bits on any number of threads");
   add_integer_option(command, "--threads", threads, 0, 1024, "Threads; 0 = all cores");
+}
+
+/// How the numbers of glTF files are meant.
+inline void add_gltf_unit_options(CLI::App& command, ReadOptions& options) {
+  add_choice_option<EmissiveUnits>(
+      command, "--emissive-units", options.gltf_emissive_units,
+      {{"auto", EmissiveUnits::kByGenerator},
+       {"cd/m2", EmissiveUnits::kCandela},
+       {"W/sr/m2", EmissiveUnits::kWatt}},
+      "Unit of emissive factors in glTF; auto: W/sr/m2 if Blender wrote the file, else cd/m2");
+  add_parsed_option(command, "--gltf-light-efficacy", options.gltf_light_efficacy, parse_positive, "LM/W",
+                    "Luminous efficacy that turns cd and lx of glTF lamps into watts [lm/W] (default: 683\n"
+                    "if Blender wrote the file, none if it was one before 3.4, else 179)");
 }
 
 inline void add_room_option(CLI::App& command, std::optional<std::filesystem::path>& room) {

@@ -11,6 +11,7 @@
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/form_factor_export.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
@@ -36,15 +37,17 @@ struct ExportOptions {
 
 void report(const ExportOptions& options, const VertexData& data, double seconds) {
   if (options.style.json) {
-    const nlohmann::ordered_json json{
+    nlohmann::ordered_json json{
         {"file", options.output.string()}, {"values", options.vertex.average_zones ? "zones" : "gather"},
         {"vertices", data.vertex_count()}, {"triangles", data.triangles.size()},
         {"error", known_error(data.info)}, {"seconds", seconds}};
+    add_zones(json, data.info.zones);
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}: {} vertices, {} triangles, error {}, {:.2f} s\n", options.output.string(),
-             data.vertex_count(), data.triangles.size(), percent_text(known_error(data.info)), seconds);
+  fmt::print("{}: {} vertices, {} triangles, noise {}, zones {}, {:.2f} s\n", options.output.string(),
+             data.vertex_count(), data.triangles.size(), percent_text(known_error(data.info)),
+             zones_text(data.info.zones), seconds);
 }
 
 ExitCode run_export(const ExportOptions& options) {
@@ -70,6 +73,8 @@ ExitCode run_export(const ExportOptions& options) {
   if (data.limited_by_zones && !options.style.quiet) {
     print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
   }
+  const std::string missed = missed_by_zones("the vertices", options.vertex.error_target, data.info.zones);
+  if (!missed.empty() && !options.style.quiet) print_note(missed);
   if (interrupt.requested() && !options.style.quiet) {
     print_note("interrupted; vertices not yet reached hold the mean of their zones");
   }

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/error.h"
+#include "solver/losses/luminaire_warnings.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
@@ -22,6 +24,7 @@ namespace {
 
 struct InfoOptions {
   std::filesystem::path file;
+  ReadOptions read;
   OutputStyle style;
 };
 
@@ -49,20 +52,23 @@ ExitCode show_solution(const InfoOptions& options) {
   } else {
     fmt::print("{}", solution_text(solution, options.file, status));
     print_warnings(solution.mesh_report.warnings);
+    print_warnings(solution.light_warnings);
   }
   return ExitCode::kDone;
 }
 
 ExitCode show_room(const InfoOptions& options) {
-  const Scene scene = read_scene(options.file);
+  const Scene scene = read_scene(options.file, options.read);
   const MeshResult meshed = build_mesh(scene);
+  const std::vector<std::string> light_warnings = luminaire_warnings(scene, meshed.mesh);
   if (options.style.json) {
-    fmt::print("{}\n", room_json(scene, meshed).dump(2));
+    fmt::print("{}\n", room_json(scene, meshed, light_warnings).dump(2));
   } else {
     fmt::print("{}", room_text(scene, meshed));
     std::fflush(stdout);
     print_warnings(scene.warnings);
     print_warnings(meshed.report.warnings);
+    print_warnings(light_warnings);
   }
   return ExitCode::kDone;
 }
@@ -79,6 +85,7 @@ void add_info_command(CLI::App& program, Action& action) {
   info.add_option("file", options->file, "Room (.json .obj .gltf .glb .mgf) or solution file")
       ->required()
       ->type_name("ROOM|SOLUTION");
+  add_gltf_unit_options(info, options->read);
   add_json_option(info, options->style);
   info.callback([options, &action] {
     action = [options] { return is_solution(options->file) ? show_solution(*options) : show_room(*options); };

@@ -18,6 +18,7 @@
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/option_values.h"
@@ -124,6 +125,8 @@ class Renderer {
       print_note(fmt::format("{}: the error is above the target after the most samples a pixel can get ({})",
                              job.camera.name, options_.still.most_spp));
     }
+    const std::string missed = missed_by_zones("the picture", options_.still.error_target, image.info.zones);
+    if (!missed.empty()) print_note(fmt::format("{}: {}", job.camera.name, missed));
   }
 
   void report(const Job& job, const StillImage& image, const WrittenImage& written, double seconds) {
@@ -134,14 +137,15 @@ class Renderer {
           {"width_px", image.width},          {"height_px", image.height},
           {"integrator", integrator},         {"samples_per_pixel", mean_samples(image)},
           {"error", known_error(image.info)}, {"seconds", seconds}};
+      add_zones(picture, image.info.zones);
       if (written.tone_mapped) picture["exposure_ev"] = written.tone_map.exposure_ev();
       pictures_.push_back(std::move(picture));
       return;
     }
     fmt::print(
-        "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel, error {}, {}{:.2f} s\n", job.file.string(),
-        job.camera.name, image.width, image.height, integrator, mean_samples(image),
-        percent_text(known_error(image.info)),
+        "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel, noise {}, zones {}, {}{:.2f} s\n",
+        job.file.string(), job.camera.name, image.width, image.height, integrator, mean_samples(image),
+        percent_text(known_error(image.info)), zones_text(image.info.zones),
         written.tone_mapped ? fmt::format("exposure {:+.2f} EV, ", written.tone_map.exposure_ev()) : "",
         seconds);
   }

@@ -199,7 +199,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
   return text;
 }
 
-Json room_json(const Scene& scene, const MeshResult& meshed) {
+Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<std::string>& light_warnings) {
   const Box box = bounds(scene);
   Json json{{"kind", "room"},
             {"file", scene.source},
@@ -252,6 +252,7 @@ Json room_json(const Scene& scene, const MeshResult& meshed) {
   }
   json["warnings"] = scene.warnings;
   for (const std::string& warning : meshed.report.warnings) json["warnings"].push_back(warning);
+  for (const std::string& warning : light_warnings) json["warnings"].push_back(warning);
   json["notes"] = scene.notes;
   return json;
 }

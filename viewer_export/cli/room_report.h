@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -10,6 +11,8 @@ namespace reemit::cli {
 
 /// What `info` says about a room: units, size, materials, surfaces, luminaires with their power, cameras.
 std::string room_text(const Scene& scene, const MeshResult& meshed);
-nlohmann::ordered_json room_json(const Scene& scene, const MeshResult& meshed);
+/// The same; `light_warnings` are added to those of the room and of the mesh.
+nlohmann::ordered_json room_json(const Scene& scene, const MeshResult& meshed,
+                                 const std::vector<std::string>& light_warnings);
 
 }  // namespace reemit::cli

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/text_table.h"
 
 namespace reemit::cli {
@@ -10,27 +11,43 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// By band, in the order of "bands".
+Json unshot_shares(const EnergyAudit& audit) {
+  Json shares = Json::array();
+  for (const BandAudit& band : audit.bands) shares.push_back(band.unshot_share());
+  return shares;
+}
+
 Json record_json(const Solution& solution) {
   const SolveRecord& record = solution.record;
-  return {{"stopped", to_string(record.stopped)},
-          {"packets", record.packets},
-          {"rays", record.rays},
-          {"seconds", record.seconds},
-          {"error", record.error},
-          {"error_bound", record.error_bound},
-          {"error_95th_percentile", record.error_95th_percentile},
-          {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
-          {"zones", solution.mesh.zone_count()},
-          {"unreached_zones", record.unreached_zones},
-          {"gathered_zones", record.gathered_zones},
-          {"batches", solution.sums.batches},
-          {"seed", solution.settings.seed},
-          {"method", to_string(solution.settings.method)},
-          {"sampling", to_string(solution.settings.sampling)},
-          {"balanced", solution.audit.balanced()},
-          {"bands", solution.bands.names()},
-          {"room", solution.room_path},
-          {"room_hash", solution.room_hash}};
+  Json json{{"stopped", to_string(record.stopped)},
+            {"packets", record.packets},
+            {"rays", record.rays},
+            {"seconds", record.seconds},
+            {"error", record.error},
+            {"error_bound", record.error_bound},
+            {"error_95th_percentile", record.error_95th_percentile},
+            {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
+            {"zones", solution.mesh.zone_count()},
+            {"unreached_zones", record.unreached_zones},
+            {"gathered_zones", record.gathered_zones},
+            {"batches", solution.sums.batches},
+            {"seed", solution.settings.seed},
+            {"method", to_string(solution.settings.method)},
+            {"sampling", to_string(solution.settings.sampling)},
+            {"unshot_share", unshot_shares(solution.audit)},
+            {"balanced", solution.audit.balanced()},
+            {"bands", solution.bands.names()},
+            {"room", solution.room_path},
+            {"room_hash", solution.room_hash}};
+  add_zones(json, record.gather_bias);
+  return json;
+}
+
+/// More is unshot than whole batches leave; by the matrix method it is what rounding leaves.
+bool lacks_unshot_power(const Solution& solution) {
+  return solution.settings.method != SolveMethod::kMatrix &&
+         solution.audit.unshot_share() > solution.settings.stop_share;
 }
 
 std::string deviation_text(const RowSums& sums) {
@@ -67,20 +84,40 @@ Json form_factor_json(const FormFactorReport& report) {
           {"row_sums", row_sums_json(report.after)}};
 }
 
+std::vector<std::string> solve_warnings(const Solution& solution) {
+  std::vector<std::string> warnings;
+  if (lacks_unshot_power(solution))
+    warnings.push_back(fmt::format(
+        "{} of the emitted power was still on its way when the run stopped ({}): radiosities are too low by "
+        "about that. "
+        "Give it more time; light in sealed parts of high reflectance needs 1/(1 - reflectance) bounces.",
+        percent_text(solution.audit.worst_unshot_share()), to_string(solution.record.stopped)));
+  if (solution.sums.batches == 1)
+    warnings.push_back(
+        "the run stopped after one batch: how large its error is, is not known. Give it more time, or more "
+        "packets.");
+  return warnings;
+}
+
 std::string solve_line(const Solution& solution) {
   const SolveRecord& record = solution.record;
   const std::string effort = solution.form_factors ? fmt::format("{} zones", solution.mesh.zone_count())
                                                    : fmt::format("{} packets", record.packets);
-  std::string line = fmt::format("stopped: {}; {}, {} rays, {:.2f} s, error {}", to_string(record.stopped),
-                                 effort, record.rays, record.seconds, percent_text(record.error));
+  std::string line = fmt::format("stopped: {}; {}, {} rays, {:.2f} s, noise {}, zones {} in gathered light",
+                                 to_string(record.stopped), effort, record.rays, record.seconds,
+                                 percent_text(record.error), zones_text(record.gather_bias));
   if (record.discretisation)
     line += fmt::format("; points differ from their zones by {}", percent_text(*record.discretisation));
   if (solution.form_factors) line += "\n" + form_factor_text(*solution.form_factors);
   return line;
 }
 
-Json solve_json(const Solution& solution, const std::filesystem::path& file) {
+Json solve_json(const Scene& scene, const Solution& solution, const std::filesystem::path& file) {
   Json json = record_json(solution);
+  json["warnings"] = scene.warnings;
+  for (const auto* more : {&solution.mesh_report.warnings, &solution.light_warnings})
+    for (const std::string& warning : *more) json["warnings"].push_back(warning);
+  json["notes"] = scene.notes;
   json["solution"] = file.string();
   if (solution.form_factors) json["form_factors"] = form_factor_json(*solution.form_factors);
   return json;
@@ -100,18 +137,22 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
   text += fmt::format("stopped   {}\n", to_string(record.stopped));
   text += fmt::format("effort    {} packets, {} rays, {} batches, {:.2f} s\n", record.packets, record.rays,
                       solution.sums.batches, record.seconds);
-  text += fmt::format("error     {} (95 % of the lit zones within {})\n", percent_text(record.error),
+  text += fmt::format("noise     {} (95 % of the lit zones within {})\n", percent_text(record.error),
                       percent_text(record.error_95th_percentile));
   text += fmt::format("bound     {} (99.9 % odds that the true rms noise of the zone values is below)\n",
                       percent_text(record.error_bound));
+  text += fmt::format("zones     {} error in light gathered at points; only finer zones lessen it\n",
+                      zones_text(record.gather_bias));
   if (record.discretisation)
-    text += fmt::format(
-        "zones     points differ from the zones they are in by {} rms; only finer zones lessen it\n",
-        percent_text(*record.discretisation));
+    text += fmt::format("          points differ from the zones they are in by {} rms\n",
+                        percent_text(*record.discretisation));
   if (record.gathered_zones > 0)
     text += fmt::format("gathered  {} zones too small for packets\n", record.gathered_zones);
   text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",
                       solution.mesh.triangle_count(), solution.mesh.zone_count(), record.unreached_zones);
+  if (lacks_unshot_power(solution))
+    text += fmt::format("unshot    {} of the emitted power; radiosities are too low by about that\n",
+                        percent_text(solution.audit.worst_unshot_share()));
   text += fmt::format("books     {}\n", solution.audit.balanced() ? "balance exactly" : "DO NOT BALANCE");
   return text;
 }
@@ -126,6 +167,7 @@ Json solution_json(const Solution& solution, const std::filesystem::path& file,
   json["base_triangles"] = solution.mesh.triangle_count();
   json["surfaces"] = solution.surface_names;
   json["warnings"] = solution.mesh_report.warnings;
+  for (const std::string& warning : solution.light_warnings) json["warnings"].push_back(warning);
   return json;
 }
 

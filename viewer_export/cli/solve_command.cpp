@@ -14,6 +14,7 @@
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/option_values.h"
@@ -70,7 +71,10 @@ ExitCode run_solve(const SolveOptions& options) {
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
   check_output_file(options.output, options.room);
   const Scene scene = read_scene(options.room, options.read);
-  if (!options.style.quiet) print_warnings(scene.warnings);
+  if (!options.style.quiet) {
+    print_warnings(scene.warnings);
+    for (const std::string& note : scene.notes) print_note(note);
+  }
   MeshSettings mesh_settings = options.mesh;
   if (matrix) {
     mesh_settings.default_zone_count = kMatrixZoneCount;
@@ -96,11 +100,16 @@ ExitCode run_solve(const SolveOptions& options) {
   solution.mesh_settings = mesh_settings;
   write_output([&] { save_solution(solution, options.output); });
 
+  if (!options.style.quiet) print_warnings(solution.light_warnings);
   if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {
     print_note(fmt::format("interrupted; the solution so far is in {}", options.output.string()));
   }
+  if (!options.style.quiet) print_warnings(solve_warnings(solution));
+  const std::string missed =
+      missed_by_zones("gathered light", settings.error_target, solution.record.gather_bias);
+  if (!missed.empty() && !options.style.quiet) print_note(missed);
   if (options.style.json) {
-    fmt::print("{}\n", solve_json(solution, options.output).dump(2));
+    fmt::print("{}\n", solve_json(scene, solution, options.output).dump(2));
   } else {
     fmt::print("{}\n", solve_line(solution));
   }
@@ -155,10 +164,7 @@ void add_solve_command(CLI::App& program, Action& action) {
                     "--method matrix)");
   solve.add_flag("--two-sided", options->read.force_two_sided,
                  "Let every face reflect on both sides (rooms with mixed winding)");
-  add_choice_option<EmissiveUnits>(
-      solve, "--emissive-units", options->read.gltf_emissive_units,
-      {{"cd/m2", EmissiveUnits::kCandela}, {"W/sr/m2", EmissiveUnits::kWatt}},
-      "Unit of emissive factors in glTF; the specification says cd/m2, exporters disagree");
+  add_gltf_unit_options(solve, options->read);
 
   solve.option_defaults()->group("Output");
   add_json_option(solve, options->style);

@@ -5,6 +5,15 @@
 #include <fmt/format.h>
 
 namespace reemit {
+namespace {
+
+std::string zones_text(const std::optional<ZoneBias>& zones) {
+  if (!zones) return "not known";
+  if (zones->bound == 0) return "0";
+  return zones->certain() ? fmt::format("{:.2g}", zones->rms) : fmt::format("below {:.2g}", zones->bound);
+}
+
+}  // namespace
 
 std::string one_line(std::string text) {
   std::replace_if(
@@ -22,7 +31,8 @@ std::vector<std::pair<std::string, std::string>> describe(const ExportInfo& info
       {"bands", fmt::format("{}", fmt::join(bands.names(), " "))},
       {"luminance", bands.efficacy_statement()},
       {"seed", std::to_string(info.seed)},
-      {"relative error", info.error > 0 ? fmt::format("{:.4g}", info.error) : "not known"}};
+      {"relative error by noise", info.error > 0 ? fmt::format("{:.4g}", info.error) : "not known"},
+      {"relative error by zones", zones_text(info.zones)}};
   lines.insert(lines.end(), info.settings.begin(), info.settings.end());
   for (auto& [name, value] : lines) {
     name = one_line(std::move(name));

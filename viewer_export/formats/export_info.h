@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scenes/model/bands.h"
+#include "solver/tally/zone_bias.h"
 
 namespace reemit {
 
@@ -14,7 +16,9 @@ struct ExportInfo {
   std::string room;        ///< Name or path of the room file.
   std::string room_hash;   ///< content_hash of the room.
   std::uint64_t seed = 0;  ///< Of the zone solution.
-  double error = 0;        ///< Achieved relative error of the exported values, as a fraction; 0 = not known.
+  double error = 0;        ///< Relative standard error of the exported values, as a fraction; 0 = not known.
+  /// What the zones add to that; nothing if it is not known.
+  std::optional<ZoneBias> zones = std::nullopt;
   /// Further settings worth keeping, in the order they are written: {"gather rays", "256"}.
   std::vector<std::pair<std::string, std::string>> settings;
 };

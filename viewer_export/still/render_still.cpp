@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -235,15 +236,20 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
   const PinholeCamera pinhole(camera, width, height, rays);
   const int most = settings.error_target > 0 ? settings.most_spp : settings.spp;
   const std::size_t replicates = std::min(Film::kReplicates, std::bit_floor(static_cast<std::size_t>(most)));
-  const TileRenderer renderer(scene, solution, rays, pinhole, settings, replicates);
-  Film film(scene.bands, width, height, replicates, renderer.parts());
-  Rendering rendering(renderer, settings, film, progress, interrupt);
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
-  arena.execute([&] { rendering.run(); });
-  StillImage image = film.finish();
-  image.info = describe_still(scene, solution, settings, rendering.error());
-  image.limited_by_zones = rendering.limited_by_zones();
+  StillImage image;
+  arena.execute([&] {
+    const TileRenderer renderer(scene, solution, rays, pinhole, settings, replicates);
+    Film film(scene.bands, width, height, replicates, renderer.parts());
+    Rendering rendering(renderer, settings, film, progress, interrupt);
+    rendering.run();
+    ExportInfo info = describe_still(scene, solution, settings, rendering.error());
+    if (!interrupt) info.zones = renderer.zone_bias(solution, film);
+    image = film.finish();
+    image.info = std::move(info);
+    image.limited_by_zones = rendering.limited_by_zones();
+  });
   return image;
 }
 

@@ -1,10 +1,12 @@
 #include "viewer_export/still/tile_renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <numbers>
 #include <vector>
 
 #include "solver/gather/point_sampler.h"
+#include "solver/gather/zone_bias_estimate.h"
 #include "solver/reflect/lambert.h"
 
 namespace reemit {
@@ -30,7 +32,10 @@ TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const R
       settings_(&settings),
       field_(scene, solution, rays, settings.integrator == Integrator::kPath ? 1 : replicates),
       direct_(scene, rays, {settings.light_selection}),
-      gather_(rays, field_, direct_, GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
+      gather_(rays, field_, direct_,
+              // The other integrators gather nothing; without close hits there is nothing to prepare.
+              GatherSettings{.close_hit = settings.integrator == Integrator::kGather ? settings.close_hit : 0,
+                             .seed = settings.seed}),
       path_(rays, field_, direct_, settings.seed) {}
 
 void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
@@ -135,6 +140,47 @@ void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums,
     else
       batch.add(x, u[0], u[1], key, weight.data(), sums.indirect);
   }
+}
+
+std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const Film& film) const {
+  if (settings_->integrator == Integrator::kPath) return ZoneBias{};
+  if (settings_->integrator == Integrator::kZones) {
+    if (!solution.record.discretisation) return std::nullopt;
+    return ZoneBias{*solution.record.discretisation, *solution.record.discretisation};
+  }
+  const StillImage& image = film.image();
+  const std::size_t bands = field_.band_count();
+  const auto pixels = static_cast<double>(image.pixel_count());
+  std::vector<double> floor(bands, 0.0);
+  double camera_rays = 0;
+  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+    camera_rays += static_cast<double>(image.samples[p]);
+    for (std::size_t b = 0; b < bands; ++b) floor[b] += settings_->error_floor * film.radiance(p, b) / pixels;
+  }
+  std::vector<SurfacePoint> points;
+  std::vector<double> scale;
+  // The groups are the quarters of the picture.
+  const PointSampler sampler(settings_->seed, RngPurpose::kZoneBias, 0, ZoneSums::kGroups,
+                             std::countr_zero(ZoneBiasEffort::kPointsPerGroup));
+  for (std::size_t i = 0; i < ZoneBiasEffort::kPoints; ++i) {
+    const std::size_t quarter = i / ZoneBiasEffort::kPointsPerGroup;
+    const std::array<float, 2> u = sampler.place(static_cast<int>(i % ZoneBiasEffort::kPointsPerGroup));
+    const double x = 0.5 * (static_cast<double>(quarter % 2) + static_cast<double>(u[0])) * image.width;
+    const double y = 0.5 * (static_cast<double>(quarter / 2) + static_cast<double>(u[1])) * image.height;
+    const PinholeCamera::Ray ray = camera_->ray(x, y);
+    Hit hit;
+    const bool seen = rays_->closest_for_camera(ray.origin, ray.direction, hit);
+    // Where nothing is seen there is no bias either; any point does for the place in the list.
+    points.push_back(seen ? seen_point(hit) : SurfacePoint{TriangleId(0)});
+    const std::size_t pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+    for (std::size_t b = 0; b < bands; ++b) {
+      const double radiance = film.radiance(pixel, b) + floor[b];
+      scale.push_back(seen && radiance > 0 ? 1 / radiance : 0);
+    }
+  }
+  return estimate_zone_bias(gather_, path_, points, scale,
+                            ZoneBiasEffort::of(camera_rays * (2 + settings_->gathers)), settings_->seed);
 }
 
 SurfacePoint TileRenderer::seen_point(const Hit& hit) const {

@@ -1,8 +1,11 @@
 #pragma once
+#include <optional>
+
 #include "solver/gather/direct_light.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/radiance_field.h"
+#include "solver/tally/zone_bias.h"
 #include "viewer_export/still/camera.h"
 #include "viewer_export/still/film.h"
 #include "viewer_export/still/render_still.h"
@@ -37,6 +40,11 @@ class TileRenderer {
 
   /// Adds samples first .. first+samples-1 of every replicate to each pixel of the tile.
   void render(const Tile& tile, const SampleBlock& block, Film& film) const;
+
+  /// What the zones do to the picture on the film, relative as StillSettings::error_target: from points seen
+  /// through pixels all over it, with about two per cent of the rays of the picture. Exactly 0 for a
+  /// path-traced one. Nothing if it is not known.
+  std::optional<ZoneBias> zone_bias(const Solution& solution, const Film& film) const;
 
  private:
   struct PixelSums;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/gather/zone_bias_estimate.h"
 #include "solver/reflect/lambert.h"
 #include "solver/tally/replicates.h"
 
@@ -23,7 +24,11 @@ VertexGatherer::VertexGatherer(const Scene& scene, const Solution& solution, con
       settings_(settings),
       field_(scene, solution, rays, kReplicates),
       direct_(scene, rays),
-      gather_(rays, field_, direct_, GatherSettings{.close_hit = settings.close_hit, .seed = settings.seed}),
+      gather_(rays, field_, direct_,
+              // Means of zones gather nothing; without close hits there is nothing to prepare.
+              GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit,
+                             .seed = settings.seed}),
+      path_(rays, field_, direct_, settings.seed),
       bands_(scene.bands.count()),
       gathers_per_point_(settings.gathers_per_point()),
       log2_points_(std::countr_zero(static_cast<unsigned>(most_points))) {}
@@ -51,6 +56,32 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
   const float share = static_cast<float>(block.count) / static_cast<float>(block.first + block.count);
   for (std::size_t k = 0; k < found.size(); ++k) means[k] += share * (found[k] - means[k]);
   for (std::size_t v = first; v < last; ++v) store(v, means + (v - first) * values_per_vertex(), data);
+}
+
+std::optional<ZoneBias> VertexGatherer::zone_bias(const VertexData& data, double rays) const {
+  std::vector<double> power(bands_, 0.0);  // reflected radiance times area
+  std::vector<double> area_up_to;
+  double area = 0;
+  for (std::size_t v = 0; v < rings_.size(); ++v) {
+    area += rings_.area(v);
+    area_up_to.push_back(area);
+    for (std::size_t b = 0; b < bands_; ++b)
+      power[b] += rings_.area(v) *
+                  (static_cast<double>(data.radiance[v * bands_ + b]) - static_cast<double>(emitted(v)[b]));
+  }
+  if (!(area > 0)) return std::nullopt;
+  std::vector<SurfacePoint> points;
+  std::vector<double> scale;
+  const CounterRng rng(settings_.seed, RngPurpose::kZoneBias);
+  for (std::size_t i = 0; i < ZoneBiasEffort::kPoints; ++i) {
+    // Evenly along the vertices: those of a surface follow each other.
+    const std::array<float, 4> u = rng.uniform4(i, kReplicates, 0);
+    const double at = (static_cast<double>(i) + static_cast<double>(u[0])) / ZoneBiasEffort::kPoints * area;
+    const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, at);
+    points.push_back(point_beside(static_cast<std::size_t>(found - area_up_to.begin()), {u[1], u[2]}));
+    for (const double p : power) scale.push_back(p > 0 ? area / p : 0);
+  }
+  return estimate_zone_bias(gather_, path_, points, scale, ZoneBiasEffort::of(rays), settings_.seed);
 }
 
 /// A point inside one of the zones around a vertex, zones in proportion to their areas, uniform in the copy

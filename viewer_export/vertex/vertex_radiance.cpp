@@ -126,18 +126,25 @@ VertexData gather_vertices(const Scene& scene, const Solution& solution, const R
                            const std::atomic<bool>& interrupt) {
   check(settings);
   const VertexRings rings(scene, solution, settings.all_zones);
-  const VertexGatherer gatherer(scene, solution, rays, rings, settings,
-                                VertexRefinement::most_points(settings));
   VertexData data = make_vertices(scene, solution, rings);
-  average_zones(solution, rings, gatherer.field(), data);
-  if (!settings.average_zones) {
-    VertexRefinement refinement(gatherer, rings, settings, progress, interrupt, data);
-    const int cores = tbb::info::default_concurrency();
-    tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
-    arena.execute([&] { refinement.run(); });
-  }
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
+  arena.execute([&] {
+    const VertexGatherer gatherer(scene, solution, rays, rings, settings,
+                                  VertexRefinement::most_points(settings));
+    average_zones(solution, rings, gatherer.field(), data);
+    if (settings.average_zones) {
+      if (const auto difference = solution.record.discretisation)
+        data.info.zones = ZoneBias{*difference, *difference};
+    } else {
+      VertexRefinement refinement(gatherer, rings, settings, progress, interrupt, data);
+      refinement.run();
+      if (!interrupt)
+        data.info.zones = gatherer.zone_bias(data, static_cast<double>(rings.size()) * settings.gather_rays);
+    }
+    data.info.error = relative_error(gatherer, rings, data);
+  });
   describe(scene, solution, settings, data.info);
-  data.info.error = relative_error(gatherer, rings, data);
   return data;
 }
 

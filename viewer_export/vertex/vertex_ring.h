@@ -17,7 +17,8 @@ struct RingZone {
   double area;         ///< [m2]
 };
 
-/// The vertices to export and the zones around each: those of one smooth part on one side.
+/// The vertices to export and the zones around each: those of one smooth part on one side that no thing
+/// standing there covers.
 class VertexRings {
  public:
   /// Leaves out the backs of surfaces that no light reached and that do not emit, unless `all_zones`.

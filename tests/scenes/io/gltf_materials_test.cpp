@@ -67,7 +67,8 @@ TEST(GltfMaterials, EmissionAndItsUnits) {
   ReadOptions watts;
   watts.gltf_emissive_units = EmissiveUnits::kWatt;
   EXPECT_NEAR(read_material(lamp, watts).emitted_radiance[0], 358, 1e-12);
-  EXPECT_THAT(read_gltf(with_material(lamp)).notes, Contains(HasSubstr("cd/m2 and divided by 179")));
+  EXPECT_THAT(read_gltf(with_material(lamp)).notes,
+              Contains(HasSubstr("cd/m2 and divided by 179 lm/W, as the specification says")));
   EXPECT_THAT(read_gltf(with_material(lamp), watts).notes, Contains(HasSubstr("W/(sr m2)")));
   json both = lamp;
   both["doubleSided"] = true;

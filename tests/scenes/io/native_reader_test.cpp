@@ -227,12 +227,47 @@ TEST(NativeLights, MeasuredLuminairesAreTurnedAndDimmed) {
   EXPECT_NEAR(lumens.intensity_per_candela[0] * 179 * lumens.table->total_flux(), 1000, 1e-3);
 }
 
+TEST(NativeLights, MountedOpeningsTouchWhatTheyAreMountedOn) {
+  // 0.5 m along C = 90, 0.25 m along C = 0, 0.1 m high.
+  const auto centre = [](const std::string& fields) {
+    const TempFolder folder;
+    std::string lamp = kLamp;
+    lamp.replace(lamp.find("0.25 0\n"), 7, "0.25 0.1\n");
+    folder.write("lamp.ies", lamp);
+    const Scene scene = read_native_scene(
+        folder.write("room.json", room(R"("materials": {}, "lights": [{"type": "ies", "file": "lamp.ies", )" +
+                                       fields + "}]")),
+        {});
+    return std::get<PhotometricLight>(scene.lights.at(0)).position;
+  };
+  EXPECT_EQ(centre(R"("position": [1, 2, 3])"), Vec3(1, 2, 3));
+  EXPECT_EQ(centre(R"("position": [1, 2, 3], "mount": "free")"), Vec3(1, 2, 3));
+  EXPECT_TRUE(centre(R"("position": [1, 2, 3], "mount": "ceiling")").isApprox(Vec3(1, 1.95, 3), 1e-15));
+  EXPECT_TRUE(centre(R"("position": [1, 2, 3], "mount": "ceiling", "direction": [0, 0, -1])")
+                  .isApprox(Vec3(1, 2, 2.95), 1e-15));
+  EXPECT_TRUE(
+      centre(R"("position": [1, 2, 3], "mount": "ceiling", "opening": "point")").isApprox(Vec3(1, 2, 3)));
+  EXPECT_TRUE(centre(R"("position": [0, 2, 3], "mount": "wall", "away": [2, 0, 0])")
+                  .isApprox(Vec3(0.125, 2, 3), 1e-15));
+  EXPECT_TRUE(centre(R"("position": [0, 2, 0], "mount": "wall", "away": [0, 0, 1])")
+                  .isApprox(Vec3(0, 2, 0.25), 1e-15));
+  // Aimed at 45 degrees under a level ceiling, the upper edge touches it.
+  EXPECT_TRUE(
+      centre(
+          R"("position": [0, 2, 0], "mount": "ceiling", "away": [0, -1, 0], "direction": [1, -1, 0], "c0": [1, 1, 0])")
+          .isApprox(Vec3(0, 2 - (0.05 + 0.125) * std::sqrt(0.5), 0), 1e-12));
+}
+
 TEST(NativeLights, RefusesMeasuredLuminairesThatCannotBe) {
   const auto refused = [](const std::string& fields, std::initializer_list<const char*> parts) {
     expect_input_error([&] { read_measured(fields); }, parts);
   };
   refused(R"("position": [0, 0, 0], "scale": 0)", {"#/lights/0/scale", "emits nothing"});
   refused(R"("position": [0, 0, 0], "flux_lm": 0)", {"#/lights/0/flux_lm", "emits nothing"});
+  refused(R"("position": [0, 0, 0], "mount": "roof")", {"#/lights/0/mount", "ceiling"});
+  refused(R"("position": [0, 0, 0], "mount": "wall")", {"#/lights/0/mount", "away"});
+  refused(R"("position": [0, 0, 0], "mount": "wall", "away": [0, 0, 0])", {"#/lights/0/away", "no length"});
+  refused(R"("position": [0, 0, 0], "away": [0, 0, 1])", {"#/lights/0/away", "not mounted"});
   refused(R"("position": [0, 0, 0], "scale": 1, "flux_lm": 1)", {"#/lights/0/flux_lm", "given already"});
   refused(R"("position": [0, 0, 0], "direction": [0, 0, 0])", {"#/lights/0/direction", "no length"});
   refused(R"("position": [0, 0, 0], "look_at": [0, 0, 0])", {"#/lights/0/look_at"});

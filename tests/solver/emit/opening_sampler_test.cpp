@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/model/opening_reach.h"
 #include "solver/sampling/counter_rng.h"
 #include "tests/solver/emit/luminaire_tables.h"
 #include "tests/support/chi_square.h"

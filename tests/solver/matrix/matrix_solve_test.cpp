@@ -225,7 +225,7 @@ TEST(MatrixSolve, BooksBalanceAndEscapesGoWhereTheOpeningIs) {
     EXPECT_EQ(s.audit.batches, s.sums.batches);
     EXPECT_TRUE(s.audit.balanced());
     for (const BandAudit& b : s.audit.bands) {
-      EXPECT_EQ(b.roulette_gain - b.roulette_loss, 0);
+      EXPECT_EQ(b.roulette_net, 0);
       EXPECT_EQ(b.emitted, s.audit.batches << 42);
       // Closed: roundings and the residual only. Open: rows off by sampling as well.
       EXPECT_LT(std::fabs(static_cast<double>(b.unshot)),

@@ -15,7 +15,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.program_version = "1.2.3";
   s.room_path = "/rooms/kitchen – north.json";
   s.room_hash = "0123456789abcdef";
-  s.read_options = {EmissiveUnits::kWatt, true};
+  s.read_options = {EmissiveUnits::kWatt, true, 683.5};
   s.mesh_settings.zone_area = 0.125;
   s.mesh_settings.default_zone_count = 77;
   s.mesh_settings.smallest_angle_deg = 21;
@@ -31,7 +31,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.settings.gather_small_zones = false;
   s.settings.seed = 18'000'000'000'000'000'001U;
   s.settings.threads = 3;
-  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6, 5, 0.125};
+  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6, 5, 0.125, ZoneBias{0.03, 0.04}};
   s.bands = bands;
 
   Scene scene;
@@ -75,22 +75,26 @@ inline Solution sample_solution(const BandSet& bands) {
   s.mesh_report.cut_faces = 6;
   s.mesh_report.warnings = {"wall: two faces overlap", "", "lamp: flipped"};
 
-  s.sums.batches = 4;
+  for (const std::int64_t weight : {1, 2, 1, 3}) s.sums.count_batch(weight);
   double next = 0.1;
   const auto fill = [&](std::vector<double>& values, double scale) {
     for (std::size_t i = 0; i < s.mesh.zone_count() * bands.count(); ++i)
       values.push_back(scale * (next += 1.0 / 3));
   };
   fill(s.sums.direct, 1);
+  fill(s.sums.direct_cross, 2);
   fill(s.sums.direct_squared, 30);
   fill(s.sums.indirect, 1);
+  fill(s.sums.indirect_cross, 2);
   fill(s.sums.indirect_squared, 40);
   fill(s.sums.total_squared, 100);
   // Stored as float: numbers that it holds exactly.
   for (std::size_t i = 0; i < ZoneSums::kGroups * s.sums.direct.size(); ++i)
     s.sums.group_total.push_back(0.125 * static_cast<double>(i));
 
+  s.light_warnings = {"light 'spot': 40 % of its light is lost", "", "5 % leaves the room"};
   s.audit.batches = 4;
+  s.audit.weight = 7;
   for (std::size_t b = 0; b < bands.count(); ++b) {
     const auto n = static_cast<std::int64_t>(b);
     BandAudit audit;
@@ -101,8 +105,8 @@ inline Solution sample_solution(const BandSet& bands) {
     audit.absorbed_on_backs = {7 + n, 2};
     audit.escaped = {1, 2, 3, 4, 5, 6 + n};
     audit.unshot = -3;
-    audit.roulette_gain = 11;
-    audit.roulette_loss = 12 + n;
+    audit.roulette_net = -1 - n;
+    audit.roulette_gain = 11e20;
     s.audit.bands.push_back(std::move(audit));
   }
   return s;

@@ -53,6 +53,10 @@ void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.record.unreached_zones, b.record.unreached_zones);
   EXPECT_EQ(a.record.gathered_zones, b.record.gathered_zones);
   EXPECT_EQ(a.record.discretisation, b.record.discretisation);
+  ASSERT_EQ(a.record.gather_bias.has_value(), b.record.gather_bias.has_value());
+  if (!a.record.gather_bias) return;
+  EXPECT_EQ(a.record.gather_bias->rms, b.record.gather_bias->rms);
+  EXPECT_EQ(a.record.gather_bias->bound, b.record.gather_bias->bound);
 }
 
 void expect_same_room(const Solution& a, const Solution& b) {
@@ -89,25 +93,31 @@ void expect_same_room(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.mesh_report.nonplanar_faces, b.mesh_report.nonplanar_faces);
   EXPECT_EQ(a.mesh_report.cut_faces, b.mesh_report.cut_faces);
   EXPECT_EQ(a.mesh_report.warnings, b.mesh_report.warnings);
+  EXPECT_EQ(a.light_warnings, b.light_warnings);
 }
 
 void expect_same_books(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.sums.batches, b.sums.batches);
+  EXPECT_EQ(a.sums.group_weight, b.sums.group_weight);
+  EXPECT_EQ(a.sums.weight_squared, b.sums.weight_squared);
   EXPECT_EQ(a.sums.direct, b.sums.direct);
+  EXPECT_EQ(a.sums.direct_cross, b.sums.direct_cross);
   EXPECT_EQ(a.sums.direct_squared, b.sums.direct_squared);
   EXPECT_EQ(a.sums.indirect, b.sums.indirect);
+  EXPECT_EQ(a.sums.indirect_cross, b.sums.indirect_cross);
   EXPECT_EQ(a.sums.indirect_squared, b.sums.indirect_squared);
   EXPECT_EQ(a.sums.total_squared, b.sums.total_squared);
   EXPECT_EQ(a.sums.group_total, b.sums.group_total);
   EXPECT_EQ(a.audit.batches, b.audit.batches);
+  EXPECT_EQ(a.audit.weight, b.audit.weight);
   ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
   for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {
     const BandAudit& x = a.audit.bands[i];
     const BandAudit& y = b.audit.bands[i];
     EXPECT_EQ(std::tie(x.band, x.watts_per_quantum, x.emitted, x.absorbed, x.absorbed_on_backs, x.escaped,
-                       x.unshot, x.roulette_gain, x.roulette_loss),
+                       x.unshot, x.roulette_net, x.roulette_gain),
               std::tie(y.band, y.watts_per_quantum, y.emitted, y.absorbed, y.absorbed_on_backs, y.escaped,
-                       y.unshot, y.roulette_gain, y.roulette_loss));
+                       y.unshot, y.roulette_net, y.roulette_gain));
   }
 }
 

@@ -11,22 +11,38 @@
 namespace reemit {
 namespace {
 
-// A solution whose zone 0 saw the given irradiances, one pair (direct, indirect) per batch.
-Solution with_batches(const std::vector<std::pair<double, double>>& batches) {
+struct Batch {
+  double direct = 0;
+  double indirect = 0;
+  std::int64_t weight = 1;
+};
+
+// A solution whose zone 0 saw the given irradiances.
+Solution with_batches(const std::vector<Batch>& batches) {
   Solution s = test::sample_solution(BandSet::grey());
-  s.sums.batches = static_cast<std::int64_t>(batches.size());
   ZoneSums& sums = s.sums;
-  for (auto* v :
-       {&sums.direct, &sums.direct_squared, &sums.indirect, &sums.indirect_squared, &sums.total_squared})
-    std::fill(v->begin(), v->end(), 0.0);
-  for (const auto& [direct, indirect] : batches) {
-    sums.direct[0] += direct;
-    sums.direct_squared[0] += direct * direct;
-    sums.indirect[0] += indirect;
-    sums.indirect_squared[0] += indirect * indirect;
-    sums.total_squared[0] += (direct + indirect) * (direct + indirect);
+  sums.clear(sums.direct.size());
+  for (const Batch& batch : batches) {
+    sums.count_batch(batch.weight);
+    const auto w = static_cast<double>(batch.weight);
+    sums.direct[0] += w * batch.direct;
+    sums.direct_cross[0] += w * w * batch.direct;
+    sums.direct_squared[0] += std::pow(w * batch.direct, 2);
+    sums.indirect[0] += w * batch.indirect;
+    sums.indirect_cross[0] += w * w * batch.indirect;
+    sums.indirect_squared[0] += std::pow(w * batch.indirect, 2);
+    sums.total_squared[0] += std::pow(w * (batch.direct + batch.indirect), 2);
   }
   return s;
+}
+
+TEST(SolutionEstimates, WeighBatchesBySize) {
+  const Solution s = with_batches({{1, 0, 1}, {4, 0, 2}, {3, 0, 1}});
+  // Mean 12/4 = 3; deviations -2 1 0, squared with the squares of the weights 4 + 4; 16 - 6 = 10.
+  EXPECT_DOUBLE_EQ(s.direct_irradiance(ZoneId(0), 0).mean, 3);
+  EXPECT_DOUBLE_EQ(s.direct_irradiance(ZoneId(0), 0).stderr_of_mean, std::sqrt(8.0 / 10));
+  EXPECT_DOUBLE_EQ(s.irradiance(ZoneId(0), 0).stderr_of_mean, std::sqrt(8.0 / 10));
+  EXPECT_DOUBLE_EQ(s.sums.degrees_of_freedom(), 16.0 / 6 - 1);
 }
 
 TEST(SolutionEstimates, AreBatchMeans) {

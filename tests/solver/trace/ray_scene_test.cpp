@@ -79,6 +79,49 @@ TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
   EXPECT_GT(misses, 50);  // the box is open on one side
 }
 
+// A wedge of two one-sided walls, seen from outside: where they meet, rounding decides whether a ray meets
+// the front of one or, a hair behind it, the back of the other.
+TEST(RayScene, AWedgeShowsFewBacksAtItsEdge) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5);
+  room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
+  room.quad(m, {Vec3(0, 0.1, -1), Vec3(0, 0.1, 1), Vec3(1, 0.7, 1), Vec3(1, 0.7, -1)}, 1);
+  room.quad(m, {Vec3(0, 0.1, -1), Vec3(0.9, -0.8, -1), Vec3(0.9, -0.8, 1), Vec3(0, 0.1, 1)}, 1);
+  const MeshResult built = room.mesh();
+  const RayScene scene(built.mesh);
+  const CounterRng rng(5, RngPurpose::kProbe);
+  int first_look = 0;
+  int second_look = 0;
+  for (std::uint32_t block = 0; block < 20'000; ++block) {
+    Ray16 rays;
+    for (int i = 0; i < 16; ++i) {
+      const auto u = rng.uniform4(block, 0, static_cast<std::uint32_t>(i));
+      const Vec3f from(-0.9F + 0.5F * u[0], -0.8F + 1.6F * u[1], -0.5F + u[2]);
+      const Vec3f at(0, 0.1F, -0.5F + u[3]);
+      const Vec3f d = (at - from).normalized();
+      rays.ox[i] = from.x();
+      rays.oy[i] = from.y();
+      rays.oz[i] = from.z();
+      rays.dx[i] = d.x();
+      rays.dy[i] = d.y();
+      rays.dz[i] = d.z();
+    }
+    Hit16 hits;
+    const auto backs = [&] {
+      int count = 0;
+      for (int i = 0; i < 16; ++i) count += scene.is_doubtful(hits.triangle[i], hits.front[i]) ? 1 : 0;
+      return count;
+    };
+    scene.closest16(rays, 16, hits);
+    first_look += backs();
+    scene.look_again16(rays, 16, hits);
+    second_look += backs();
+  }
+  EXPECT_GT(first_look, 1000) << "rays aimed at the edge itself meet backs";
+  // What remains are rays that the turn moves along the edge instead of across it.
+  EXPECT_LT(second_look, first_look / 10);
+}
+
 TEST(RayScene, VisibilityStopsAtWallsAndNotAtItsEnds) {
   RoomBuilder room;
   const MaterialId m = room.material("wall", 0.5, 0, true);

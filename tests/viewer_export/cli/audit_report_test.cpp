@@ -14,6 +14,7 @@ using ::testing::Not;
 EnergyAudit balanced_audit() {
   EnergyAudit audit;
   audit.batches = 2;
+  audit.weight = 2;
   for (const char* name : {"r", "g"}) {
     BandAudit band;
     band.band = name;
@@ -23,8 +24,8 @@ EnergyAudit balanced_audit() {
     band.absorbed_on_backs = {0, 4};
     band.escaped = {1, 0, 0, 0, 0, 15};
     band.unshot = 8;
+    band.roulette_net = -2;
     band.roulette_gain = 3;
-    band.roulette_loss = 5;
     audit.bands.push_back(band);
   }
   return audit;

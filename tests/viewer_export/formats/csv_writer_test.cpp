@@ -33,7 +33,7 @@ TEST(CsvWriter, HasCommentsThenHeaderThenOneRowPerVertex) {
   std::size_t comments = 0;
   while (comments < lines.size() && lines[comments].starts_with("# ")) ++comments;
   EXPECT_THAT(lines, testing::IsSupersetOf(
-                         {std::string("# seed: 77"), std::string("# relative error: 0.0125"),
+                         {std::string("# seed: 77"), std::string("# relative error by noise: 0.0125"),
                           std::string("# room: kitchen north.json"), std::string("# gather rays: 256")}));
   ASSERT_EQ(lines.size(), comments + 8);
   EXPECT_EQ(lines[comments],

@@ -114,7 +114,7 @@ TEST(PlyWriter, StatesUnitsSeedErrorAndExposure) {
   const std::string text = test::read_bytes(folder / "a.ply");
   const std::string header = text.substr(0, text.find("end_header"));
   EXPECT_THAT(header, HasSubstr("comment seed: 77\n"));
-  EXPECT_THAT(header, HasSubstr("comment relative error: 0.0125\n"));
+  EXPECT_THAT(header, HasSubstr("comment relative error by noise: 0.0125\n"));
   EXPECT_THAT(header, HasSubstr("W/(m2 sr)"));
   EXPECT_THAT(header, HasSubstr("179"));
   EXPECT_THAT(header, HasSubstr("+2.00 EV"));

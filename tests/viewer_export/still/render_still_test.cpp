@@ -151,6 +151,28 @@ TEST(RenderStill, error_target_is_reached_and_spends_samples_where_needed) {
   EXPECT_LT(*least, *most);
 }
 
+TEST(RenderStill, states_what_zones_do_beside_the_noise) {
+  // M = 1, rho = 1/2: E = 2 everywhere. Zones that hold E = 2.4 add rho 0.2 (rho E/pi) = 0.1/pi to a radiance
+  // of 2/pi, so the picture is off by 0.1/2.1, with 1 % of floor.
+  const RoomBuilder room = furnace(1, 0.5, 3);
+  StillSettings settings = small_still(Integrator::kGather, 64);
+  settings.close_hit = 0;
+  const auto zones_of = [&](double indirect) {
+    return render(room, test::uniform_solution(room, 1, indirect), inside(), settings).info.zones.value();
+  };
+  const ZoneBias wrong = zones_of(1.4);
+  EXPECT_TRUE(wrong.certain());
+  // Five standard errors of the square; the bound is two above.
+  EXPECT_NEAR(wrong.rms, 0.1 / (2.1 * 1.01), 2.5 * (wrong.bound - wrong.rms));
+  EXPECT_LT(wrong.bound - wrong.rms, 0.01) << "test too weak";
+  const ZoneBias right = zones_of(1);
+  EXPECT_FALSE(right.certain());
+  EXPECT_LT(right.bound, 0.02);
+
+  settings.integrator = Integrator::kPath;
+  EXPECT_EQ(zones_of(1.4).bound, 0) << "no zone is read";
+}
+
 TEST(RenderStill, lamp_over_a_floor_in_both_ways) {
   // An open floor under a lamp sees nothing but the sky: both must find the closed form.
   RoomBuilder room;

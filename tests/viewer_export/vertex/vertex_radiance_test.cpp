@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/build_mesh.h"
 #include "scenes/model/error.h"
 #include "solver/gather/direct_light.h"
+#include "solver/progressive_solver.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
 #include "viewer_export/vertex/vertex_ring.h"
@@ -209,6 +211,48 @@ TEST(GatherVertices, refuses_nonsense) {
   settings = {};
   settings.gather_rays = 0;
   EXPECT_THROW(gather(room, solution, settings), InputError);
+}
+
+/// A flat box without a bottom stands on a floor that is cut along its edges and lit by a point light from
+/// one side. Zones on one side of the edge that faces the light are covered, those on the other side are not.
+TEST(GatherVertices, lines_of_contact_take_no_darkness_from_under_a_thing) {
+  RoomBuilder room;
+  const MaterialId floor = room.material("floor", 0.5);
+  const MaterialId black = room.material("black", 0, 0, true);
+  room.quad(floor, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 1);
+  const auto p = [](int i, int j, int k) { return Vec3(0.4 + 0.2 * i, 0.4 + 0.2 * j, 0.05 * k); };
+  room.quad(black, {p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}, 1);
+  room.quad(black, {p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)}, 1);
+  room.quad(black, {p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)}, 1);
+  room.quad(black, {p(1, 1, 0), p(0, 1, 0), p(0, 1, 1), p(1, 1, 1)}, 1);
+  room.quad(black, {p(0, 1, 0), p(0, 0, 0), p(0, 0, 1), p(0, 1, 1)}, 1);
+  const Vec3 light(1.5, 0.5, 1);
+  constexpr double kIntensity = 10;
+  room.scene().lights.push_back(PointLight{"bulb", light, Spectrum::Constant(1, kIntensity)});
+  MeshSettings mesh;
+  mesh.zone_area = 0.002;
+  SolverSettings solver;
+  solver.packets = 400'000;
+  const std::atomic<bool> never{false};
+  const Solution solution = solve(room.scene(), build_mesh(room.scene(), mesh), solver, {}, never);
+
+  for (const bool average_zones : {false, true}) {
+    VertexSettings settings;
+    settings.average_zones = average_zones;
+    const VertexData data = gather(room, solution, settings);
+    int checked = 0;
+    for (std::size_t v = 0; v < data.vertex_count(); ++v) {
+      const Vec3& x = data.positions[v];
+      if (data.surfaces[v].index() != 0 || std::abs(x.x() - 0.6) > 1e-9 || std::abs(x.y() - 0.5) > 0.08)
+        continue;
+      const Vec3 towards = light - x;
+      const double expected = kIntensity * towards.z() / std::pow(towards.norm(), 3);
+      // Zones reach 6 cm outwards, where it is a few per cent brighter, and are noisy.
+      EXPECT_NEAR(data.irradiance[v], expected, (average_zones ? 0.25 : 0.03) * expected) << x.transpose();
+      ++checked;
+    }
+    EXPECT_GE(checked, 2);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,165 @@
+#include "solver/gather/uneven_zones.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include <tbb/parallel_for.h>
+
+#include "solver/gather/point_sampler.h"
+#include "solver/gather/replicate_gather.h"
+#include "solver/reflect/lambert.h"
+
+namespace reemit {
+namespace {
+
+/// Standard deviation of reflected radiance inside a zone, over the mean of the room, from which on a zone is
+/// uneven. A quarter of that changes what is left of the bias in a room with lamps close to the ceiling by
+/// less than a tenth, and costs a furnished office a fifth of its time.
+constexpr double kUneven = 1;
+/// Radiance over the mean of the room from which on any error of the zone matters.
+constexpr double kBright = 16;
+/// Zones darker than this in direct light, over the mean of the room, are not looked at.
+constexpr double kDim = 0.25;
+/// Share of the area that gather rays are continued from at most: bounds what that costs.
+constexpr double kMostArea = 0.05;
+/// Points per zone and shadow rays per point of each of two halves: of all zones, and of those that the first
+/// look leaves in doubt.
+struct Look {
+  int points;
+  int rays;
+};
+constexpr Look kFirstLook{4, 1};
+constexpr Look kSecondLook{16, 2};
+/// Share of the limits from which on a zone gets a second look.
+constexpr double kDoubt = 0.5;
+constexpr int kHalves = 2;
+
+/// Direct light inside a zone, as reflected radiance over the room's mean, of the band that matters most.
+struct Spread {
+  double mean = 0;
+  double variance = 0;  // over the zone; an estimate, may be below 0
+};
+
+/// Per band, the mean reflected radiance over all area.
+std::vector<double> mean_radiance(const ZoneMesh& mesh, const RadianceField& field) {
+  std::vector<double> mean(field.band_count(), 0.0);
+  double area = 0;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    const double zone_area = mesh.zone_area(ZoneId(z));
+    area += zone_area;
+    for (std::size_t part = 0; part < field.parts(); ++part)
+      for (std::size_t b = 0; b < mean.size(); ++b)
+        mean[b] += zone_area / static_cast<double>(field.parts()) *
+                   static_cast<double>(field.reflected(ZoneId(z), part)[b]);
+  }
+  for (double& m : mean) m /= area;
+  return mean;
+}
+
+/// Looks at zones; the room's mean is the measure.
+class Looker {
+ public:
+  Looker(const RayScene& rays, const RadianceField& field, const DirectLight& direct, std::uint64_t seed)
+      : rays_(rays), field_(field), direct_(direct), seed_(seed), mean_(mean_radiance(rays.mesh(), field)) {}
+
+  Spread look(ZoneId zone, const Look& effort) const {
+    const ZoneMesh& mesh = rays_.mesh();
+    const std::size_t bands = field_.band_count();
+    const float* reflectance = field_.reflectance(mesh.zone_triangle(zone).index(), mesh.zone_is_front(zone));
+    const float* direct = field_.reflected_direct(zone);
+    bool dim = true;
+    for (std::size_t b = 0; b < bands; ++b) dim = dim && static_cast<double>(direct[b]) <= kDim * mean_[b];
+    if (dim) return {};
+    const auto points = static_cast<std::size_t>(effort.points);
+    const std::vector<float> weight(bands, 1.0F / static_cast<float>(effort.rays));
+    std::vector<float> found(kHalves * points * bands, 0.0F);  // by half, point and band
+    const PointSampler place = sampler(zone, kHalves, effort);
+    float* next = found.data();
+    for (int half = 0; half < kHalves; ++half) {
+      const PointSampler light = sampler(zone, half, effort);
+      for (int i = 0; i < effort.points; ++i, next += bands) {
+        const SurfacePoint x = point_in_zone(rays_, zone, place.place(i));
+        for (int ray = 0; ray < effort.rays; ++ray)
+          direct_.add_sample(x, light.light(i, ray, effort.rays), weight.data(), next);
+      }
+    }
+    Spread worst;
+    for (std::size_t b = 0; b < bands; ++b) {
+      if (!(mean_[b] > 0)) continue;
+      const double scale = lambert_brdf_per_sr(reflectance[b]) / mean_[b];
+      const Spread spread = spread_of(&found[b], points, bands, scale);
+      worst.mean = std::max(worst.mean, spread.mean);
+      worst.variance = std::max(worst.variance, spread.variance);
+    }
+    return worst;
+  }
+
+ private:
+  PointSampler sampler(ZoneId zone, int number, const Look& effort) const {
+    return {seed_, RngPurpose::kUnevenZone, zone.index(), number,
+            std::countr_zero(static_cast<unsigned>(effort.points))};
+  }
+
+  /// The halves' noise is independent, so that their covariance over the points is the variance of the light
+  /// alone.
+  static Spread spread_of(const float* values, std::size_t points, std::size_t bands, double scale) {
+    double first = 0;
+    double second = 0;
+    double product = 0;
+    for (std::size_t i = 0; i < points; ++i) {
+      const double a = scale * static_cast<double>(values[i * bands]);
+      const double b = scale * static_cast<double>(values[(points + i) * bands]);
+      first += a;
+      second += b;
+      product += a * b;
+    }
+    const auto n = static_cast<double>(points);
+    return {0.5 * (first + second) / n, (product - first * second / n) / (n - 1)};
+  }
+
+  const RayScene& rays_;
+  const RadianceField& field_;
+  const DirectLight& direct_;
+  std::uint64_t seed_;
+  std::vector<double> mean_;
+};
+
+bool exceeds(const Spread& spread, double share) {
+  return spread.variance > share * share * kUneven * kUneven || spread.mean > share * kBright;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> uneven_zones(const RayScene& rays, const RadianceField& field,
+                                       const DirectLight& direct, std::uint64_t seed) {
+  const ZoneMesh& mesh = rays.mesh();
+  std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
+  if (direct.empty()) return uneven;
+  const Looker looker(rays, field, direct, seed);
+  std::vector<double> harm(mesh.zone_count(), 0.0);
+  tbb::parallel_for(std::size_t{0}, mesh.zone_count(), [&](std::size_t z) {
+    if (!exceeds(looker.look(ZoneId(z), kFirstLook), kDoubt)) return;
+    const Spread spread = looker.look(ZoneId(z), kSecondLook);
+    if (exceeds(spread, 1))
+      harm[z] = std::max(spread.variance, 0.0) + spread.mean * spread.mean / (kBright * kBright);
+  });
+
+  std::vector<std::size_t> order;
+  double area_left = 0;
+  for (std::size_t z = 0; z < harm.size(); ++z) {
+    area_left += kMostArea * mesh.zone_area(ZoneId(z));
+    if (harm[z] > 0) order.push_back(z);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return harm[a] > harm[b]; });
+  for (const std::size_t z : order) {
+    area_left -= mesh.zone_area(ZoneId(z));
+    if (area_left < 0) break;
+    uneven[z] = 1;
+  }
+  return uneven;
+}
+
+}  // namespace reemit

@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "solver/gather/direct_light.h"
+#include "solver/gather/radiance_field.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// By zone, 1 where one value for the whole zone misleads a gather ray that sees a part of it: direct light
+/// inside the zone varies by more than the room's mean reflected radiance, or is many times that mean.
+/// Such zones lie beside lamps and on the edges of bright spots; what hides them partly (the lamp itself)
+/// hides their bright or their dark part. Found with shadow rays of its own: the choice does not follow the
+/// noise of the zones, so that continuing gather rays there favours no side. The zones with the largest
+/// differences come first where they would make up more than a twentieth of the area. Eight shadow rays per
+/// zone, more on the candidates; the same for any number of threads.
+std::vector<std::uint8_t> uneven_zones(const RayScene& rays, const RadianceField& field,
+                                       const DirectLight& direct, std::uint64_t seed);
+
+}  // namespace reemit

@@ -1,0 +1,130 @@
+#include "solver/gather/zone_bias_estimate.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+#include "solver/gather/point_sampler.h"
+#include "solver/gather/replicate_gather.h"
+#include "solver/gather/zone_probes.h"
+#include "solver/tally/replicates.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::size_t kGroups = ZoneBiasEffort::kGroups;
+constexpr std::uint32_t kReplicates = 16;
+static_assert(kReplicates == ZoneSums::kGroups);
+
+/// Adds the difference at one point of one replicate to sum[b].
+void add_difference(const HemisphereGather& gather, const PathTracer& path, const SurfacePoint& x,
+                    const PointSampler& sampler, std::uint32_t rays, PathKey key, float* sum) {
+  const std::size_t bands = gather.band_count();
+  const float* reflectance = gather.field().reflectance(x.triangle.index(), x.front);
+  std::vector<float> plus(bands);
+  std::vector<float> minus(bands);
+  GatherBatch batch(gather);
+  for (std::uint32_t ray = 0; ray < rays; ++ray) {
+    const std::array<float, 2> u = sampler.hemisphere(static_cast<int>(ray), 0, 1);
+    key.path = ray;
+    for (std::size_t b = 0; b < bands; ++b) {
+      plus[b] = reflectance[b] / static_cast<float>(rays);
+      minus[b] = -plus[b];
+    }
+    batch.add(x, u[0], u[1], key, plus.data(), sum);
+    path.add_indirect(x, u[0], u[1], key, minus.data(), sum);
+  }
+  batch.flush();
+}
+
+}  // namespace
+
+ZoneBiasEffort ZoneBiasEffort::of(double rays) {
+  // A gathered and traced ray costs about as much as ten rays.
+  constexpr double kShare = 500;
+  constexpr double kMostRays = 1 << 12;
+  const double of_point = std::clamp(rays / (kShare * kPoints), double{kReplicates}, kMostRays);
+  return {static_cast<std::uint32_t>(of_point) / kReplicates * kReplicates};
+}
+
+ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& path,
+                            std::span<const SurfacePoint> points, std::span<const double> scale,
+                            const ZoneBiasEffort& effort, std::uint64_t seed, const StopToken* stop) {
+  const std::size_t bands = gather.band_count();
+  const std::size_t parts = gather.field().parts();
+  const std::uint32_t rays = effort.rays / kReplicates;
+  const std::size_t of_point = kReplicates * bands;
+  std::vector<float> differences(points.size() * of_point, 0.0F);  // by point, replicate, band
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    if (stop != nullptr && stop->requested()) return;
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      const PointSampler sampler(seed, RngPurpose::kZoneBias, i, static_cast<int>(r),
+                                 std::countr_zero(std::bit_ceil(rays)));
+      const PathKey key{i, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % parts)};
+      add_difference(gather, path, points[i], sampler, rays, key, &differences[i * of_point + r * bands]);
+    }
+  });
+
+  ZoneBias worst;
+  for (std::size_t b = 0; b < bands; ++b) {
+    double square = 0;
+    double variance = 0;  // of `square`
+    for (std::size_t g = 0; g < kGroups; ++g) {
+      const std::size_t first = g * points.size() / kGroups;
+      const std::size_t last = (g + 1) * points.size() / kGroups;
+      const ReplicateMean mean = mean_of_replicates(kReplicates, parts, [&](std::size_t r) {
+        double sum = 0;
+        for (std::size_t i = first; i < last; ++i)
+          sum += scale[i * bands + b] * static_cast<double>(differences[i * of_point + r * bands + b]);
+        return sum / static_cast<double>(ZoneBiasEffort::kPointsPerGroup);
+      });
+      const double error2 = mean.squared_error;
+      square += (mean.mean * mean.mean - error2) / kGroups;
+      variance += (4 * mean.mean * mean.mean + 2 * error2) * error2 / (kGroups * kGroups);
+    }
+    const ZoneBias bias{std::sqrt(std::max(0.0, square)),
+                        std::sqrt(std::max(0.0, square) + 2 * std::sqrt(variance))};
+    if (bias.bound > worst.bound) worst = bias;
+  }
+  return worst;
+}
+
+std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& rays, const Solution& solution,
+                                           const StopToken& stop) {
+  if (stop.requested()) return std::nullopt;
+  const std::uint64_t seed = solution.settings.seed;
+  const CounterRng rng(seed, RngPurpose::kZoneBias);
+  const double offset = static_cast<double>(rng.uniform4(0, kReplicates, 0)[0]);
+  const std::vector<ZoneProbe> probes = choose_probes(solution, ZoneBiasEffort::kPoints, offset);
+  if (probes.size() < ZoneBiasEffort::kPoints) return std::nullopt;
+  const RadianceField field(scene, solution, rays, ZoneSums::kGroups);
+  const DirectLight direct(scene, rays);
+  const HemisphereGather gather(rays, field, direct, GatherSettings{.seed = seed});
+  const PathTracer path(rays, field, direct, seed);
+
+  // Probes stand for areas of their own, and their sum is the mean radiance times the area.
+  const std::size_t bands = field.band_count();
+  std::vector<double> power(bands, 0.0);
+  for (const ZoneProbe& probe : probes)
+    for (std::size_t b = 0; b < bands; ++b)
+      for (std::size_t part = 0; part < field.parts(); ++part)
+        power[b] += probe.area * static_cast<double>(field.reflected(probe.zone, part)[b]) /
+                    static_cast<double>(field.parts());
+  std::vector<SurfacePoint> points;
+  std::vector<double> scale;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const std::array<float, 4> u = rng.uniform4(i, kReplicates + 1, 0);
+    points.push_back(point_in_zone(rays, probes[i].zone, {u[0], u[1]}));
+    for (const double p : power) scale.push_back(p > 0 ? ZoneBiasEffort::kPoints * probes[i].area / p : 0);
+  }
+  const ZoneBiasEffort effort = ZoneBiasEffort::of(static_cast<double>(solution.record.rays));
+  const ZoneBias bias = estimate_zone_bias(gather, path, points, scale, effort, seed, &stop);
+  if (stop.requested()) return std::nullopt;
+  return bias;
+}
+
+}  // namespace reemit

@@ -1,0 +1,42 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "solver/shoot/emission.h"
+#include "solver/solution/solution.h"
+
+namespace reemit {
+
+/// Power that a solved room loses in one place.
+struct LightLoss {
+  enum class Way : std::uint8_t {
+    kGap,      ///< Leaves through a gap that is narrow against the room.
+    kOutside,  ///< Leaves from a place that has nothing before it: the light was outside already.
+    kOpening,  ///< Leaves through an opening.
+  };
+  Way way = Way::kGap;
+  double share = 0;                 ///< Of the emitted power, by probes.
+  double width = 0;                 ///< Of a gap [m].
+  Vec3 place{0, 0, 0};              ///< [m]
+  std::vector<SurfaceId> surfaces;  ///< That make the rim of a gap, or that the light left from; two at most.
+};
+
+/// Places where light leaves the room, by probes that leave luminaires and zones as their light does; largest
+/// first. Deterministic.
+struct EscapedLight {
+  std::vector<LightLoss> places;
+  double through_gaps = 0;      ///< Share of the emitted power [0,1], by probes.
+  double through_openings = 0;  ///< Share of the emitted power [0,1], by probes.
+};
+EscapedLight find_escapes(const TransportScene& transport, const Emission& emission,
+                          const Solution& solution);
+
+/// Warnings about light that a room loses although its faces close, with share, place and surfaces: light
+/// that escapes, and light that ends on backs of one-sided faces. Faces count as closed when at most 1 % of
+/// the light leaves through openings, or 5 % if most of what leaves does so through gaps. A room with an
+/// opening (the Cornell box) loses light by intent and gets no warning, nor does one that is mostly outdoors.
+/// Where directional lights shine in from outside, only gaps count. Reads Solution::audit and sums.
+std::vector<std::string> lost_light_warnings(const TransportScene& transport, const Emission& emission,
+                                             const Solution& solution);
+
+}  // namespace reemit

@@ -1,0 +1,61 @@
+#include "solver/losses/luminaire_warnings.h"
+
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "solver/losses/opening_losses.h"
+#include "solver/losses/probe_flight.h"
+#include "solver/losses/self_lit_luminaires.h"
+
+namespace reemit {
+namespace {
+
+std::string name_of(const PunctualLight& light, std::size_t index) {
+  const std::string& name = std::visit([](const auto& l) -> const std::string& { return l.name; }, light);
+  return name.empty() ? fmt::format("light {}", index + 1) : "light '" + name + "'";
+}
+
+std::string warning_of(const OpeningLoss& loss, const Scene& scene) {
+  const PunctualLight& light = scene.lights[loss.light];
+  const std::string name = name_of(light, loss.light);
+  const std::string surface = quoted_name(scene, loss.surface);
+  if (loss.touching > 0)
+    return fmt::format(
+        "{} lies in {}: {} of its light is lost and {} falls on the very point it stands on; move it off",
+        name, surface, share_text(loss.lost), share_text(loss.touching));
+  const std::string lost = fmt::format("{}: {} of its light is lost, because ", name, share_text(loss.lost));
+  const bool crosses = 2 * loss.beyond > loss.lost;
+  if (loss.seen <= 0) return lost + fmt::format("it lies in or behind {}; move it", surface);
+  if (!crosses) return lost + fmt::format("it ends on the back of {}; turn or thicken the surface", surface);
+  if (!std::holds_alternative<PhotometricLight>(light))
+    return lost + fmt::format("it lies in {}; move it off", surface);
+  return lost + fmt::format(
+                    "its opening lies across {}; in a native room, \"mount\": \"ceiling\" or \"wall\" keeps "
+                    "it on one side",
+                    surface);
+}
+
+}  // namespace
+
+std::vector<std::string> luminaire_warnings(const TransportScene& transport, const Emission& emission) {
+  const Scene& scene = transport.scene();
+  std::vector<std::string> warnings;
+  for (const OpeningLoss& loss : opening_losses(transport)) warnings.push_back(warning_of(loss, scene));
+  for (const SelfLitLuminaire& lamp : self_lit_luminaires(transport, emission))
+    warnings.push_back(fmt::format(
+        "luminaire {}{}: {} of its power shines onto the lamp itself; a closed lamp should emit from its "
+        "outer side only",
+        quoted_name(scene, lamp.surfaces[0]),
+        lamp.surfaces.size() > 1 ? fmt::format(" with {} more surface(s)", lamp.surfaces.size() - 1) : "",
+        share_text(lamp.share)));
+  return warnings;
+}
+
+std::vector<std::string> luminaire_warnings(const Scene& scene, const ZoneMesh& mesh) {
+  const RayScene rays(mesh);
+  const TransportScene transport(scene, mesh, rays);
+  return luminaire_warnings(transport, collect_emission(transport));
+}
+
+}  // namespace reemit

@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "solver/shoot/emission.h"
+#include "solver/shoot/transport_scene.h"
+
+namespace reemit {
+
+/// What the user should know about luminaires that lose light (opening_losses.h) or light themselves
+/// (self_lit_luminaires.h), with names and shares.
+std::vector<std::string> luminaire_warnings(const TransportScene& transport, const Emission& emission);
+/// The same before a solve.
+std::vector<std::string> luminaire_warnings(const Scene& scene, const ZoneMesh& mesh);
+
+}  // namespace reemit

@@ -1,0 +1,224 @@
+#include "solver/losses/opening_losses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <variant>
+
+#include "scenes/model/opening_reach.h"
+#include "solver/emit/photometric_emitter.h"
+#include "solver/losses/probe_flight.h"
+#include "solver/shoot/emission.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::uint32_t kPacketsPerLight = 4096;
+constexpr std::uint32_t kLeastPacketsPerLight = 64;
+constexpr std::uint32_t kMostPackets = 1U << 19;
+constexpr double kLeastLoss = 1e-3;
+
+/// Where a light shines out of: what lies between a point of the opening and here parts the point from the
+/// room. Nothing for lights at infinity.
+struct MouthOf {
+  const RayScene& rays;
+
+  std::optional<Vec3f> operator()(const PointLight& l) const { return rays.normalised(l.position); }
+  std::optional<Vec3f> operator()(const SpotLight& l) const { return rays.normalised(l.position); }
+  std::optional<Vec3f> operator()(const DirectionalLight&) const { return std::nullopt; }
+  std::optional<Vec3f> operator()(const PhotometricLight& l) const {
+    const Vec3 aim = main_direction(*l.table);
+    const double reach = opening_reach(l.opening, aim) / rays.metres_per_unit() + PhotometricEmitter::kClear;
+    return (rays.normalised(l.position).cast<double>() + l.orientation * (reach * aim)).cast<float>();
+  }
+
+  /// Mean direction of the light, or the nadir where it goes to all sides alike; luminaire coordinates.
+  static Vec3 main_direction(const IntensityTable& table) {
+    constexpr int kSteps = 64;
+    constexpr double kAllSidesAlike = 0.02;
+    Vec3 sum = Vec3::Zero();
+    double total = 0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < 2 * kSteps; ++j) {
+        const double z = 1 - (2 * i + 1.0) / kSteps;
+        const double azimuth = std::numbers::pi * (j + 0.5) / kSteps;
+        const double r = std::sqrt(1 - z * z);
+        const Vec3 direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
+        const double candela = table.intensity(direction);
+        sum += candela * direction;
+        total += candela;
+      }
+    return sum.norm() > kAllSidesAlike * total ? Vec3(sum.normalized()) : Vec3(0, 0, -1);
+  }
+};
+
+/// The surface between two points, if there is one.
+std::optional<SurfaceId> between(const TransportScene& transport, const Vec3f& from, const Vec3f& to) {
+  const Vec3f way = to - from;
+  const float distance = way.norm();
+  if (!(distance > RayScene::kLift) || transport.rays().visible(from, to)) return std::nullopt;
+  Hit hit;
+  if (!transport.rays().closest(from, way / distance, hit) || hit.distance > distance) return std::nullopt;
+  return transport.mesh().triangle(hit.triangle).surface;
+}
+
+/// A face that a light stands on, closer than rays can tell apart.
+struct Contact {
+  SurfaceId surface;
+  bool front = true;  ///< The side that the light stands on.
+  Vec3f normal;       ///< Of that side.
+};
+constexpr float kTouching = 4 * RayScene::kLift;
+
+std::optional<Contact> contact_of(const TransportScene& transport, const PunctualLight& light,
+                                  const Vec3f& point) {
+  if (std::holds_alternative<PhotometricLight>(light)) return std::nullopt;  // these start off their opening
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f axis = Vec3f::Unit(k);
+    Hit hit;
+    if (!transport.rays().closest(point - kTouching * axis, axis, hit) || hit.distance > 2 * kTouching)
+      continue;
+    const BaseTriangle& face = transport.mesh().triangle(hit.triangle);
+    Contact contact{face.surface, true, transport.rays().normal(hit.triangle, hit.u, hit.v)};
+    // On a face with two like sides a spot stands on the one it shines away from.
+    const auto* spot = std::get_if<SpotLight>(&light);
+    if (face.two_sided && spot != nullptr && spot->direction.cast<float>().dot(contact.normal) < 0) {
+      contact.front = false;
+      contact.normal = -contact.normal;
+    }
+    return contact;
+  }
+  return std::nullopt;
+}
+
+/// Looks from both sides of the faces that a light meets. One outside of a room meets faces with the open
+/// before them and the room behind them.
+class SideLooks {
+ public:
+  explicit SideLooks(const RayScene& rays) : rays_(rays), numbers_(0) {}
+
+  void look(const Hit& hit) {
+    constexpr std::uint32_t kMostLooks = 256;
+    if (looks_ == kMostLooks) return;
+    const Vec3f local = sample_cosine_hemisphere(numbers_.sample(looks_, 0), numbers_.sample(looks_, 1));
+    ++looks_;
+    const Vec3f front = rays_.normal(hit.triangle, hit.u, hit.v);
+    const auto is_open = [&](bool side) {
+      const Frame frame(side ? front : Vec3f(-front));
+      return rays_.escapes(rays_.ray_origin(hit.triangle, hit.u, hit.v, side), frame.to_world(local));
+    };
+    if (is_open(hit.front)) ++open_before_;
+    if (is_open(!hit.front)) ++open_behind_;
+  }
+
+  bool outside_of_a_room() const {
+    return looks_ > 0 && 2 * open_before_ >= looks_ && 20 * open_behind_ <= looks_;
+  }
+
+ private:
+  const RayScene& rays_;
+  SobolSequence numbers_;
+  std::uint32_t looks_ = 0, open_before_ = 0, open_behind_ = 0;
+};
+
+/// Books where the packets of one light end.
+class OpeningBooks {
+ public:
+  OpeningBooks(const TransportScene& transport, const PunctualLight& light, const Vec3f& mouth)
+      : transport_(transport),
+        mouth_(mouth),
+        contact_(contact_of(transport, light, mouth)),
+        looks_(transport.rays()) {}
+
+  void add(const ProbeRay& probe) {
+    ++packets_;
+    std::optional<SurfaceId> cutter = between(transport_, probe.origin, mouth_);
+    const SurfaceId met = probe.met ? transport_.mesh().triangle(probe.hit.triangle).surface : SurfaceId();
+    if (contact_ && probe.direction.dot(contact_->normal) < 0) {
+      if (probe.met && probe.hit.front == contact_->front && met == contact_->surface &&
+          probe.hit.distance < kTouching) {
+        ++touching_;
+        return;
+      }
+      cutter = contact_->surface;
+    }
+    if (cutter) {
+      ++beyond_;
+      ++takers_[*cutter];
+    } else if (probe.met && is_back(transport_, probe.hit)) {
+      ++on_backs_;
+      ++takers_[met];
+    } else if (probe.met) {
+      ++seen_;
+      ++seers_[met];
+      looks_.look(probe.hit);
+    }
+  }
+
+  OpeningLoss loss(std::uint32_t light) const {
+    const auto share = [&](std::uint32_t count) { return static_cast<double>(count) / packets_; };
+    OpeningLoss loss{
+        light, share(on_backs_ + beyond_), share(beyond_), share(touching_), share(seen_), most_of(takers_)};
+    if (contact_) {
+      loss.surface = contact_->surface;
+    } else if (looks_.outside_of_a_room()) {
+      loss.lost = 1;
+      loss.seen = 0;
+      loss.surface = most_of(seers_);
+    }
+    return loss;
+  }
+
+ private:
+  using Counts = std::map<SurfaceId, std::uint32_t>;
+  static SurfaceId most_of(const Counts& counts) {
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == counts.end() ? SurfaceId() : most->first;
+  }
+
+  const TransportScene& transport_;
+  Vec3f mouth_;
+  std::optional<Contact> contact_;
+  SideLooks looks_;
+  Counts takers_, seers_;
+  std::uint32_t packets_ = 0, on_backs_ = 0, beyond_ = 0, touching_ = 0, seen_ = 0;
+};
+
+OpeningLoss loss_of(const TransportScene& transport, std::uint32_t light, const Vec3f& mouth,
+                    std::uint32_t packets) {
+  const PunctualLight& source = transport.scene().lights[light];
+  OpeningBooks books(transport, source, mouth);
+  const SobolSequence numbers(light);
+  Ray16 rays;
+  for (std::uint32_t first = 0; first < packets; first += 16) {
+    UniformLanes x;
+    for (int d = 0; d < 4; ++d) numbers.sample16(first, d, x.u[d]);
+    for (int lane = 0; lane < 16; ++lane)
+      start_light_ray(source, transport.rays(), x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane], rays,
+                      lane);
+    trace_probes(transport.rays(), rays, 16, [&](int, const ProbeRay& probe) { books.add(probe); });
+  }
+  return books.loss(light);
+}
+
+}  // namespace
+
+std::vector<OpeningLoss> opening_losses(const TransportScene& transport) {
+  const std::vector<PunctualLight>& lights = transport.scene().lights;
+  std::vector<OpeningLoss> losses;
+  if (lights.empty()) return losses;
+  const auto packets = std::clamp(static_cast<std::uint32_t>(kMostPackets / lights.size()),
+                                  kLeastPacketsPerLight, kPacketsPerLight);
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const std::optional<Vec3f> mouth = std::visit(MouthOf{transport.rays()}, lights[l]);
+    if (!mouth) continue;
+    const OpeningLoss loss = loss_of(transport, static_cast<std::uint32_t>(l), *mouth, packets);
+    if (loss.lost > kLeastLoss || loss.touching > 0) losses.push_back(loss);
+  }
+  return losses;
+}
+
+}  // namespace reemit

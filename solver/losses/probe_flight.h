@@ -1,0 +1,79 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "solver/shoot/flight.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// The way of one packet of a flight, in the normalised space.
+struct ProbeRay {
+  std::size_t source = 0;  ///< Of the flight.
+  Vec3f origin{0, 0, 0};
+  Vec3f direction{0, 0, 1};
+  Hit hit;
+  bool met = false;  ///< Else the packet left the room, and `hit` says nothing.
+};
+
+/// Second look at the rays that met nothing, by blocks as the solver takes it.
+void look_again(const RayScene& scene, const Ray16& rays, int count, Hit16& hits);
+
+/// Traces up to 16 rays as packets are traced, with a second look where they meet nothing, and calls
+/// visit(lane, ProbeRay) for each; `source` is left 0.
+template <class Visit>
+void trace_probes(const RayScene& scene, const Ray16& rays, int count, const Visit& visit) {
+  Hit16 hits;
+  scene.closest16(rays, count, hits);
+  if (std::count(hits.triangle, hits.triangle + count, RayScene::kMiss) > 0)
+    look_again(scene, rays, count, hits);
+  for (int lane = 0; lane < count; ++lane) {
+    ProbeRay probe;
+    probe.origin = {rays.ox[lane], rays.oy[lane], rays.oz[lane]};
+    probe.direction = {rays.dx[lane], rays.dy[lane], rays.dz[lane]};
+    probe.met = hits.triangle[lane] != RayScene::kMiss;
+    if (probe.met)
+      probe.hit = {TriangleId(hits.triangle[lane]), hits.u[lane], hits.v[lane], hits.distance[lane],
+                   hits.front[lane]};
+    visit(lane, probe);
+  }
+}
+
+/// Traces the packets of `flight` in one thread and shows each to `visit`, in order. The same room gives the
+/// same rays always: the random numbers are fixed. `stream` tells flights apart.
+template <class Visit>
+void trace_probes(const TransportScene& transport, const Flight& flight, std::uint32_t stream,
+                  const Visit& visit) {
+  constexpr std::uint64_t kSeed = 0;
+  const FlightNumbers numbers(SamplingKind::kSobol, kSeed, 0, stream);
+  std::vector<std::int64_t> quanta(16 * transport.bands());
+  if (flight.packets() == 0) return;
+  FlightCursor cursor(transport, flight, 0);
+  std::size_t source = 0;
+  for (std::uint32_t first = 0; first < flight.packets(); first += 16) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(16, flight.packets() - first));
+    Ray16 rays;
+    cursor.start16(first, count, numbers, rays, quanta.data());
+    trace_probes(transport.rays(), rays, count, [&](int lane, ProbeRay& probe) {
+      while (first + static_cast<std::uint32_t>(lane) >= flight.first_packet[source + 1]) ++source;
+      probe.source = source;
+      visit(probe);
+    });
+  }
+}
+
+/// "'wall'", or "surface 3" for one without a name.
+std::string quoted_name(const Scene& scene, SurfaceId surface);
+/// "12.3 %"
+std::string share_text(double share);
+/// "(1.25, 0, 3)" of a point [m].
+std::string place_text(const Vec3& point);
+
+/// True if a ray that ended in `hit` met the back of a one-sided face, which absorbs everything.
+inline bool is_back(const TransportScene& transport, const Hit& hit) {
+  return !hit.front && !transport.mesh().triangle(hit.triangle).two_sided;
+}
+
+}  // namespace reemit

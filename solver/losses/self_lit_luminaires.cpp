@@ -1,0 +1,106 @@
+#include "solver/losses/self_lit_luminaires.h"
+
+#include <algorithm>
+#include <map>
+
+#include "mesh/disjoint_sets.h"
+#include "solver/losses/probe_flight.h"
+
+namespace reemit {
+namespace {
+
+constexpr double kLeastShare = 0.25;
+constexpr double kSmallerThanRoom = 0.9;  // diagonals
+
+Box box_of(const Surface& surface) {
+  Scene alone;
+  alone.surfaces.push_back(surface);
+  return bounds(alone);
+}
+
+/// Luminous surfaces as lamps: those of one material whose boxes touch belong together. A lamp is known by
+/// its first surface.
+class LampGroups {
+ public:
+  LampGroups(const Scene& scene, const std::vector<bool>& emits) : sets_(scene.surfaces.size()) {
+    const Vec3 slack = Vec3::Constant(1e-6 * bounds(scene).size().norm());
+    std::vector<Box> boxes;
+    for (std::size_t s = 0; s < emits.size(); ++s) {
+      if (!emits[s]) continue;
+      const Box box = box_of(scene.surfaces[s]);
+      for (std::size_t k = 0; k < luminous_.size(); ++k) {
+        const bool touch = ((box.min - slack - boxes[k].max).array() <= 0).all() &&
+                           ((boxes[k].min - slack - box.max).array() <= 0).all();
+        if (touch && scene.surfaces[s].material == scene.surfaces[luminous_[k]].material)
+          sets_.join(s, luminous_[k]);
+      }
+      luminous_.push_back(s);
+      boxes.push_back(box);
+    }
+    for (std::size_t k = 0; k < luminous_.size(); ++k) {
+      Box& extent = extents_.try_emplace(of(luminous_[k]), boxes[k]).first->second;
+      extent.min = extent.min.cwiseMin(boxes[k].min);
+      extent.max = extent.max.cwiseMax(boxes[k].max);
+    }
+  }
+
+  std::size_t of(std::size_t surface) { return sets_.find(surface); }
+  const std::map<std::size_t, Box>& extents() const { return extents_; }
+  std::vector<SurfaceId> surfaces_of(std::size_t lamp) {
+    std::vector<SurfaceId> surfaces;
+    for (const std::size_t s : luminous_)
+      if (of(s) == lamp) surfaces.emplace_back(s);
+    return surfaces;
+  }
+
+ private:
+  DisjointSets sets_;
+  std::vector<std::size_t> luminous_;
+  std::map<std::size_t, Box> extents_;
+};
+
+}  // namespace
+
+std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission) {
+  const Scene& scene = transport.scene();
+  const ZoneMesh& mesh = transport.mesh();
+  const std::size_t bands = transport.bands();
+  Emission surfaces;  // without the lights that have no area
+  std::vector<double> watts;
+  std::vector<bool> emits(scene.surfaces.size(), false);
+  for (std::size_t s = 0; s < emission.sources.size(); ++s) {
+    if (!emission.sources[s].zone.valid()) continue;
+    surfaces.sources.push_back(emission.sources[s]);
+    double power = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+      surfaces.quanta.push_back(emission.quanta[s * bands + b]);
+      power += static_cast<double>(emission.quanta[s * bands + b]) * emission.watts_per_quantum[b];
+    }
+    watts.push_back(power);
+    emits[mesh.zone_surface(emission.sources[s].zone).index()] = true;
+  }
+  LampGroups lamps(scene, emits);
+  if (lamps.extents().empty()) return {};
+  const auto packets =
+      static_cast<std::uint32_t>(std::clamp<std::size_t>(1024 * lamps.extents().size(), 4096, 65536));
+  const Flight flight = plan_emission_flight(surfaces, bands, packets, 0.5);
+  std::map<std::size_t, double> sent;
+  std::map<std::size_t, double> kept;
+  trace_probes(transport, flight, 0, [&](const ProbeRay& probe) {
+    const std::size_t lamp = lamps.of(mesh.zone_surface(flight.sources[probe.source].zone).index());
+    const double power = watts[probe.source] / static_cast<double>(flight.first_packet[probe.source + 1] -
+                                                                   flight.first_packet[probe.source]);
+    sent[lamp] += power;
+    if (!probe.met) return;
+    const std::size_t to = mesh.triangle(probe.hit.triangle).surface.index();
+    if (emits[to] && lamps.of(to) == lamp) kept[lamp] += power;
+  });
+  const double room = bounds(scene).size().norm();
+  std::vector<SelfLitLuminaire> found;
+  for (const auto& [lamp, box] : lamps.extents())
+    if (kept[lamp] > kLeastShare * sent[lamp] && box.size().norm() < kSmallerThanRoom * room)
+      found.push_back({lamps.surfaces_of(lamp), kept[lamp] / sent[lamp]});
+  return found;
+}
+
+}  // namespace reemit

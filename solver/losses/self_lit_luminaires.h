@@ -1,0 +1,19 @@
+#pragma once
+#include <vector>
+
+#include "solver/shoot/emission.h"
+#include "solver/shoot/transport_scene.h"
+
+namespace reemit {
+
+/// Luminous surfaces of one material whose boxes touch, taken for one lamp, whose light meets the lamp first.
+struct SelfLitLuminaire {
+  std::vector<SurfaceId> surfaces;
+  double share = 0;  ///< Of its power that does [0,1].
+};
+
+/// Lamps smaller than the room that send a quarter of their power or more onto themselves: closed ones whose
+/// inner side emits. A room whose walls emit is none. The error of a share is 2 % at most.
+std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission);
+
+}  // namespace reemit

@@ -1,0 +1,67 @@
+#include "solver/tally/batch_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/solution/solution.h"
+
+namespace reemit {
+namespace {
+
+/// Unit of packets by default: large enough that what a batch costs beside its rays, which is work for every
+/// zone, is the smaller part.
+std::uint64_t default_unit(std::size_t zones) {
+  constexpr std::uint64_t kSmallest = 65536;
+  constexpr std::size_t kZonesPerPacket = 4;
+  return std::max<std::uint64_t>(kSmallest, zones / kZonesPerPacket);
+}
+/// Packets per zone in a batch that has grown up. Each sweep looks at all zones with power: fewer packets
+/// make that the larger part of the work.
+constexpr std::uint64_t kPacketsPerZone = 16;
+/// Packets of a batch for each batch of the run. Shooting scales every band to its exact sum, so a batch is a
+/// ratio estimate, biased by about (variance of colours)/packets; its noise is sqrt(variance/packets). With
+/// as many packets for each of n batches the bias of the mean is an eighth of its noise at most.
+constexpr double kPacketsPerBatch = 64;
+/// Total weight whose books, of kBatchQuanta = 2^42 each, fit into 63 bits.
+constexpr std::int64_t kMostWeight = (std::int64_t{1} << 21) - 1;
+constexpr std::int64_t kRound = static_cast<std::int64_t>(ZoneSums::kGroups);
+
+}  // namespace
+
+BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones) {
+  std::uint64_t unit = default_unit(zones);
+  if (settings.batch_packets > 0) {
+    unit = settings.batch_packets;
+    if (settings.packets > 0)
+      weight_of_packets_ = static_cast<std::int64_t>(std::max<std::uint64_t>(1, settings.packets / unit));
+  } else {
+    largest_weight_ = static_cast<std::int64_t>((kPacketsPerZone * zones + unit - 1) / unit);
+    if (settings.packets > 0) {
+      const double unbiased = std::sqrt(static_cast<double>(settings.packets) / kPacketsPerBatch);
+      const double least =
+          std::min<double>(std::max(2, settings.smallest_batch_count), std::max(2.0, unbiased));
+      const std::uint64_t units =
+          std::max(static_cast<std::uint64_t>(least), (settings.packets + unit - 1) / unit);
+      weight_of_packets_ = static_cast<std::int64_t>(
+          std::min({units, settings.packets, static_cast<std::uint64_t>(kMostWeight)}));
+      unit = settings.packets / static_cast<std::uint64_t>(weight_of_packets_);
+    }
+  }
+  unit_packets_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(unit, 1, std::uint64_t{1} << 31));
+  const std::int64_t most =
+      (std::int64_t{1} << 31) / unit_packets_;  // packets of one batch are counted in 32 bits
+  largest_weight_ = std::clamp<std::int64_t>(largest_weight_, 1, std::max<std::int64_t>(1, most));
+}
+
+std::int64_t BatchPlan::next_weight(std::int64_t batches, std::int64_t done) const {
+  std::int64_t weight = 1;
+  std::int64_t before = 0;  // weight of all rounds before the one that this batch is in
+  for (std::int64_t round = batches / kRound; round > 0 && weight < largest_weight_; --round) {
+    before += kRound * weight;
+    weight = std::clamp<std::int64_t>(before / kRound, 1, largest_weight_);
+  }
+  const std::int64_t limit = weight_of_packets_ > 0 ? std::min(weight_of_packets_, kMostWeight) : kMostWeight;
+  return std::clamp<std::int64_t>(limit - done, 0, weight);
+}
+
+}  // namespace reemit

@@ -1,0 +1,142 @@
+#include "solver/trace/embree_scene.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+void shape_bounds_callback(const RTCBoundsFunctionArguments* args) {
+  const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];
+  const auto below = [](double x) { return std::nextafter(static_cast<float>(x), -kInfinity); };
+  const auto above = [](double x) { return std::nextafter(static_cast<float>(x), kInfinity); };
+  RTCBounds& box = *args->bounds_o;
+  box.lower_x = below(shape.low().x());
+  box.lower_y = below(shape.low().y());
+  box.lower_z = below(shape.low().z());
+  box.upper_x = above(shape.high().x());
+  box.upper_y = above(shape.high().y());
+  box.upper_z = above(shape.high().z());
+}
+
+/// Nearest hit of ray i of a packet of n, as a float inside the ray's range; infinity if there is none.
+float nearest_hit(const ShapeTarget& shape, RTCRayN* rays, unsigned n, unsigned i) {
+  const Vec3 origin(RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i));
+  const Vec3 direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i));
+  const float near = RTCRayN_tnear(rays, n, i);
+  const float far = RTCRayN_tfar(rays, n, i);
+  const auto t = static_cast<float>(shape.nearest(origin, direction, near, far));
+  return t > near && t < far ? t : kInfinity;
+}
+
+void intersect_shape(const RTCIntersectFunctionNArguments* args) {
+  const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const float t = nearest_hit(shape, rays, args->N, i);
+    if (t == kInfinity) continue;
+    RTCRayN_tfar(rays, args->N, i) = t;
+    RTCHitN_geomID(hits, args->N, i) = args->geomID;
+    RTCHitN_primID(hits, args->N, i) = args->primID;
+    RTCHitN_instID(hits, args->N, i, 0) = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+void occlude_shape(const RTCOccludedFunctionNArguments* args) {
+  const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];
+  for (unsigned i = 0; i < args->N; ++i)
+    if (args->valid[i] != 0 && nearest_hit(shape, args->ray, args->N, i) < kInfinity)
+      RTCRayN_tfar(args->ray, args->N, i) = -kInfinity;
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene() : device_(rtcNewDevice(nullptr)) {
+  if (device_ == nullptr)
+    throw ResourceError("ray tracing",
+                        "Embree could not be started (error " +
+                            std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))) + ")",
+                        "Check that this processor supports SSE2 and that memory is available.");
+  scene_ = rtcNewScene(device_);
+}
+
+EmbreeScene::~EmbreeScene() {
+  if (scene_ != nullptr) rtcReleaseScene(scene_);
+  if (device_ != nullptr) rtcReleaseDevice(device_);
+}
+
+void EmbreeScene::add(const std::vector<Vec3f>& vertices,
+                      const std::vector<std::array<std::uint32_t, 3>>& indices, unsigned number) {
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
+  auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), indices.size()));
+  if ((vertex == nullptr && !vertices.empty()) || (index == nullptr && !indices.empty())) {
+    rtcReleaseGeometry(geometry);
+    throw ResourceError("ray tracing", "out of memory for " + std::to_string(indices.size()) + " triangles",
+                        "Free memory or use a coarser room.");
+  }
+  for (const Vec3f& p : vertices)
+    for (int k = 0; k < 3; ++k) *vertex++ = p[k];
+  for (const auto& corners : indices) index = std::copy(corners.begin(), corners.end(), index);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene_, geometry, number);
+  rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::add_triangles(const std::vector<Vec3f>& vertices, std::span<const BaseTriangle> triangles,
+                                const std::vector<std::uint32_t>& apart) {
+  std::vector<std::array<std::uint32_t, 3>> indices;
+  indices.reserve(triangles.size());
+  for (const BaseTriangle& t : triangles) indices.push_back(t.vertex);
+  std::vector<Vec3f> apart_vertices;
+  std::vector<std::array<std::uint32_t, 3>> apart_indices;
+  for (const std::uint32_t t : apart) {
+    const auto first = static_cast<std::uint32_t>(apart_vertices.size());
+    for (std::uint32_t& v : indices[t]) {
+      apart_vertices.push_back(vertices[v]);
+      v = triangles[t]
+              .vertex[0];  // shrinks to a point, which no ray hits, and keeps the numbers of the others
+    }
+    apart_indices.push_back({first, first + 1, first + 2});
+  }
+  add(vertices, indices, kTriangles);
+  if (!apart.empty()) add(apart_vertices, apart_indices, kFeet);
+}
+
+void EmbreeScene::add_shapes(const std::vector<CurvedShape>& shapes) {
+  for (const CurvedShape& shape : shapes) targets_.emplace_back(shape);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(targets_.size()));
+  rtcSetGeometryUserData(geometry, targets_.data());
+  rtcSetGeometryBoundsFunction(
+      geometry, [](const RTCBoundsFunctionArguments* args) { shape_bounds_callback(args); }, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_shape);
+  rtcSetGeometryOccludedFunction(geometry, occlude_shape);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene_, geometry, kShapes);
+  rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::commit() {
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitScene(scene_);
+  const RTCError error = rtcGetDeviceError(device_);
+  if (error != RTC_ERROR_NONE)
+    throw ResourceError(
+        "ray tracing",
+        "Embree could not build its tree (error " + std::to_string(static_cast<int>(error)) + ")",
+        "Free memory or use a coarser room.");
+}
+
+}  // namespace reemit

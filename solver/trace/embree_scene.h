@@ -1,0 +1,50 @@
+#pragma once
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/zone_mesh.h"
+#include "solver/trace/shape_hit.h"
+
+namespace reemit {
+
+/// What RayScene gives to Embree to build its tree from. Throws ResourceError when Embree cannot be started
+/// or runs out of memory.
+class EmbreeScene {
+ public:
+  /// Geometry numbers. The triangles of kTriangles have their number in the base mesh, shapes theirs in
+  /// BaseMesh::shapes, those of kFeet their place in the list of triangles set apart.
+  static constexpr unsigned kTriangles = 0;
+  static constexpr unsigned kShapes = 1;
+  static constexpr unsigned kFeet = 2;
+
+  EmbreeScene();
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  /// `apart`: triangles that form a geometry of their own (kFeet).
+  void add_triangles(const std::vector<Vec3f>& vertices, std::span<const BaseTriangle> triangles,
+                     const std::vector<std::uint32_t>& apart);
+  void add_shapes(const std::vector<CurvedShape>& shapes);
+  /// Builds the tree.
+  void commit();
+
+  RTCScene scene() const { return scene_; }
+
+ private:
+  void add(const std::vector<Vec3f>& vertices, const std::vector<std::array<std::uint32_t, 3>>& indices,
+           unsigned number);
+
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  std::vector<ShapeTarget> targets_;  // Embree keeps a pointer to them
+};
+
+}  // namespace reemit

@@ -1,0 +1,73 @@
+#include "solver/gather/zone_bias_estimate.h"
+
+#include <atomic>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/hand_made_solution.h"
+#include "tests/support/lamp_by_ceiling.h"
+#include "tests/support/variable_furnace.h"
+
+namespace reemit {
+namespace {
+
+/// The estimate for a furnace whose zones are off by a factor: every gather ray reads them, and path tracing
+/// finds the truth.
+ZoneBias estimate_of(double factor) {
+  constexpr double kRho = 0.5;
+  constexpr double kExitance = 2;
+  constexpr double kIrradiance = kExitance / (1 - kRho);
+  test::RoomBuilder room;
+  const MaterialId wall = room.material("wall", kRho, kExitance);
+  room.box({0, 0, 0}, {1, 2, 3}, {wall, wall, wall, wall, wall, wall}, 4);
+  const Solution solution = test::uniform_solution(room, 0, factor * kIrradiance);
+  const RayScene rays(solution.mesh);
+  const RadianceField field(room.scene(), solution, rays);
+  const DirectLight direct(room.scene(), rays);
+  const HemisphereGather gather(rays, field, direct, GatherSettings{.close_hit = 0});
+  const PathTracer path(rays, field, direct, 1);
+  std::vector<SurfacePoint> points;
+  for (std::size_t i = 0; i < ZoneBiasEffort::kPoints; ++i)
+    points.push_back(surface_point(rays, TriangleId(i % rays.mesh().triangle_count()), 0.3F, 0.3F, true));
+  // Over the radiance rho^2 E/pi that is there after at least two reflections.
+  const std::vector<double> scale(points.size(), std::numbers::pi / (kRho * kRho * kIrradiance));
+  return estimate_zone_bias(gather, path, points, scale, {256}, 1);
+}
+
+TEST(ZoneBiasEstimate, finds_a_planted_bias_and_nothing_without) {
+  // The bound is 2 standard errors of the square above the estimate; five of them are allowed.
+  for (const double bias : {0.1, -0.1}) {
+    const ZoneBias found = estimate_of(1 + bias);
+    EXPECT_TRUE(found.certain());
+    EXPECT_NEAR(found.rms, 0.1, 2.5 * (found.bound - found.rms));
+    EXPECT_LT(found.bound - found.rms, 0.015) << "test too weak";
+  }
+  const ZoneBias none = estimate_of(1);
+  EXPECT_FALSE(none.certain());
+  EXPECT_LT(none.bound, 0.03);
+}
+
+TEST(ZoneBiasEstimate, solve_states_next_to_nothing_in_a_furnace) {
+  const test::VariableFurnace furnace(8);
+  SolverSettings settings;
+  settings.packets = 2'000'000;
+  const std::atomic<bool> never{false};
+  const Solution solution = solve(furnace.room().scene(), furnace.room().mesh(), settings, {}, never);
+  ASSERT_TRUE(solution.record.gather_bias.has_value());
+  EXPECT_FALSE(solution.record.gather_bias->certain());
+  EXPECT_LT(solution.record.gather_bias->bound, 0.04);
+}
+
+/// Zones four times the gap between lamp and ceiling send light out of the gap that it holds.
+TEST(ZoneBiasEstimate, solve_states_that_zones_are_too_large_beside_a_lamp) {
+  const Solution solution = test::LampByCeiling(0.8).solved(4'000'000, 1);
+  ASSERT_TRUE(solution.record.gather_bias.has_value());
+  EXPECT_TRUE(solution.record.gather_bias->certain());
+  EXPECT_GT(solution.record.gather_bias->rms, 0.02);
+  EXPECT_LT(solution.record.gather_bias->rms, 0.3);
+}
+
+}  // namespace
+}  // namespace reemit

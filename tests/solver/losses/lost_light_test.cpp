@@ -1,0 +1,132 @@
+#include "solver/losses/lost_light.h"
+
+#include <array>
+#include <atomic>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "solver/progressive_solver.h"
+#include "tests/support/test_rooms.h"
+
+namespace reemit {
+namespace {
+
+using test::RoomBuilder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A box of 4 m x 3 m x 4 m, reflectance 0.5, lit by its floor quad2; y is up.
+class LostLight : public ::testing::Test {
+ protected:
+  LostLight() {
+    const MaterialId grey = room_.material("grey", 0.5);
+    const MaterialId lamp = room_.material("lamp", 0.5, 10);
+    sides_ = {grey, grey, lamp, grey, grey, grey};
+  }
+
+  /// Quad of the ceiling between two x.
+  void ceiling(double x0, double x1) {
+    room_.quad(sides_[0], {Vec3(x0, 3, 0), Vec3(x1, 3, 0), Vec3(x1, 3, 4), Vec3(x0, 3, 4)}, 4);
+  }
+  void box(bool with_ceiling) {
+    if (!with_ceiling) sides_[3] = MaterialId();
+    room_.box(Vec3(0, 0, 0), Vec3(4, 3, 4), sides_, 4);
+  }
+
+  Solution solved(int threads = 1) const {
+    SolverSettings settings;
+    settings.packets = 1 << 16;
+    settings.threads = threads;
+    const std::atomic<bool> interrupt = false;
+    return solve(room_.scene(), room_.mesh(), settings, {}, interrupt);
+  }
+  std::vector<std::string> warnings() const { return solved().light_warnings; }
+  static double escaped_share(const Solution& s) {
+    return static_cast<double>(s.audit.bands[0].total_escaped()) /
+           static_cast<double>(s.audit.bands[0].emitted);
+  }
+
+  RoomBuilder room_;
+  std::array<MaterialId, 6> sides_;
+};
+
+TEST_F(LostLight, ATightRoomLosesNothing) {
+  box(true);
+  EXPECT_THAT(warnings(), IsEmpty());
+}
+
+TEST_F(LostLight, AGapIsNamedWithItsPlaceAndShare) {
+  box(false);
+  ceiling(0, 1);
+  ceiling(1.004, 4);
+  const Solution solution = solved();
+  const double share = escaped_share(solution);
+  EXPECT_GT(share, 2e-4);
+  EXPECT_LT(share, 4e-3);
+  EXPECT_THAT(solution.light_warnings,
+              ElementsAre(AllOf(HasSubstr("leaves the room, although its faces close"),
+                                HasSubstr("gap of about"), HasSubstr("'quad5' and 'quad6'"))));
+  const RayScene rays(solution.mesh);
+  const TransportScene transport(room_.scene(), solution.mesh, rays);
+  const EscapedLight found = find_escapes(transport, collect_emission(transport), solution);
+  // The ends of the slit may count as wider, and the share is that of some 2^17 probes.
+  EXPECT_NEAR(found.through_gaps, share, 0.3 * share);
+  ASSERT_FALSE(found.places.empty());
+  for (const LightLoss& place : found.places) {
+    EXPECT_EQ(place.way, LightLoss::Way::kGap);
+    EXPECT_NEAR(place.place.x(), 1.002, 0.01);
+    EXPECT_NEAR(place.place.y(), 3, 0.01);
+    EXPECT_LT(place.width, 0.04);
+  }
+}
+
+TEST_F(LostLight, AnOpenRoomIsNoLeak) {
+  box(false);
+  const Solution solution = solved();
+  EXPECT_GT(escaped_share(solution), 0.3);
+  EXPECT_THAT(solution.light_warnings, IsEmpty());
+}
+
+TEST_F(LostLight, ASkylightIsNoLeak) {
+  box(false);
+  ceiling(0, 1);
+  ceiling(2, 4);
+  EXPECT_GT(escaped_share(solved()), 0.05);
+  EXPECT_THAT(warnings(), IsEmpty());
+}
+
+TEST_F(LostLight, LightThatStartsOutsideIsNamed) {
+  box(true);
+  const MaterialId both = room_.material("both", 0.5, 2, true);
+  room_.scene().materials[both.index()].emits_both_sides = true;
+  // Reaches through the wall x = 4: the outer part shines into the open.
+  room_.quad(both, {Vec3(3.6, 1, 1), Vec3(4.4, 1, 1), Vec3(4.4, 1, 2), Vec3(3.6, 1, 2)}, 4);
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("leaves the room"), HasSubstr("'quad6'")),
+                                      AllOf(HasSubstr("ends on backs"), HasSubstr("'quad1'"))));
+}
+
+TEST_F(LostLight, BacksThatTakeLightAreNamedWithTheirShare) {
+  box(true);
+  room_.quad(sides_[0], {Vec3(1, 2, 1), Vec3(1, 2, 3), Vec3(3, 2, 3), Vec3(3, 2, 1)}, 2);  // looks up
+  const Solution solution = solved();
+  const double share = static_cast<double>(solution.audit.bands[0].absorbed_on_backs[6]) /
+                       static_cast<double>(solution.audit.bands[0].emitted);
+  EXPECT_THAT(solution.light_warnings,
+              ElementsAre(AllOf(HasSubstr("ends on backs of one-sided faces"), HasSubstr("'quad6'"),
+                                HasSubstr(fmt::format("{:.3g} %", 100 * share)), HasSubstr("from 'quad2'"),
+                                HasSubstr("--two-sided"))));
+}
+
+TEST_F(LostLight, WarningsDoNotDependOnThreads) {
+  box(false);
+  ceiling(0, 1);
+  ceiling(1.004, 4);
+  EXPECT_EQ(solved(1).light_warnings, solved(2).light_warnings);
+}
+
+}  // namespace
+}  // namespace reemit

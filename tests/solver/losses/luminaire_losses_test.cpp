@@ -1,0 +1,194 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "solver/losses/luminaire_warnings.h"
+#include "solver/losses/opening_losses.h"
+#include "solver/losses/self_lit_luminaires.h"
+#include "tests/solver/emit/luminaire_tables.h"
+#include "tests/support/test_rooms.h"
+
+namespace reemit {
+namespace {
+
+using test::RoomBuilder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A closed room of 4 m x 3 m x 4 m; y is up and quad3 is the ceiling at y = 3.
+class LuminaireLosses : public ::testing::TestWithParam<bool> {
+ protected:
+  void walls(bool two_sided) {
+    const MaterialId grey = room_.material("grey", 0.5, 0, two_sided);
+    room_.box(Vec3(0, 0, 0), Vec3(4, 3, 4), {grey, grey, grey, grey, grey, grey}, 2);
+  }
+
+  /// Shines down with I = cos(gamma); 0.6 m x 1.2 m and 35 mm high.
+  PhotometricLight troffer(const Vec3& position) const {
+    PhotometricLight l;
+    l.name = "troffer";
+    l.position = position;
+    l.orientation.col(0) = Vec3(1, 0, 0);
+    l.orientation.col(1) = Vec3(0, 0, -1);
+    l.orientation.col(2) = Vec3(0, 1, 0);
+    l.table = test::lambertian_table();
+    l.intensity_per_candela = room_.flat(1);
+    l.opening = test::opening(LuminousOpening::Shape::kBox, 1.2, 0.6, 0.035);
+    return l;
+  }
+
+  std::vector<OpeningLoss> losses() const {
+    const MeshResult meshed = room_.mesh();
+    const RayScene rays(meshed.mesh);
+    const TransportScene transport(room_.scene(), meshed.mesh, rays);
+    return opening_losses(transport);
+  }
+  std::vector<std::string> warnings() const {
+    const MeshResult meshed = room_.mesh();
+    return luminaire_warnings(room_.scene(), meshed.mesh);
+  }
+  void light(PunctualLight l) { room_.scene().lights.push_back(std::move(l)); }
+
+  RoomBuilder room_;
+};
+
+TEST_P(LuminaireLosses, OpeningsWithTheirMiddleAtTheCeilingLoseHalf) {
+  walls(GetParam());
+  light(troffer(Vec3(2, 3, 2)));
+  const std::vector<OpeningLoss> found = losses();
+  ASSERT_EQ(found.size(), 1u);
+  // 4096 stratified points of a box of which half is above; 4 standard errors of independent ones are 0.031.
+  EXPECT_NEAR(found[0].lost, 0.5, 0.031);
+  EXPECT_EQ(found[0].beyond, found[0].lost);
+  EXPECT_NEAR(found[0].seen, 1 - found[0].lost, 1e-12);
+  EXPECT_EQ(found[0].surface, SurfaceId(3));
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("light 'troffer'"), HasSubstr("across 'quad3'"),
+                                            HasSubstr("mount"))));
+}
+
+TEST_P(LuminaireLosses, ThePartBeyondTheCeilingIsTheShareLost) {
+  walls(GetParam());
+  PhotometricLight l = troffer(Vec3(2, 3 - 0.0075, 2));  // 10 of 35 mm are above
+  light(l);
+  const Vec3 size = l.opening.size();
+  const double sides = 2 * (size.x() + size.y()) * size.z();
+  const double caps = 2 * size.x() * size.y();
+  const double above = (sides * 10 / 35 + caps / 2) / (sides + caps);
+  ASSERT_EQ(losses().size(), 1u);
+  EXPECT_NEAR(losses()[0].lost, above, 0.031);  // 4 standard errors
+}
+
+TEST_P(LuminaireLosses, MountedBelowTheCeilingNothingIsLost) {
+  walls(GetParam());
+  light(troffer(Vec3(2, 3 - 0.0175, 2)));
+  PhotometricLight flat = troffer(Vec3(1, 3, 1));
+  flat.opening.height = 0;
+  light(flat);
+  light(PointLight{"bulb", Vec3(2, 2.999, 2), room_.flat(1)});
+  light(DirectionalLight{"sun", Vec3(0, -1, 0), room_.flat(1)});
+  EXPECT_THAT(losses(), IsEmpty());
+  EXPECT_THAT(warnings(), IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Sides, LuminaireLosses, testing::Bool());
+
+TEST_F(LuminaireLosses, LampsBehindASurfaceLoseWhatMeetsItsBack) {
+  walls(false);
+  light(SpotLight{"spot", Vec3(2, 3.2, 2), Vec3(0, -1, 0), room_.flat(1), 0.1, 0.3});
+  light(troffer(Vec3(2, 3.5, 2)));
+  const std::vector<OpeningLoss> found = losses();
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].lost, 1);
+  EXPECT_EQ(found[0].surface, SurfaceId(3));
+  EXPECT_THAT(warnings(),
+              ElementsAre(AllOf(HasSubstr("'spot'"), HasSubstr("100 %"), HasSubstr("behind 'quad3'")),
+                          AllOf(HasSubstr("'troffer'"), HasSubstr("behind 'quad3'"))));
+}
+
+TEST_F(LuminaireLosses, LampsOutsideARoomOfTwoSidedFacesLoseAll) {
+  walls(true);
+  light(SpotLight{"spot", Vec3(2, 3.2, 2), Vec3(0, -1, 0), room_.flat(1), 0.1, 0.3});
+  light(PointLight{"bulb", Vec3(2, 3.01, 2), room_.flat(1)});
+  light(troffer(Vec3(2, 3.5, 2)));
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'spot': 100 %"), HasSubstr("behind 'quad3'")),
+                                      AllOf(HasSubstr("'bulb': 100 %"), HasSubstr("behind 'quad3'")),
+                                      AllOf(HasSubstr("'troffer': 100 %"), HasSubstr("behind 'quad3'"))));
+}
+
+TEST_F(LuminaireLosses, LampsInOpenRoomsAndOutdoorsLoseNothing) {
+  const MaterialId grey = room_.material("grey", 0.5, 0, true);
+  room_.box(Vec3(0, 0, 0), Vec3(4, 3, 4), {grey, grey, grey, grey, MaterialId(), grey}, 2);
+  light(PointLight{"bulb", Vec3(2, 2, 2), room_.flat(1)});
+  light(PointLight{"near the opening", Vec3(2, 2, 0.1), room_.flat(1)});
+  light(SpotLight{"spot", Vec3(2, 3, 2), Vec3(0, -1, 0), room_.flat(1), 0.1, 0.3});
+  EXPECT_THAT(warnings(), IsEmpty());
+  room_ = RoomBuilder();
+  const MaterialId ground = room_.material("ground", 0.5, 0, true);
+  room_.quad(ground, {Vec3(0, 0, 0), Vec3(0, 0, 4), Vec3(4, 0, 4), Vec3(4, 0, 0)}, 2);
+  light(PointLight{"lantern", Vec3(2, 2, 2), room_.flat(1)});
+  EXPECT_THAT(warnings(), IsEmpty());
+}
+
+TEST_F(LuminaireLosses, LampsOnASurfaceAreNamed) {
+  walls(true);
+  light(PointLight{"bulb", Vec3(0, 1, 1), room_.flat(1)});
+  const std::vector<OpeningLoss> found = losses();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].surface, SurfaceId(0));
+  // Half of the sphere; 4096 stratified directions.
+  EXPECT_NEAR(found[0].lost + found[0].touching, 0.5, 0.02);
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'bulb'"), HasSubstr("lies in 'quad0'"))));
+}
+
+TEST_F(LuminaireLosses, BacksFarAwayCountToo) {
+  walls(true);
+  const MaterialId paper = room_.material("paper", 0.5);
+  // Looks up; the lamp below sees its back under the solid angle of a face of a cube about it.
+  room_.quad(paper, {Vec3(1, 2, 1), Vec3(1, 2, 3), Vec3(3, 2, 3), Vec3(3, 2, 1)}, 2);
+  light(PointLight{"bulb", Vec3(2, 1, 2), room_.flat(1)});
+  ASSERT_EQ(losses().size(), 1u);
+  EXPECT_NEAR(losses()[0].lost, 1.0 / 6, 0.023);  // 4 standard errors of 4096 independent directions
+  EXPECT_THAT(warnings(), ElementsAre(HasSubstr("the back of 'quad6'")));
+}
+
+/// The share of itself that the lamp of a room lights, by surface.
+std::vector<SelfLitLuminaire> self_lit(const RoomBuilder& room) {
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const TransportScene transport(room.scene(), meshed.mesh, rays);
+  return self_lit_luminaires(transport, collect_emission(transport));
+}
+
+TEST_F(LuminaireLosses, ClosedLampsThatEmitInsideLightThemselvesByHalf) {
+  walls(true);
+  const MaterialId both = room_.material("both", 0.5, 10, true);
+  room_.scene().materials[both.index()].emits_both_sides = true;
+  const MaterialId outer = room_.material("outer", 0.5, 10, true);
+  room_.shape(both, Sphere{Vec3(1, 1, 1), 0.3}, 2).shape(outer, Sphere{Vec3(3, 1, 1), 0.3}, 2);
+  const std::vector<SelfLitLuminaire> found = self_lit(room_);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].surfaces, ElementsAre(SurfaceId(6)));
+  EXPECT_NEAR(found[0].share, 0.5, 1e-3);  // powers of both sides are equal; packets share them evenly
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'shape6'"), HasSubstr("50 %"))));
+}
+
+TEST_F(LuminaireLosses, TheFacesOfABoxAreOneLamp) {
+  walls(true);
+  const MaterialId both = room_.material("both", 0.5, 10, true);
+  room_.scene().materials[both.index()].emits_both_sides = true;
+  room_.box(Vec3(1, 1, 1), Vec3(2, 2, 2), {both, both, both, both, both, both}, 2);
+  const std::vector<SelfLitLuminaire> found = self_lit(room_);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].surfaces.size(), 6u);
+  EXPECT_NEAR(found[0].share, 0.5, 1e-3);
+}
+
+TEST_F(LuminaireLosses, RoomsWhoseWallsEmitAreNoLamps) {
+  const MaterialId glowing = room_.material("glowing", 0.5, 10, true);
+  room_.box(Vec3(0, 0, 0), Vec3(1, 1, 1), {glowing, glowing, glowing, glowing, glowing, glowing}, 2);
+  EXPECT_THAT(self_lit(room_), IsEmpty());
+}
+
+}  // namespace
+}  // namespace reemit
