@@ -24,7 +24,9 @@ std::vector<fs::path> rooms_below(const fs::path& folder) {
     const std::string extension = entry.path().extension().string();
     const bool part_of_a_room =  // included by others
         entry.path().filename() == "vent.mgf" || entry.path().filename() == "chair.mgf" ||
-        entry.path().filename() == "table.mgf" || entry.path().parent_path().filename() == "data";
+        entry.path().filename() == "table.mgf" || entry.path().parent_path().filename() == "data" ||
+        (entry.path().parent_path().filename() == "nrc_office" &&
+         entry.path().filename() != "office_design3.mgf");
     if (!part_of_a_room &&
         (extension == ".mgf" || extension == ".obj" || extension == ".gltf" || extension == ".json"))
       out.push_back(entry.path());
