@@ -78,7 +78,7 @@ TEST_F(Pipeline, DirectLightOfPacketsAndShadowRaysAgrees) {
   EXPECT_TRUE(direct["agrees"].get<bool>());
   EXPECT_GT(direct["zones_compared"].get<int>(), 100);
   EXPECT_EQ(direct["zones_different"], 0);
-  EXPECT_EQ(direct["surfaces"].size(), 2U);
+  EXPECT_EQ(direct["surfaces"].size(), 7U);
   EXPECT_THAT(output_of({"audit", path("room.h5"), "--direct"}), HasSubstr("None of"));
 }
 
