@@ -82,7 +82,7 @@ class Gatherer {
         field_(scene, solution, rays, kReplicates),
         direct_(scene, rays),
         gather_(rays, field_, direct_,
-                GatherSettings{.close_hit = 0, .continue_uneven = false, .seed = solution.settings.seed}) {}
+                GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
 
