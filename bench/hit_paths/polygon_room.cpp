@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "bench/hit_paths/quadric_hit.h"
 
@@ -228,16 +229,22 @@ std::optional<double> PolygonRoom::meet(const Part& part, const Vec3& origin, co
   return t;
 }
 
-/// Where several polygons lie in one plane, a luminaire wins, then the one that was read first.
-const PolygonRoom::Part& PolygonRoom::winner(std::uint32_t part, const Vec3& point) const {
+/// Where several polygons lie in one plane, a luminaire that shines towards the ray wins, then what turns its
+/// front to it, then the one that was read first.
+const PolygonRoom::Part& PolygonRoom::winner(std::uint32_t part, const Vec3& point,
+                                             const Vec3& direction) const {
+  const auto rank = [&](std::uint32_t i) {
+    const bool faces_ray = polygons_[parts_[i].polygon].normal.dot(direction) < 0;
+    const Material& m = *parts_[i].material;
+    const bool shines = m.emits() && (faces_ray || m.emits_both_sides);
+    return std::pair(shines ? 0 : faces_ray || m.two_sided ? 1 : 2, i);
+  };
   std::uint32_t best = part;
   for (const std::uint32_t twin : parts_[part].twins) {
-    const Part& other = parts_[twin];
-    const Polygon& polygon = polygons_[other.polygon];
+    const Polygon& polygon = polygons_[parts_[twin].polygon];
     const Vec3 p = point - polygon.origin;
-    if (!is_inside(polygon.loops, {polygon.u.dot(p), polygon.v.dot(p)})) continue;
-    const bool lamp = other.material->emits();
-    if (lamp != parts_[best].material->emits() ? lamp : twin < best) best = twin;
+    if (is_inside(polygon.loops, {polygon.u.dot(p), polygon.v.dot(p)}) && rank(twin) < rank(best))
+      best = twin;
   }
   return parts_[best];
 }
@@ -266,7 +273,7 @@ std::optional<RoomHit> PolygonRoom::closest(const RayStart& start, const Vec3& d
     RoomHit hit;
     hit.distance = far;
     hit.point = start.point + far * direction;
-    const Part& part = winner(found, hit.point);
+    const Part& part = winner(found, hit.point, direction);
     hit.part = static_cast<std::uint32_t>(&part - parts_.data());
     if (part.shape == kNoShape) normal = polygons_[part.polygon].normal;
     hit.front = normal.dot(direction) < 0;

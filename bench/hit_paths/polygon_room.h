@@ -71,7 +71,7 @@ class PolygonRoom {
                              double far, Vec3& normal) const;
   template <class Use>
   void walk(const Vec3& origin, const Vec3& direction, double& far, Use&& use) const;
-  const Part& winner(std::uint32_t part, const Vec3& point) const;
+  const Part& winner(std::uint32_t part, const Vec3& point, const Vec3& direction) const;
 
   std::vector<Polygon> polygons_;
   std::vector<CurvedShape> shapes_;
