@@ -190,10 +190,7 @@ Comparison compare_blocks(const Scene& scene, const Camera& camera, const Compar
       worst = d;
     }
     variance_of_reference += standard_error * standard_error;
-    if (worst_errors < 0) {
-      ++out.black;
-      continue;
-    }
+    if (worst_errors < 0) continue;  // black in both
     out.blocks.push_back(worst);
     const double error = worst_error(reference[i]);
     errors.push_back(error);

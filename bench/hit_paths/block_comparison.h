@@ -44,7 +44,6 @@ struct BlockDeviation {
 struct Comparison {
   std::string camera;
   std::vector<BlockDeviation> blocks;  ///< Those with light, by falling |errors|.
-  int black = 0;                       ///< Blocks that are black in both.
   double mean_deviation = 0;           ///< Of the whole picture, relative.
   double mean_error = 0;               ///< Relative standard error of that.
   double reference_error = 0;          ///< Median relative standard error of the blocks' references.

@@ -45,8 +45,9 @@ struct Pieces {
   Vec3 vector_area = Vec3::Zero();  // sum of area * front normal
 };
 
-/// Front of one triangle of a face. A sliver beside a vertex that welding has moved may be tilted by any angle;
-/// such a triangle takes the front of the whole face. Where a face is bent, its triangles keep their own.
+/// Front of one triangle of a face. A sliver beside a vertex that welding has moved may be tilted by any
+/// angle; such a triangle takes the front of the whole face. Where a face is bent, its triangles keep their
+/// own.
 Vec3 front_of_piece(const ZoneMesh& mesh, TriangleId t, const Pieces& pieces) {
   constexpr double kLeastAltitude = 1e-4;  // of a triangle over its longest edge, for its own normal to count
   double longest2 = 0;

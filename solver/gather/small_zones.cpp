@@ -81,8 +81,7 @@ class Gatherer {
         seed_(solution.settings.seed),
         field_(scene, solution, rays, kReplicates),
         direct_(scene, rays),
-        gather_(rays, field_, direct_,
-                GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
+        gather_(rays, field_, direct_, GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
 

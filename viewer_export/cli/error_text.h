@@ -11,7 +11,8 @@ namespace reemit::cli {
 /// "1.2 %", "below 0.8 %" where noise hides it, "none", or "not known".
 std::string zones_text(const std::optional<ZoneBias>& zones);
 
-/// Appends the members "zone_error", the best estimate, and "zone_error_bound"; null where they are not known.
+/// Appends the members "zone_error", the best estimate, and "zone_error_bound"; null where they are not
+/// known.
 void add_zones(nlohmann::ordered_json& json, const std::optional<ZoneBias>& zones);
 
 /// Says so, and what helps, where the zones alone miss an error target > 0; empty where they do not or it is

@@ -42,7 +42,8 @@ TEST_F(Pipeline, SolveEndsWithOneLine) {
   const std::string out = output_of(
       {"solve", path("room.json"), "-o", path("room.h5"), "--zone-area", "0.05", "--packets", "20000"});
   EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 1) << out;
-  for (const char* word : {"stopped", "packets", "rays", " s, ", "noise", "zones"}) EXPECT_THAT(out, HasSubstr(word));
+  for (const char* word : {"stopped", "packets", "rays", " s, ", "noise", "zones"})
+    EXPECT_THAT(out, HasSubstr(word));
 }
 
 TEST_F(Pipeline, SolveAsJsonIsOneDocument) {
