@@ -18,4 +18,8 @@ std::string to_string(SamplingKind sampling) {
   return sampling == SamplingKind::kSobol ? "sobol" : "random";
 }
 
+std::string to_string(Reemission reemission) {
+  return reemission == Reemission::kFromHits ? "hits" : "zones";
+}
+
 }  // namespace reemit

@@ -6,12 +6,16 @@ namespace reemit {
 
 enum class SolveMethod { kShooting, kWalk, kMatrix };
 enum class SamplingKind { kRandom, kSobol };
+/// Where packets leave a zone that reflects them: where light met it, or anywhere in it with equal odds, as
+/// the matrix method has it.
+enum class Reemission { kFromHits, kFromZones };
 
 /// Settings of the zone solution. A limit of 0 means that this rule does not stop the run; the
 /// matrix method has no stopping rules.
 struct SolverSettings {
   SolveMethod method = SolveMethod::kShooting;
   SamplingKind sampling = SamplingKind::kSobol;  ///< Of points and directions of each flight.
+  Reemission reemission = Reemission::kFromHits;
   double error_target = 0;    ///< Relative rms standard error of radiosity, worst band, as a fraction [0,1).
   double time_limit_s = 0;    ///< Wall time of the solve [s], >= 0.
   std::uint64_t packets = 0;  ///< Packets emitted by luminaires in all batches together.
@@ -26,5 +30,6 @@ struct SolverSettings {
 
 std::string to_string(SolveMethod method);     ///< "shooting", "walk" or "matrix".
 std::string to_string(SamplingKind sampling);  ///< "random" or "sobol".
+std::string to_string(Reemission reemission);  ///< "hits" or "zones".
 
 }  // namespace reemit

@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
   app.add_option("--spp", settings.spp, "Of the checked stills, all together")->capture_default_str();
   app.add_option("--zone-area", settings.zone_area, "[m2]");
   app.add_option("--bias", settings.planted_bias, "Planted in the checked still, as a share");
+  app.add_flag("--walk", settings.by_walks, "Solve the zones by walks instead of shooting");
   app.add_flag("--path", settings.by_path, "Check the path tracer instead of the gathered still");
   CLI11_PARSE(app, argc, argv);
   try {

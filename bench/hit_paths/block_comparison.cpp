@@ -118,6 +118,7 @@ std::vector<CheckedBlock> render(const Scene& scene, const Camera& camera,
   if (settings.zone_area > 0) mesh_settings.zone_area = settings.zone_area;
   const MeshResult mesh = build_mesh(scene, mesh_settings);
   SolverSettings solver;
+  if (settings.by_walks) solver.method = SolveMethod::kWalk;
   solver.packets = settings.packets / kRenderings;
   StillSettings still;
   still.width = settings.width;

@@ -27,6 +27,7 @@ struct ComparisonSettings {
   double zone_area = 0;               ///< [m2], 0 = default.
   std::uint64_t seed = 1;
   double planted_bias = 0;  ///< Added to the checked picture as a share, to see whether it would be noticed.
+  bool by_walks = false;    ///< Solve the zones by walks instead of shooting.
   bool by_path = false;     ///< Check the path tracer instead of gathering.
 };
 

@@ -9,10 +9,11 @@
 namespace reemit::validation {
 
 SolvedRoom::SolvedRoom(const Scene& scene, const MeshResult& mesh, SolveMethod method, double packets,
-                       const std::string& seed_text)
+                       const std::string& seed_text, Reemission reemission)
     : scene_(&scene) {
   SolverSettings settings;
   settings.method = method;
+  settings.reemission = reemission;
   settings.batch_packets = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(packets / kReplicates));
   settings.packets = settings.batch_packets * ZoneSums::kGroups;
   settings.stop_share = 1e-5;

@@ -21,7 +21,7 @@ class SolvedRoom {
 
   /// `packets`: emitted by luminaires in all solves together. The room must outlive this.
   SolvedRoom(const Scene& scene, const MeshResult& mesh, SolveMethod method, double packets,
-             const std::string& seed_text);
+             const std::string& seed_text, Reemission reemission = Reemission::kFromHits);
 
   const Scene& scene() const { return *scene_; }
   const ZoneMesh& mesh() const { return solutions_.front().mesh; }

@@ -119,7 +119,7 @@ void add_cube_triangles(const std::vector<ReferenceCase>& cases, const Effort& e
                box_face(face, {1, 1, 1}));
     for (const SolveMethod method : kMethods) {
       const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kRays * (1 - rho),
-                              cases[first].name);
+                              cases[first].name, Reemission::kFromZones);
       for (std::size_t k = first; k < last; ++k) {
         const json& corners = cases[k].parameters.at("vertices");
         const Vec3 middle = (to_vec3(corners[0]) + to_vec3(corners[1]) + to_vec3(corners[2])) / 3;
@@ -148,8 +148,8 @@ void add_icosphere(const ReferenceCase& c, const Effort& effort, std::vector<Val
   for (const SolveMethod method : kMethods) {
     // Thousands of sweeps of a few packets are slow; furnaces and integrating spheres take them already.
     if (method == SolveMethod::kShooting && rho > 0.99) continue;
-    const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kRays * (1 - rho),
-                            c.name);
+    const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kRays * (1 - rho), c.name,
+                            Reemission::kFromZones);
     for (const ReferenceValue& v : c.values) {
       const Estimates h = v.quantity == "H_mean"         ? solved.mean(solved.all_surfaces())
                           : v.quantity == "H_on_emitter" ? solved.zone(ZoneId(0))

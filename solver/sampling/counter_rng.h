@@ -23,6 +23,7 @@ enum class RngPurpose : std::uint32_t {
   kDirectAudit,
   kUnevenZone,
   kZoneBias,
+  kArrival,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

@@ -67,9 +67,22 @@ void FlightNumbers::get16(std::uint32_t first, UniformLanes& numbers) const {
   }
 }
 
-FlightCursor::FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet)
+void FlightNumbers::get_directions16(std::uint32_t first, UniformLanes& numbers) const {
+  if (kind_ == SamplingKind::kSobol) {
+    for (int d = 0; d < 2; ++d) {
+      std::fill(std::begin(numbers.u[d]), std::end(numbers.u[d]), 0.0F);
+      sobol_.sample16(first, d, numbers.u[2 + d]);
+    }
+    return;
+  }
+  get16(first, numbers);
+}
+
+FlightCursor::FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet,
+                           const ArrivalPoints* arrivals)
     : transport_(transport),
       flight_(flight),
+      arrivals_(arrivals),
       bands_(transport.bands()),
       share_(transport.bands()),
       remainder_(transport.bands()) {
@@ -82,6 +95,7 @@ void FlightCursor::enter_source(std::size_t source) {
   begin_ = flight_.first_packet[source];
   end_ = flight_.first_packet[source + 1];
   const std::int64_t packets = end_ - begin_;
+  if (arrivals_ != nullptr) dealer_ = arrivals_->deal(flight_.sources[source].zone, end_ - begin_);
   for (std::size_t b = 0; b < bands_; ++b) {
     const std::int64_t quanta = flight_.quanta[source * bands_ + b];
     share_[b] = packets == 1 ? quanta : quanta / packets;
@@ -89,18 +103,31 @@ void FlightCursor::enter_source(std::size_t source) {
   }
 }
 
+bool FlightCursor::put_arrivals(ZoneId zone, std::uint32_t packet, int first, int last) {
+  const auto triangle = static_cast<std::uint32_t>(transport_.mesh().zone_triangle(zone).index());
+  transport_.put_side(triangle, transport_.mesh().zone_is_front(zone), lanes_, first, last);
+  for (int lane = first; lane < last; ++lane, ++packet) {
+    const auto at = dealer_.point(packet - begin_);
+    if (!at) return false;
+    transport_.put_point(triangle, at->u, at->v, lanes_, lane);
+  }
+  return true;
+}
+
 void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
                            std::int64_t* quanta) {
-  UniformLanes x;
-  numbers.get16(first, x);
   std::array<const EmissionSource*, 16> special{};  // those that do not send packets as zones reflect them
   bool any_special = false;
+  bool any_uniform = false;  // points are to be drawn
   for (int lane = 0; lane < count;) {
     const std::uint32_t packet = first + static_cast<std::uint32_t>(lane);
     while (packet >= end_) enter_source(current_ + 1);
     const int until = static_cast<int>(std::min(end_ - first, static_cast<std::uint32_t>(count)));
     const EmissionSource& s = flight_.sources[current_];
-    if (s.zone.valid()) transport_.put_zone(s.zone, lanes_, lane, until);
+    if (arrivals_ == nullptr || !put_arrivals(s.zone, packet, lane, until)) {
+      if (s.zone.valid()) transport_.put_zone(s.zone, lanes_, lane, until);
+      any_uniform = true;
+    }
     if (!s.zone.valid() || s.exponent != 0) {
       std::fill(&special[static_cast<std::size_t>(lane)], special.data() + until, &s);
       any_special = true;
@@ -109,6 +136,11 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
     for (; lane < until; ++lane, ++k)
       for (std::size_t b = 0; b < bands_; ++b) *quanta++ = share_[b] + (k < remainder_[b] ? 1 : 0);
   }
+  UniformLanes x;
+  if (any_uniform)
+    numbers.get16(first, x);
+  else
+    numbers.get_directions16(first, x);
   transport_.start(lanes_, x, rays);
   if (!any_special) return;
   for (int lane = 0; lane < count; ++lane) {

@@ -4,6 +4,7 @@
 
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/sobol.h"
+#include "solver/shoot/arrival_points.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
 #include "solver/solver_settings.h"
@@ -44,6 +45,9 @@ class FlightNumbers {
   FlightNumbers(SamplingKind kind, std::uint64_t seed, std::uint32_t batch, std::uint32_t flight);
   /// Numbers of packets first .. first+15. Pre: first is a multiple of 16.
   void get16(std::uint32_t first, UniformLanes& numbers) const;
+  /// Numbers of directions from the first two dimensions, the most even ones; those of points may be anything
+  /// in [0,1).
+  void get_directions16(std::uint32_t first, UniformLanes& numbers) const;
 
  private:
   SamplingKind kind_;
@@ -56,8 +60,10 @@ class FlightNumbers {
 /// Rays and power of packets: walks along a flight in packet order.
 class FlightCursor {
  public:
-  /// Starts at packet `first_packet`, which the flight has.
-  FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet);
+  /// Starts at packet `first_packet`, which the flight has. Zones send their packets from the points where
+  /// others arrived, if given; else, and where nothing did, from uniform points.
+  FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet,
+               const ArrivalPoints* arrivals = nullptr);
 
   /// Starts packets first .. first+count-1 (first is a multiple of 16, count <= 16).
   /// quanta[lane * bands + band] becomes the power of each.
@@ -66,11 +72,16 @@ class FlightCursor {
 
  private:
   void enter_source(std::size_t source);
+  /// Puts the points from which packets `packet`, ... of a zone leave into lanes first .. last-1. False if
+  /// nothing arrived in the zone.
+  bool put_arrivals(ZoneId zone, std::uint32_t packet, int first, int last);
 
   const TransportScene& transport_;
   const Flight& flight_;
+  const ArrivalPoints* arrivals_;
   std::size_t bands_;
   std::size_t current_ = 0;
+  ArrivalPoints::Dealer dealer_;
   std::uint32_t begin_ = 0;  // packets of the current source
   std::uint32_t end_ = 0;
   std::vector<std::int64_t> share_;      // of one packet of the current source, per band

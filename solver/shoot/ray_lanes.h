@@ -14,6 +14,7 @@ struct alignas(64) ZoneLanes {
   float tangent[3][16], bitangent[3][16], normal[3][16];
   std::uint32_t zone[16];    ///< Where the zone is curved; else, at feet, the triangle that it is in.
   std::uint32_t curved = 0;  ///< Lanes of curved zones as bits; the geometry above is not theirs.
+  std::uint32_t points = 0;  ///< Of these, lanes of given points: zone is the triangle, corner u, v and side.
   std::uint32_t feet = 0;    ///< Lanes of flat zones that rays leave clear of shapes (RayScene::is_foot).
 };
 

@@ -2,12 +2,14 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "solver/shoot/allocation.h"
+#include "solver/shoot/arrival_points.h"
 #include "solver/shoot/flight.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/shoot/packet_books.h"
@@ -24,13 +26,14 @@ constexpr std::uint32_t kMostSweeps = 200'000;
 struct Account {
   std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room or needs a second look.
   bool shared = false;
+  std::uint64_t* place = nullptr;  ///< Among the arrival points of its zone, if they are kept.
 };
 
 /// Accounts of 16 packets. Their memory is asked for at once, before the first is needed: with many zones the
 /// books are larger than the caches.
 void find_accounts(const TransportScene& transport, const Hit16& hits, int count,
-                   SweepAccounts::Incident& incident, bool shared, bool second_look, BatchBooks& books,
-                   Account* accounts) {
+                   SweepAccounts::Incident& incident, bool shared, bool second_look, ArrivalPoints* arrivals,
+                   const std::uint32_t* bits, BatchBooks& books, Account* accounts) {
   const std::size_t bands = transport.bands();
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t t = hits.triangle[lane];
@@ -38,23 +41,31 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
     if (t == RayScene::kMiss) continue;
     const ZoneId zone = transport.zone_of(t, hits.u[lane], hits.v[lane], hits.front[lane]);
     if (zone.valid()) {
-      accounts[lane] = {&incident.quanta[zone.index() * bands], shared};
+      accounts[lane] = {&incident.quanta[zone.index() * bands], shared, nullptr};
       incident.touch(zone.index());
+      if (arrivals != nullptr) {
+        accounts[lane].place = arrivals->place(zone, bits[lane]);
+        __builtin_prefetch(accounts[lane].place, 1);
+      }
     } else if (second_look) {
       const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
-      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true};
+      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true, nullptr};
     }
     __builtin_prefetch(accounts[lane].quanta, 1);
   }
 }
 
-/// Traces a flight and books every packet where it ends; sweep.incident receives what zones catch. False if
-/// it was cut off: packets that have not set out are unshot.
-bool trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumbers& numbers,
+/// Traces the flight of sweep `number` and books every packet where it ends; sweep.incident receives what
+/// zones catch, and `arrivals`, if given, where. False if it was cut off: packets that have not set out are
+/// unshot.
+bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t number, ArrivalPoints* arrivals,
                   SweepAccounts& sweep, BatchBooks& books) {
   const TransportScene& transport = batch.transport;
   const std::size_t bands = transport.bands();
   const bool shared = accounts_are_shared(sweep.incident.size());
+  const FlightNumbers numbers(batch.settings.sampling, batch.settings.seed, batch.batch, number);
+  const CounterRng choice(batch.settings.seed, RngPurpose::kArrival);
+  const ArrivalPoints* points = number == 0 ? nullptr : arrivals;  // luminaires have none
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   std::atomic<std::uint64_t> started{0};
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
@@ -65,16 +76,21 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
     std::vector<std::int64_t> power(16 * bands);
     Hit16 hits;
     Account accounts[16];
-    const auto trace_and_book = [&](const Ray16& rays, int count, const std::int64_t* quanta,
-                                    bool second_look) {
+    BitLanes bits;
+    const auto trace_and_book = [&](const Ray16& rays, int count, const std::uint32_t* id,
+                                    const std::int64_t* quanta, bool second_look) {
       transport.rays().closest16(rays, count, hits);
-      find_accounts(transport, hits, count, incident, shared, second_look, books, accounts);
+      if (arrivals != nullptr) choice.bits4x16(id, batch.batch, number, bits);
+      find_accounts(transport, hits, count, incident, shared, second_look, arrivals, bits.word[0], books,
+                    accounts);
       for (int lane = 0; lane < count; ++lane, quanta += bands) {
         const Account& account = accounts[lane];
         if (account.quanta == nullptr && !second_look) {
-          missed.add(rays, lane, 0, quanta);
+          missed.add(rays, lane, id[lane], quanta);
           continue;
         }
+        if (account.place != nullptr)
+          arrivals->add(account.place, bits.word[0][lane], hits.u[lane], hits.v[lane]);
         for (std::size_t b = 0; b < bands; ++b)
           if (account.quanta != nullptr)
             book(account.quanta[b], quanta[b], account.shared);
@@ -84,7 +100,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
     };
     const auto look_again = [&] {
       missed.take(second);
-      trace_and_book(second.rays, second.count, second.power.data(), true);
+      trace_and_book(second.rays, second.count, second.id, second.power.data(), true);
     };
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
@@ -94,13 +110,15 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, const FlightNumb
         continue;
       }
       started += end - begin;
-      FlightCursor cursor(transport, flight, begin);
+      FlightCursor cursor(transport, flight, begin, points);
       Ray16 rays;
+      std::uint32_t id[16];
       for (std::uint32_t first = begin; first < end; first += 16) {
         const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
         cursor.start16(first, count, numbers, rays, power.data());
         if (batch.ray_observer != nullptr) (*batch.ray_observer)(rays, count);
-        trace_and_book(rays, count, power.data(), false);
+        std::iota(id, id + 16, first);
+        trace_and_book(rays, count, id, power.data(), false);
         if (missed.count() >= 16) look_again();
       }
     }
@@ -171,11 +189,13 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   const double quantum = emitted / flight.packets();
 
   Allocation allocation(transport.zones(), bands);
+  std::optional<ArrivalPoints> arrivals;
+  if (task.settings.reemission == Reemission::kFromHits)
+    arrivals.emplace(transport.zones(), flight.packets());
   bool whole = true;
   for (std::uint32_t sweep = 0;; ++sweep) {
-    whole = trace_flight(task, flight,
-                         FlightNumbers(task.settings.sampling, task.settings.seed, task.batch, sweep),
-                         accounts, books);
+    if (arrivals) arrivals->begin(sweep);
+    whole = trace_flight(task, flight, sweep, arrivals ? &*arrivals : nullptr, accounts, books);
     reflect(transport, accounts, sweep == 0 ? books.direct : books.indirect, books);
     const auto left = static_cast<double>(allocation.measure(accounts));
     if (!whole || left <= task.settings.stop_share * emitted || sweep + 1 == kMostSweeps) break;

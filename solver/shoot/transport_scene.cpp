@@ -37,8 +37,11 @@ void TransportScene::start_from(ZoneId z, float u0, float u1, const Vec3f& local
   const auto inside = [&](double Barycentric::*k) {
     return static_cast<float>((1 - a - b) * corners[0].*k + a * corners[1].*k + b * corners[2].*k);
   };
-  const float u = inside(&Barycentric::u);
-  const float v = inside(&Barycentric::v);
+  start_at(t, inside(&Barycentric::u), inside(&Barycentric::v), front, local, rays, lane);
+}
+
+void TransportScene::start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays,
+                              int lane) const {
   const Vec3f origin = rays_->ray_origin(t, u, v, front);
   const Vec3f normal = rays_->normal(t, u, v);
   const Vec3f direction = Frame(front ? normal : Vec3f(-normal)).to_world(local);
@@ -49,10 +52,15 @@ void TransportScene::start_from(ZoneId z, float u0, float u1, const Vec3f& local
 }
 
 void TransportScene::start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
-  for (int lane = 0; lane < 16; ++lane)
-    if ((lanes.curved >> lane & 1U) != 0)
-      start_from(ZoneId(lanes.zone[lane]), numbers.u[0][lane], numbers.u[1][lane],
-                 sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]), rays, lane);
+  for (int lane = 0; lane < 16; ++lane) {
+    if ((lanes.curved >> lane & 1U) == 0) continue;
+    const Vec3f local = sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]);
+    if ((lanes.points >> lane & 1U) != 0)
+      start_at(TriangleId(lanes.zone[lane]), lanes.corner[0][lane], lanes.corner[1][lane],
+               lanes.corner[2][lane] > 0, local, rays, lane);
+    else
+      start_from(ZoneId(lanes.zone[lane]), numbers.u[0][lane], numbers.u[1][lane], local, rays, lane);
+  }
 }
 
 void TransportScene::start_at_feet(const ZoneLanes& lanes, Ray16& rays) const {

@@ -36,6 +36,7 @@ class TransportScene {
     const std::uint32_t bits = ((1U << last) - 1) & ~((1U << first) - 1);
     if (t.index() >= mesh_->flat_count()) {
       lanes.curved |= bits;
+      lanes.points &= ~bits;
       lanes.feet &= ~bits;
       std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(z.index()));
       return;
@@ -68,6 +69,43 @@ class TransportScene {
     }
   }
 
+  /// Puts a side of a base triangle into lanes first .. last-1, for put_point.
+  void put_side(std::uint32_t triangle, bool front, ZoneLanes& lanes, int first, int last) const {
+    const std::uint32_t bits = ((1U << last) - 1) & ~((1U << first) - 1);
+    std::fill(lanes.zone + first, lanes.zone + last, triangle);
+    lanes.feet &= ~bits;
+    const float side = front ? 1.0F : -1.0F;
+    if (triangle >= mesh_->flat_count()) {
+      lanes.curved |= bits;
+      lanes.points |= bits;
+      std::fill(lanes.corner[2] + first, lanes.corner[2] + last, side);
+      return;
+    }
+    lanes.curved &= ~bits;
+    const TrianglePatch& p = patches_[triangle];
+    if (p.is_foot) lanes.feet |= bits;
+    for (int k = 0; k < 3; ++k) {
+      std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, 0.0F);
+      std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, 0.0F);
+      std::fill(lanes.middle[k] + first, lanes.middle[k] + last, p.middle[k]);
+      std::fill(lanes.tangent[k] + first, lanes.tangent[k] + last, p.frame.tangent[k]);
+      std::fill(lanes.bitangent[k] + first, lanes.bitangent[k] + last, p.frame.bitangent[k]);
+      std::fill(lanes.normal[k] + first, lanes.normal[k] + last, side * p.frame.normal[k]);
+    }
+  }
+  /// Makes the ray of a lane leave from (u,v), whatever the uniform numbers of its point are.
+  void put_point(std::uint32_t triangle, float u, float v, ZoneLanes& lanes, int lane) const {
+    if (triangle >= mesh_->flat_count()) {
+      lanes.corner[0][lane] = u;
+      lanes.corner[1][lane] = v;
+      return;
+    }
+    const TrianglePatch& p = patches_[triangle];
+    const float un = u * static_cast<float>(p.divisions);
+    const float vn = v * static_cast<float>(p.divisions);
+    for (int k = 0; k < 3; ++k) lanes.corner[k][lane] = p.corner[k] + un * p.edge1[k] + vn * p.edge2[k];
+  }
+
   /// start_rays for zones that may be curved.
   void start(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
     start_rays(lanes, numbers, rays);
@@ -86,6 +124,7 @@ class TransportScene {
   }
 
  private:
+  void start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays, int lane) const;
   void start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
   void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;
 

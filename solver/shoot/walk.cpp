@@ -23,6 +23,9 @@ constexpr std::uint32_t kMostBounces = 200'000;
 struct WaitingPackets {
   struct Packet {
     ZoneId zone;
+    std::uint32_t triangle;  ///< That it met,
+    float at_u, at_v;        ///< where
+    bool front;              ///< and on which side.
     std::uint32_t id;        ///< Number within the flight: selects the random numbers.
     std::array<float, 4> u;  ///< Uniform, for the point and direction it leaves with.
   };
@@ -59,6 +62,7 @@ class WalkTask {
         bands_(task.transport.bands()),
         rng_(task.settings.seed, RngPurpose::kReflection),
         batch_(task.batch),
+        from_hits_(task.settings.reemission == Reemission::kFromHits),
         stop_(task.stop),
         observer_(task.ray_observer),
         books_(books),
@@ -117,12 +121,20 @@ class WalkTask {
         const WaitingPackets::Packet& p = leaving_.packets[first + static_cast<std::size_t>(lane)];
         for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = p.u[d];
         id[lane] = p.id;
-        transport_.put_zone(p.zone, lanes_, lane, lane + 1);
+        if (from_hits_)
+          put_point(p, lane);
+        else
+          transport_.put_zone(p.zone, lanes_, lane, lane + 1);
       }
       transport_.start(lanes_, numbers, rays_);
       trace(count, id, &leaving_.quanta[first * bands_], zones_.indirect, bounce);
     }
     look_again(zones_.indirect, bounce);
+  }
+
+  void put_point(const WaitingPackets::Packet& p, int lane) {
+    transport_.put_side(p.triangle, p.front, lanes_, lane, lane + 1);
+    transport_.put_point(p.triangle, p.at_u, p.at_v, lanes_, lane);
   }
 
   void trace(int count, const std::uint32_t id[16], const std::int64_t* power,
@@ -185,6 +197,10 @@ class WalkTask {
     }
     waiting_.packets.push_back(
         {zone,
+         hits_.triangle[lane],
+         hits_.u[lane],
+         hits_.v[lane],
+         hits_.front[lane],
          id,
          {CounterRng::to_unit(bits.word[0][lane]), CounterRng::to_unit(bits.word[1][lane]),
           CounterRng::to_unit(bits.word[2][lane]), CounterRng::to_unit(bits.word[3][lane])}});
@@ -204,6 +220,7 @@ class WalkTask {
   std::size_t bands_;
   CounterRng rng_;
   std::uint32_t batch_;
+  bool from_hits_;
   const StopToken* stop_;
   const RayObserver* observer_;
   BatchBooks& books_;

@@ -28,6 +28,7 @@ template <class Archive, class Settings>
 void transfer_solver_settings(Archive& archive, Settings& settings) {
   archive.attribute("method", settings.method);
   archive.attribute("sampling", settings.sampling);
+  archive.attribute("reemission", settings.reemission);
   archive.attribute("error_target", settings.error_target);
   archive.attribute("time_limit_s", settings.time_limit_s);
   archive.attribute("packets", settings.packets);
@@ -80,6 +81,7 @@ inline constexpr BandKind kAllBandKinds[] = {BandKind::kGrey, BandKind::kRgb, Ba
 inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, SolveMethod::kWalk,
                                                    SolveMethod::kMatrix};
 inline constexpr SamplingKind kAllSamplingKinds[] = {SamplingKind::kRandom, SamplingKind::kSobol};
+inline constexpr Reemission kAllReemissions[] = {Reemission::kFromHits, Reemission::kFromZones};
 inline constexpr StopReason kAllStopReasons[] = {
     StopReason::kErrorTarget, StopReason::kTimeLimit,   StopReason::kPacketCount, StopReason::kBatchLimit,
     StopReason::kBounceLimit, StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};

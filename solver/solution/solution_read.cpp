@@ -54,6 +54,7 @@ struct AttributeReader {
   void attribute(const char* name, SamplingKind& value) {
     parse<SamplingKind>(name, value, kAllSamplingKinds);
   }
+  void attribute(const char* name, Reemission& value) { parse<Reemission>(name, value, kAllReemissions); }
   void attribute(const char* name, StopReason& value) { parse<StopReason>(name, value, kAllStopReasons); }
 
  private:

@@ -35,6 +35,7 @@ Json record_json(const Solution& solution) {
             {"seed", solution.settings.seed},
             {"method", to_string(solution.settings.method)},
             {"sampling", to_string(solution.settings.sampling)},
+            {"reemission", to_string(solution.settings.reemission)},
             {"unshot_share", unshot_shares(solution.audit)},
             {"balanced", solution.audit.balanced()},
             {"bands", solution.bands.names()},

@@ -156,6 +156,11 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_choice_option<SamplingKind>(solve, "--sampling", options->solver.sampling,
                                   {{"sobol", SamplingKind::kSobol}, {"random", SamplingKind::kRandom}},
                                   "Points and directions of packets: low-discrepancy or random");
+  add_choice_option<Reemission>(
+      solve, "--reemit", options->solver.reemission,
+      {{"hits", Reemission::kFromHits}, {"zones", Reemission::kFromZones}},
+      "Where zones send on the light they reflect: from where it met them, or evenly\n"
+      "over each zone, which is what --method matrix solves (to compare with it)");
   add_seed_and_threads(solve, options->solver.seed, options->solver.threads);
 
   solve.option_defaults()->group("Room");

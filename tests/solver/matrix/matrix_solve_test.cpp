@@ -23,6 +23,7 @@ Solution run(const RoomBuilder& room, SolveMethod method, std::uint64_t packets 
   const std::atomic<bool> interrupt = false;
   SolverSettings settings;
   settings.method = method;
+  settings.reemission = Reemission::kFromZones;  // the system that the matrix method solves
   settings.packets = packets;
   settings.batch_packets = packets / 32;
   settings.seed = 77;
