@@ -41,7 +41,8 @@ std::vector<CubeStep> measure_cube_convergence(const std::vector<ReferenceCase>&
     for (const int n : {1, 2, 4, 8, 16}) {
       const std::string name = "cubezones.rho" + rho_name + ".N" + std::to_string(n);
       const SolvedRoom solved(room.scene(), room.exact_zones(static_cast<std::uint32_t>(n)),
-                              SolveMethod::kShooting, effort.work * kRays * (1 - rho), name);
+                              SolveMethod::kShooting, effort.work * kRays * (1 - rho), name,
+                              Reemission::kFromZones);
       const PointGather plain(solved, seed_of(name), 0);
       const PointGather gather(solved, seed_of(name));
       const auto add = [&](const std::string& place, const ReferenceValue& truth, double squares,

@@ -27,16 +27,17 @@ struct BatchTask {
 
 /// One batch of absorb-and-re-emit shooting: an independent estimate of the whole solution ([GI98] Monte
 /// Carlo notes, section 3; all zones at once in the manner of stochastic Jacobi iterations). Zones re-emit
-/// uniformly over their area. False if it was cut off: the books balance all the same, with what was on its
-/// way, or had not set out, as unshot. A batch of more than 200,000 sweeps ends there, whole, with the rest
-/// unshot. Must run inside the task arena of the caller.
+/// from points where the sweep before met them, or uniformly over their area (SolverSettings::reemission).
+/// False if it was cut off: the books balance all the same, with what was on its way, or had not set out, as
+/// unshot. A batch of more than 200,000 sweeps ends there, whole, with the rest unshot. Must run inside the
+/// task arena of the caller.
 bool shoot_batch(const BatchTask& task, BatchBooks& books);
 
 /// One batch of walks: each packet is followed until Russian roulette absorbs it. It survives a hit with the
 /// largest reflectance over the bands and keeps rho/largest of its power, so its power never grows and what
-/// it loses is absorbed: the books need no correction for roulette. A packet leaves from a uniform point of
-/// the zone that it met, so that both methods solve the same zonal system. False if it was cut off, as above;
-/// a walk ends after 200,000 bounces.
+/// it loses is absorbed: the books need no correction for roulette. A packet goes on from where it met a
+/// zone, or from a uniform point of it (SolverSettings::reemission). False if it was cut off, as above; a
+/// walk ends after 200,000 bounces.
 bool walk_batch(const BatchTask& task, BatchBooks& books);
 
 }  // namespace reemit

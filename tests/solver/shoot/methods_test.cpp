@@ -105,6 +105,68 @@ TEST(Methods, ShootingAndWalkAgreeZoneByZone) {
   }
 }
 
+/// Mean irradiance over the zones of a quad, with a bound of its standard error whatever their correlation.
+test::Measured mean_over_quad(const Solution& s, std::size_t quad, std::uint32_t divisions) {
+  const std::size_t zones = std::size_t{2} * divisions * divisions;
+  test::Measured mean{0, 0};
+  for (std::size_t z = quad * zones; z < (quad + 1) * zones; ++z) {
+    const Estimate e = s.irradiance(ZoneId(z), 0);
+    mean.mean += e.mean / static_cast<double>(zones);
+    mean.stderr_of_mean += e.stderr_of_mean / static_cast<double>(zones);
+  }
+  return mean;
+}
+
+// A cube of twelve zones whose face z0 emits 1: means over faces of the continuous room, by quadrature
+// (bench/validation/cases.json, cube1.rho0.8). Four bounds of the standard error are passed once in 10^4 at
+// most.
+TEST(Methods, CoarseZonesReceiveWhatTheRoomDoes) {
+  constexpr std::size_t kX0 = 0;
+  constexpr std::size_t kZ0 = 4;
+  constexpr std::size_t kZ1 = 5;
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.8);
+  const MaterialId lamp = room.material("lamp", 0.8, 1.0);
+  room.box(Vec3::Zero(), Vec3(1, 1, 1), {wall, wall, wall, wall, lamp, wall}, 1);
+  for (const SolveMethod method : kMethods) {
+    SolverSettings settings = settings_of(method, 640'000);
+    const Solution s = run(room, settings);
+    for (const auto& [quad, truth] : {std::pair{kX0, 0.8598484440264217}, std::pair{kZ0, 0.7343824422873655},
+                                      std::pair{kZ1, 0.8262237814861318}}) {
+      const test::Measured h = mean_over_quad(s, quad, 1);
+      EXPECT_NEAR(h.mean, truth, 4 * h.stderr_of_mean) << to_string(method) << " quad " << quad;
+      EXPECT_LT(4 * h.stderr_of_mean, 0.02 * truth) << "a bias of 2 % would go unseen";
+    }
+    settings.reemission = Reemission::kFromZones;
+    EXPECT_LT(mean_over_quad(run(room, settings), kZ0, 1).mean, 0.97 * 0.7343824422873655)
+        << "zones as the matrix method has them are another problem";
+  }
+}
+
+// A lamp that shines up into the gap between it and the ceiling, far narrower than a zone: most of that light
+// stays in the gap.
+TEST(Methods, LightStaysInAGapNarrowerThanAZone) {
+  const auto room_of = [](std::uint32_t divisions) {
+    RoomBuilder room;
+    const MaterialId wall = room.material("wall", 0.7);
+    const MaterialId lamp = room.material("lamp", 0.3, 1.0, true);
+    room.box(Vec3::Zero(), Vec3(4, 4, 3), {wall, wall, wall, wall, wall, wall}, divisions);
+    room.quad(lamp, {Vec3(1, 1, 2.98), Vec3(1, 3, 2.98), Vec3(3, 3, 2.98), Vec3(3, 1, 2.98)}, divisions);
+    return room;
+  };
+  constexpr std::size_t kFloor = 4;
+  for (const SolveMethod method : kMethods) {
+    SolverSettings settings = settings_of(method, 320'000);
+    const test::Measured coarse = mean_over_quad(run(room_of(1), settings), kFloor, 1);
+    const test::Measured fine = mean_over_quad(run(room_of(12), settings), kFloor, 12);
+    EXPECT_NEAR(coarse.mean, fine.mean, 4 * std::hypot(coarse.stderr_of_mean, fine.stderr_of_mean))
+        << to_string(method);
+    EXPECT_LT(4 * coarse.stderr_of_mean, 0.03 * coarse.mean);
+    settings.reemission = Reemission::kFromZones;
+    EXPECT_GT(mean_over_quad(run(room_of(1), settings), kFloor, 1).mean, 1.05 * coarse.mean);
+  }
+}
+
 TEST(Methods, BooksBalanceToTheQuantumInEveryBand) {
   for (const SolveMethod method : kMethods)
     for (const bool open : {false, true}) {
