@@ -110,7 +110,7 @@ class Renderer {
 
   /// Prints the one document of --json.
   void finish() const {
-    if (options_.style.json) fmt::print("{}\n", nlohmann::ordered_json{{"pictures", pictures_}}.dump(2));
+    if (options_.style.json) print_json(nlohmann::ordered_json{{"pictures", pictures_}});
   }
 
  private:
@@ -142,12 +142,12 @@ class Renderer {
       pictures_.push_back(std::move(picture));
       return;
     }
-    fmt::print(
+    print_result(fmt::format(
         "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel, noise {}, zones {}, {}{:.2f} s\n",
         job.file.string(), job.camera.name, image.width, image.height, integrator, mean_samples(image),
         percent_text(known_error(image.info)), zones_text(image.info.zones),
         written.tone_mapped ? fmt::format("exposure {:+.2f} EV, ", written.tone_map.exposure_ev()) : "",
-        seconds);
+        seconds));
   }
 
   const RenderOptions& options_;
