@@ -215,7 +215,7 @@ void add_view_options(CLI::App& render, RenderOptions& options) {
                                     "What it looks at [m]");
   look_at->needs(eye);
   eye->needs(look_at);
-  add_parsed_option(render, "--up", options.camera.up, parse_point, "X,Y,Z",
+  add_parsed_option(render, "--up", options.camera.up, parse_direction, "X,Y,Z",
                     "Which way is up (default: 0,0,1 for MGF rooms, else 0,1,0)")
       ->needs(eye);
   render.add_option("--fov", options.camera.fov_deg, "Full vertical field of view [deg]")
