@@ -177,8 +177,10 @@ ExitCode run_render(RenderOptions options) {
   std::size_t done = 0;
   while (done < jobs.size() && !renderer.interrupted()) renderer.render(jobs[done++]);
   if (renderer.interrupted() && !options.style.quiet) {
-    print_note(fmt::format("interrupted; {} of {} pictures written, the last one as far as it got", done,
-                           jobs.size()));
+    print_note(
+        fmt::format("interrupted; {} of {} pictures written, the last one with the samples it had "
+                    "(zone values where it had none)",
+                    done, jobs.size()));
   }
   renderer.finish();
   return ExitCode::kDone;
