@@ -229,11 +229,11 @@ ExportInfo describe_still(const Scene& scene, const Solution& solution, const St
   info.error = std::isfinite(error) ? error : 0;
   info.settings = {{"integrator", to_string(settings.integrator)},
                    {"pixel filter", to_string(settings.filter)},
-                   {"still seed", std::to_string(settings.seed)}};
+                   {"still seed", settings.seed}};
   if (settings.integrator != Integrator::kZones)
-    info.settings.emplace_back("shadow rays per sample", std::to_string(settings.light_samples));
+    info.settings.emplace_back("shadow rays per sample", static_cast<std::uint64_t>(settings.light_samples));
   if (settings.integrator == Integrator::kGather)
-    info.settings.emplace_back("gather rays per sample", std::to_string(settings.gathers));
+    info.settings.emplace_back("gather rays per sample", static_cast<std::uint64_t>(settings.gathers));
   return info;
 }
 
