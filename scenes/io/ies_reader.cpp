@@ -13,6 +13,7 @@
 #include "scenes/io/ies_text.h"
 #include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -166,6 +167,10 @@ class IesFile {
     const double width = text_.number("the width of the opening");
     const double length = text_.number("the length of the opening");
     const double height = text_.number("the height of the opening");
+    for (const double size : {width, length, height})
+      if (std::fabs(size) > limits::kFarthest)
+        text_.fail(fmt::format("a size of the opening is {}", size),
+                   fmt::format("Sizes of up to {:g} are read.", limits::kFarthest));
     bool known = true;
     result_.opening = ies_opening(width, length, height, feet ? kMetresPerFoot : 1.0, edition_ < 2002, known);
     if (!known)

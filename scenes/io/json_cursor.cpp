@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 
@@ -269,10 +270,10 @@ double JsonCursor::number_in(double least, double most) const {
   return value;
 }
 
-double JsonCursor::positive_number() const {
+double JsonCursor::length() const {
   const double value = number();
   if (value <= 0) fail(fmt::format("{} is out of range", value), "It must be greater than 0.");
-  return value;
+  return number_in(0, limits::kFarthest);
 }
 
 int JsonCursor::integer_in(int least, int most) const {
@@ -307,6 +308,14 @@ const std::string& JsonCursor::choice(const std::vector<std::string>& choices) c
 Vec3 JsonCursor::vec3() const {
   expect_array(3, 3);
   return {(*this)[0].number(), (*this)[1].number(), (*this)[2].number()};
+}
+
+Vec3 JsonCursor::place() const {
+  expect_array(3, 3);
+  const auto coordinate = [this](std::size_t i) {
+    return (*this)[i].number_in(-limits::kFarthest, limits::kFarthest);
+  };
+  return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
 std::vector<double> JsonCursor::numbers() const {

@@ -52,13 +52,14 @@ class JsonCursor {
 
   double number() const;
   double number_in(double least, double most) const;
-  double positive_number() const;
+  double length() const;  ///< Above 0, at most limits::kFarthest.
   int integer_in(int least, int most) const;
   bool boolean() const;
   const std::string& string() const;
   /// One of `choices`.
   const std::string& choice(const std::vector<std::string>& choices) const;
-  Vec3 vec3() const;
+  Vec3 vec3() const;   ///< A direction or factors: any finite numbers.
+  Vec3 place() const;  ///< A place or an offset: within limits::kFarthest.
   std::vector<double> numbers() const;
 
   /// File and JSON pointer, as in room.json#/objects/3/box/min.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -187,6 +188,8 @@ bool MgfContexts::run_vertex(const TextLine& line, const std::string& where) {
     vertices.select(line, where);
   } else if (keyword == "p") {
     vertices.current().position = vector_at(line, where);
+    const std::string problem = place_problem(vertices.current().position);
+    if (!problem.empty()) throw InputError(where, problem, kLengthAdvice);
   } else if (keyword == "n") {
     const Vec3 direction = vector_at(line, where);
     vertices.current().normal = direction.stableNormalized();

@@ -8,6 +8,7 @@
 #include "scenes/io/mgf_material.h"
 #include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -27,6 +28,11 @@ Polygon transformed(const Polygon& polygon, const Eigen::Affine3d& transform) {
   return placed;
 }
 
+void check_place(const Vec3& place, const MgfSceneBuilder::Target& target) {
+  const std::string problem = place_problem(place);
+  if (!problem.empty()) throw InputError(at_line(target.file, target.line), problem, kLengthAdvice);
+}
+
 }  // namespace
 
 void MgfSceneBuilder::add(const std::vector<Polygon>& faces, const Eigen::Affine3d& transform,
@@ -38,12 +44,19 @@ void MgfSceneBuilder::add(const std::vector<Polygon>& faces, const Eigen::Affine
   }
   count(faces.size(), target);
   SurfaceBuilder& surface = surfaces_[surface_index(target)];
-  for (const Polygon& face : faces) surface.add(transformed(face, transform), target.line);
+  for (const Polygon& face : faces) {
+    const Polygon placed = transformed(face, transform);
+    for (const Vec3& corner : placed.outer) check_place(corner, target);
+    surface.add(placed, target.line);
+  }
 }
 
 void MgfSceneBuilder::add(const CurvedShape& shape, const Eigen::Affine3d& transform, const Target& target) {
   count(1, target);
-  surfaces_[surface_index(target)].add(transformed(shape, transform));
+  const CurvedShape placed = transformed(shape, transform);
+  const auto [low, high] = shape_bounds(placed);
+  for (const Vec3& end : {low, high}) check_place(end, target);
+  surfaces_[surface_index(target)].add(placed);
 }
 
 void MgfSceneBuilder::count(std::size_t faces, const Target& target) {

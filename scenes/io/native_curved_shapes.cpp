@@ -4,6 +4,7 @@
 
 #include "scenes/io/native_shapes.h"
 #include "scenes/io/surface_geometry.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 
@@ -68,8 +69,8 @@ std::vector<Index> ring_loop(Index first, int segments, bool reversed) {
 
 Surface read_sphere(const JsonCursor& at) {
   at.expect_object({"center", "radius", "segments", "rings", "inward"});
-  const Vec3 centre = at.at("center").vec3();
-  const double radius = at.at("radius").positive_number();
+  const Vec3 centre = at.at("center").place();
+  const double radius = at.at("radius").length();
   if (!at.find("segments") && !at.find("rings")) return exact(Sphere{centre, radius, is_inward(at)});
   const int segments = read_segments(at);
   const auto given_rings = at.find("rings");
@@ -108,13 +109,13 @@ Surface read_sphere(const JsonCursor& at) {
 
 Surface read_cylinder(const JsonCursor& at) {
   at.expect_object({"base", "top", "radius", "top_radius", "segments", "caps", "inward"});
-  const Vec3 base = at.at("base").vec3();
-  const Vec3 top = at.at("top").vec3();
+  const Vec3 base = at.at("base").place();
+  const Vec3 top = at.at("top").place();
   const double height = (top - base).norm();
   if (!(height > 0)) at.at("top").fail("base and top are the same point", "Give the ends of the axis.");
-  const double radius = at.at("radius").positive_number();
+  const double radius = at.at("radius").length();
   const auto given_top = at.find("top_radius");
-  const double top_radius = given_top ? given_top->number_in(0, 1e300) : radius;
+  const double top_radius = given_top ? given_top->number_in(0, limits::kFarthest) : radius;
   const auto given_caps = at.find("caps");
   const std::string caps = given_caps ? given_caps->choice({"both", "base", "top", "none"}) : "both";
   const Vec3 axis = (top - base) / height;
@@ -166,12 +167,12 @@ Surface read_cylinder(const JsonCursor& at) {
 
 Surface read_disk(const JsonCursor& at) {
   at.expect_object({"center", "normal", "radius", "inner_radius", "segments"});
-  const Vec3 centre = at.at("center").vec3();
+  const Vec3 centre = at.at("center").place();
   const Vec3 normal = at.at("normal").vec3();
   if (!(normal.norm() > 0)) at.at("normal").fail("the normal has no length", "Give a direction.");
-  const double radius = at.at("radius").positive_number();
+  const double radius = at.at("radius").length();
   const auto inner = at.find("inner_radius");
-  const double inner_radius = inner ? inner->positive_number() : 0;
+  const double inner_radius = inner ? inner->length() : 0;
   if (inner_radius >= radius)
     inner->fail("the hole is as large as the disk", "Make it smaller than the radius.");
   if (!at.find("segments")) return exact(Disk{centre, normal.normalized(), radius, inner_radius});

@@ -9,6 +9,7 @@
 
 #include "scenes/io/native_materials.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 #include "scenes/model/opening_reach.h"
 
 namespace reemit {
@@ -19,7 +20,7 @@ Vec3 nadir_of(const JsonCursor& at, const Vec3& position, double unit) {
   const auto look_at = at.find("look_at");
   if (look_at && direction) look_at->fail("the direction is given already", "Keep one of the two.");
   const Vec3 aim =
-      look_at ? Vec3(look_at->vec3() * unit - position) : (direction ? direction->vec3() : Vec3(0, -1, 0));
+      look_at ? Vec3(look_at->place() * unit - position) : (direction ? direction->vec3() : Vec3(0, -1, 0));
   const double length = aim.stableNorm();
   if (!(length > 0) || !std::isfinite(length))
     (look_at ? *look_at : *direction).fail("the direction has no length", "Choose another point or vector.");
@@ -87,7 +88,7 @@ PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& 
   }
   PhotometricLight light;
   light.name = name;
-  light.position = at.at("position").vec3() * unit_;
+  light.position = at.at("position").place() * unit_;
   light.orientation = orientation_of(at, light.position, unit_);
   light.table = file->table;
   const auto opening = at.find("opening");
@@ -101,6 +102,9 @@ PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& 
                                : (flux ? flux->number_in(0, kMost) / light.table->total_flux() : 1.0);
   if (!(dimming > 0)) (scale ? *scale : *flux).fail("the light emits nothing", "Remove it or give it power.");
   light.intensity_per_candela = dimming * photometric_emission(1, at.find("color"), scene_.bands);
+  const std::string problem = strength_problem(
+      light.intensity_per_candela * light.table->greatest_intensity(), "the greatest intensity [W/sr]");
+  if (!problem.empty()) (scale ? *scale : flux ? *flux : path).fail(problem, kStrengthAdvice);
   return light;
 }
 

@@ -5,10 +5,17 @@
 #include <fmt/format.h>
 
 #include "scenes/io/surface_geometry.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 
 namespace {
+
+/// Here the place of the number is known; the checks of the room could only name the material.
+void check_strength(const Spectrum& radiance, const JsonCursor& at) {
+  const std::string problem = strength_problem(radiance, "the radiance [W/(m2 sr)]");
+  if (!problem.empty()) at.fail(problem, kStrengthAdvice);
+}
 
 /// The keys that set the emission; at most one of them may stand in a material.
 constexpr const char* kEmissionKeys[] = {"radiance",       "exitance",    "luminance_cd_m2",
@@ -88,6 +95,7 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
       } else {
         const bool is_exitance = key == "exitance" || key == "exitance_lm_m2";
         material.emitted_radiance = is_exitance ? radiance_of_exitance(value, material) : value;
+        check_strength(material.emitted_radiance, given);
       }
     }
     ids_.emplace(name, id);
@@ -127,6 +135,7 @@ void NativeMaterials::share_total_powers(Scene& scene) const {
           "Use the material, or remove its emission.");
     }
     material.emitted_radiance = radiance_of_exitance(total.power / area, material);
+    check_strength(material.emitted_radiance, total.at);
   }
 }
 

@@ -16,7 +16,7 @@ std::vector<std::uint32_t> append_loop(const JsonCursor& vertices, Surface& shap
   std::vector<std::uint32_t> loop;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     loop.push_back(static_cast<std::uint32_t>(shape.positions.size()));
-    shape.positions.push_back(vertices[i].vec3());
+    shape.positions.push_back(vertices[i].place());
   }
   return loop;
 }
@@ -37,9 +37,9 @@ Surface read_polygon(const JsonCursor& at) {
 
 Surface read_quad(const JsonCursor& at) {
   at.expect_object({"corner", "u", "v"});
-  const Vec3 corner = at.at("corner").vec3();
-  const Vec3 u = at.at("u").vec3();
-  const Vec3 v = at.at("v").vec3();
+  const Vec3 corner = at.at("corner").place();
+  const Vec3 u = at.at("u").place();
+  const Vec3 v = at.at("v").place();
   if (!(u.cross(v).norm() > 0)) at.fail("u and v are parallel or zero", "Give two edges that span an area.");
   Surface shape;
   shape.positions = {corner, corner + u, corner + u + v, corner + v};
@@ -49,8 +49,8 @@ Surface read_quad(const JsonCursor& at) {
 
 Surface read_box(const JsonCursor& at) {
   at.expect_object({"min", "max", "inward", "open"});
-  const Vec3 low = at.at("min").vec3();
-  const Vec3 high = at.at("max").vec3();
+  const Vec3 low = at.at("min").place();
+  const Vec3 high = at.at("max").place();
   if (!((high - low).array() > 0).all()) {
     at.at("max").fail("max must exceed min in every direction",
                       "Swap the corners, or use a quad for a flat thing.");
@@ -83,7 +83,7 @@ Surface read_mesh(const JsonCursor& at) {
   Surface shape;
   const JsonCursor vertices = at.at("vertices");
   vertices.expect_array(3);
-  for (std::size_t i = 0; i < vertices.size(); ++i) shape.positions.push_back(vertices[i].vec3());
+  for (std::size_t i = 0; i < vertices.size(); ++i) shape.positions.push_back(vertices[i].place());
   const JsonCursor faces = at.at("faces");
   faces.expect_array(1);
   const int last = static_cast<int>(shape.positions.size()) - 1;

@@ -35,7 +35,7 @@ Eigen::Affine3d read_rotation(const JsonCursor& at) {
   Eigen::Affine3d rotation = Eigen::Affine3d::Identity();
   rotation.linear() = c * Eigen::Matrix3d::Identity() + s * across + (1 - c) * axis * axis.transpose();
   const auto about = at.find("about");
-  const Vec3 centre = about ? about->vec3() : Vec3(0, 0, 0);
+  const Vec3 centre = about ? about->place() : Vec3(0, 0, 0);
   return Eigen::Translation3d(centre) * rotation * Eigen::Translation3d(-centre);
 }
 
@@ -64,7 +64,7 @@ Eigen::Affine3d read_step(const JsonCursor& at) {
     at.fail("a step must be exactly one of translate, rotate, scale, matrix",
             "Write several steps as an array: [{\"rotate\": ...}, {\"translate\": ...}].");
   }
-  if (const auto by = at.find("translate")) return Eigen::Affine3d(Eigen::Translation3d(by->vec3()));
+  if (const auto by = at.find("translate")) return Eigen::Affine3d(Eigen::Translation3d(by->place()));
   if (const auto by = at.find("rotate")) return read_rotation(*by);
   if (const auto by = at.find("matrix")) return read_matrix(*by);
   const JsonCursor by = at.at("scale");
@@ -112,7 +112,7 @@ std::vector<ArrayPlacement> read_array(const JsonCursor& at) {
       counter.fail(fmt::format("the array has more than {} placements", kMostPlacements), "Use fewer.");
     }
     const Eigen::Affine3d once =
-        step ? Eigen::Affine3d(Eigen::Translation3d(step->vec3())) : read_rotation(*rotate);
+        step ? Eigen::Affine3d(Eigen::Translation3d(step->place())) : read_rotation(*rotate);
     std::vector<ArrayPlacement> product;
     for (const ArrayPlacement& placement : placements) {
       Eigen::Affine3d power = Eigen::Affine3d::Identity();

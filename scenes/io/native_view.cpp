@@ -7,6 +7,7 @@
 
 #include "scenes/io/native_ies_light.h"
 #include "scenes/io/native_materials.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 
@@ -34,16 +35,21 @@ Spectrum read_quantity(const JsonCursor& at, std::initializer_list<Quantity> cho
   }
   if (!chosen) at.fail("the light has no strength", fmt::format("Give one of {}.", names));
   const JsonCursor value = at.at(chosen->key);
+  const auto checked = [&value](const Spectrum& strength) {
+    const std::string problem = strength_problem(strength, "the intensity [W/sr] or irradiance [W/m2]");
+    if (!problem.empty()) value.fail(problem, kStrengthAdvice);
+    return strength;
+  };
   const auto colour = at.find("color");
   if (!chosen->photometric) {
     if (colour) colour->fail("a colour needs a photometric strength", "Give one value per band instead.");
     const Spectrum strength = read_emission(value, bands) / chosen->divisor;
     if (!(strength > 0).any()) value.fail("the light emits nothing", "Remove it or give it power.");
-    return strength;
+    return checked(strength);
   }
   const double amount = value.number_in(0, std::numeric_limits<double>::max());
   if (!(amount > 0)) value.fail("the light emits nothing", "Remove it or give it power.");
-  return photometric_emission(amount, colour, bands) / chosen->divisor;
+  return checked(photometric_emission(amount, colour, bands) / chosen->divisor);
 }
 
 Vec3 read_direction(const JsonCursor& at) {
@@ -62,7 +68,7 @@ std::string read_name(const JsonCursor& at, const std::string& otherwise) {
 PointLight read_point(const JsonCursor& at, const std::string& name, double unit, const BandSet& bands) {
   at.expect_object({"type", "name", "position", "intensity", "intensity_cd", "power", "flux_lm", "color"});
   constexpr double kSphere = 4 * std::numbers::pi;
-  return {name, at.at("position").vec3() * unit,
+  return {name, at.at("position").place() * unit,
           read_quantity(at,
                         {{"intensity", false, 1},
                          {"intensity_cd", true, 1},
@@ -76,12 +82,12 @@ SpotLight read_spot(const JsonCursor& at, const std::string& name, double unit, 
                     "intensity", "intensity_cd", "color"});
   SpotLight light;
   light.name = name;
-  light.position = at.at("position").vec3() * unit;
+  light.position = at.at("position").place() * unit;
   const auto look_at = at.find("look_at");
   if (look_at && at.find("direction"))
     look_at->fail("the direction is given already", "Keep one of the two.");
   if (look_at) {
-    const Vec3 towards = look_at->vec3() * unit - light.position;
+    const Vec3 towards = look_at->place() * unit - light.position;
     if (!(towards.norm() > 0))
       look_at->fail("the light looks at its own position", "Move one of the two points.");
     light.direction = towards.normalized();
@@ -110,8 +116,8 @@ Camera read_camera(const JsonCursor& at, const std::string& name, double unit) {
   at.expect_object({"name", "eye", "look_at", "up", "vertical_fov_deg", "size"});
   Camera camera;
   camera.name = name;
-  camera.eye = at.at("eye").vec3() * unit;
-  camera.look_at = at.at("look_at").vec3() * unit;
+  camera.eye = at.at("eye").place() * unit;
+  camera.look_at = at.at("look_at").place() * unit;
   if (const auto up = at.find("up")) camera.up = read_direction(*up);
   const Vec3 forward = camera.look_at - camera.eye;
   if (!(forward.norm() > 0))

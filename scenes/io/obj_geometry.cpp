@@ -12,6 +12,7 @@
 #include "scenes/io/text_file.h"
 #include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace fs = std::filesystem;
@@ -60,6 +61,11 @@ class ObjChecker {
       if (!parse_number(line.words[i]))
         throw InputError(where_, fmt::format("'{}' is not a finite number", line.words[i]),
                          "Was the file cut off?");
+    if (line.words[0] == "v" && count >= 3) {
+      const std::string problem = place_problem(
+          {*parse_number(line.words[1]), *parse_number(line.words[2]), *parse_number(line.words[3])});
+      if (!problem.empty()) throw InputError(where_, problem, kLengthAdvice);
+    }
     if (count < 3 || count > 7 || (line.words[0] == "vn" && count != 3))
       throw InputError(where_, fmt::format("'{}' has {} numbers", line.words[0], count), "Give x, y and z.");
     clean_ += fmt::format("{} {} {} {}\n", line.words[0], line.words[1], line.words[2], line.words[3]);

@@ -1,11 +1,13 @@
 #include "scenes/io/output_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -57,6 +59,44 @@ fs::path partial_name(const fs::path& resolved, int attempt) {
          fmt::format("{}.{}{}.partial", resolved.filename().string(), getpid(), tail);
 }
 
+bool is_partial_of(const std::string& target_name, std::string_view name) {
+  constexpr std::string_view kEnd = ".partial";
+  if (!name.starts_with(target_name + ".") || !name.ends_with(kEnd)) return false;
+  name.remove_prefix(target_name.size() + 1);
+  name.remove_suffix(std::min(name.size(), kEnd.size()));
+  return !name.empty() && name.find_first_not_of("0123456789.") == std::string_view::npos;
+}
+
+// Who writes a partial file holds its lock until the end of OutputFile or of the process, whichever machine
+// or container it runs on. False also where a file system has no locks.
+bool nobody_writes(int descriptor) {
+  return flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+}
+
+// What cannot be removed stays: it is in nobody's way.
+void remove_what_killed_runs_left(const fs::path& resolved) {
+  const fs::path folder = resolved.has_parent_path() ? resolved.parent_path() : fs::path(".");
+  std::error_code code;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    const fs::path& file = entry->path();
+    if (!is_partial_of(resolved.filename().string(), file.filename().string())) continue;
+    const int descriptor = open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    struct stat status {};
+    if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
+        nobody_writes(descriptor))
+      unlink(file.c_str());
+    close(descriptor);
+  }
+}
+
+// Between creation and lock another process may have taken the new file for one that a killed run left.
+bool lock_new_file(int descriptor) {
+  struct stat status {};
+  return (flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) &&
+         fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& target) : target_(target), resolved_(follow_links(target)) {
@@ -71,11 +111,16 @@ OutputFile::OutputFile(const fs::path& target) : target_(target), resolved_(foll
   if (replaces && access(resolved_.c_str(), W_OK) != 0)
     raise(target_, "cannot replace the file", last_error());
 
+  remove_what_killed_runs_left(resolved_);
   constexpr int kAttempts = 1000;
   for (int attempt = 0; attempt < kAttempts && descriptor_ < 0; ++attempt) {
     partial_ = partial_name(resolved_, attempt);
     descriptor_ = open(partial_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) raise(target_, "cannot create the file", last_error());
+    if (descriptor_ >= 0 && !lock_new_file(descriptor_)) {
+      close(descriptor_);
+      descriptor_ = -1;
+    }
   }
   if (descriptor_ < 0) raise(target_, "cannot create the file", last_error());
   if (replaces)
@@ -83,8 +128,8 @@ OutputFile::OutputFile(const fs::path& target) : target_(target), resolved_(foll
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) close(descriptor_);
   if (!committed_) unlink(partial_.c_str());
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 void OutputFile::put(std::uint64_t offset, const void* bytes, std::size_t size) {
@@ -122,12 +167,12 @@ void OutputFile::commit() {
   flush();
   // Without this a crash of the machine after the rename could leave an empty file under the good name.
   if (fsync(descriptor_) != 0) raise(target_, "cannot write the file", last_error());
-  const int closed = close(descriptor_);
-  descriptor_ = -1;
-  if (closed != 0) raise(target_, "cannot write the file", last_error());
+  // Renamed while it is locked: unlocked under its old name it would look left over.
   if (std::rename(partial_.c_str(), resolved_.c_str()) != 0)
     raise(target_, "cannot replace the file", last_error());
   committed_ = true;
+  close(descriptor_);
+  descriptor_ = -1;
   const fs::path folder = resolved_.has_parent_path() ? resolved_.parent_path() : fs::path(".");
   const int folder_descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder_descriptor >= 0) {

@@ -10,8 +10,9 @@ namespace reemit {
 /// A file that replaces its predecessor only when it is complete. Bytes go to `NAME.<process id>.partial`
 /// beside the target; commit() flushes them to the disk and renames. Without commit() the destructor removes
 /// the partial file, so a failed or interrupted write never costs the previous file and never leaves half of
-/// a new one. A symbolic link is followed: the file it points to is replaced, not the link. Not copyable, not
-/// for several threads.
+/// a new one. A killed process cannot do so; its partial files are removed by the next OutputFile of the same
+/// target, which knows them by their name and by the lock that died with their process. A symbolic link is
+/// followed: the file it points to is replaced, not the link. Not copyable, not for several threads.
 class OutputFile {
  public:
   /// Creates the empty partial file. Throws ResourceError if that is not possible.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -42,6 +43,24 @@ void check_power(const Spectrum& s, const std::string& where, const char* what) 
   if (!s.isFinite().all() || (s < 0).any())
     throw InputError(where, fmt::format("{} {} is negative or not a number", what, listed(s)),
                      "Give a finite value of 0 or more in every band.");
+  const std::string problem = strength_problem(s, what);
+  if (!problem.empty()) throw InputError(where, problem, kStrengthAdvice);
+}
+
+void check_place(const Vec3& place, const char* what, const std::string& where) {
+  if (!place.allFinite())
+    throw InputError(where, fmt::format("{} has a coordinate that is infinite or not a number", what),
+                     "Repair the coordinates in the program that wrote the file.");
+  const std::string problem = place_problem(place);
+  if (!problem.empty()) throw InputError(where, problem, kLengthAdvice);
+}
+
+/// A light or a camera, which need not be where the surfaces are.
+void check_near_room(const Vec3& place, const char* what, const Box& room, const std::string& where) {
+  check_place(place, what, where);
+  const std::string problem = distance_problem(place, room.centre(), room.size().maxCoeff());
+  if (!problem.empty())
+    throw InputError(where, problem, "Move it nearer; for light from afar use a directional light.");
 }
 
 void check_material(Material& m, Scene& scene, const std::string& where) {
@@ -88,9 +107,7 @@ void check_loop(const std::vector<std::uint32_t>& loop, const std::vector<Vec3>&
     if (index >= points.size())
       throw InputError(where, fmt::format("vertex index {} is out of range", index),
                        fmt::format("The surface has {} vertices, counted from 0.", points.size()));
-    if (!points[index].allFinite())
-      throw InputError(where, "a vertex has a coordinate that is infinite or not a number",
-                       "Repair the coordinates in the program that wrote the file.");
+    check_place(points[index], "a vertex", where);
   }
 }
 
@@ -113,8 +130,8 @@ bool usable_normals(const Face& face, Surface& surface, const std::string& where
 
 void check_shape(const CurvedShape& shape, const std::string& where) {
   const auto [low, high] = shape_bounds(shape);
-  if (!low.allFinite() || !high.allFinite())
-    throw InputError(where, "a coordinate or radius is infinite or not a number", "Repair the numbers.");
+  check_place(low, "it", where);
+  check_place(high, "it", where);
   if (!(shape_area(shape) > 0))
     throw InputError(where, "it has no area: a radius or length is zero or negative",
                      "Give a positive radius and length, or remove the shape.");
@@ -137,16 +154,14 @@ void check_strength(Spectrum& s, const Scene& scene, const std::string& where, c
                      "Remove it or give it power.");
 }
 
-void check_light(PointLight& light, Scene& scene, const std::string& where) {
+void check_light(PointLight& light, Scene& scene, const Box& room, const std::string& where) {
   check_strength(light.intensity, scene, where, "intensity");
-  if (!light.position.allFinite())
-    throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
+  check_near_room(light.position, "the position", room, where);
 }
 
-void check_light(SpotLight& light, Scene& scene, const std::string& where) {
+void check_light(SpotLight& light, Scene& scene, const Box& room, const std::string& where) {
   check_strength(light.intensity, scene, where, "intensity");
-  if (!light.position.allFinite())
-    throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
+  check_near_room(light.position, "the position", room, where);
   check_direction(light.direction, where);
   constexpr double kSlack = 1e-6;  // pi/2 written with single precision
   if (!(light.inner_angle >= 0 && light.inner_angle < light.outer_angle &&
@@ -156,16 +171,16 @@ void check_light(SpotLight& light, Scene& scene, const std::string& where) {
                      "Half angles must satisfy 0 <= inner < outer <= pi/2.");
 }
 
-void check_light(DirectionalLight& light, Scene& scene, const std::string& where) {
+void check_light(DirectionalLight& light, Scene& scene, const Box&, const std::string& where) {
   check_strength(light.irradiance, scene, where, "irradiance");
   check_direction(light.direction, where);
 }
 
-void check_light(PhotometricLight& light, Scene& scene, const std::string& where) {
-  check_strength(light.intensity_per_candela, scene, where, "intensity");
-  if (!light.position.allFinite())
-    throw InputError(where, "the position is not a number", "Give x, y, z in metres.");
+void check_light(PhotometricLight& light, Scene& scene, const Box& room, const std::string& where) {
   if (!light.table) throw InputError(where, "it has no intensities", "Name the file of the luminaire.");
+  check_size(light.intensity_per_candela, scene, where, "intensity");
+  Spectrum greatest = light.intensity_per_candela * light.table->greatest_intensity();
+  check_strength(greatest, scene, where, "intensity");
   constexpr double kSlack = 1e-6;
   const Eigen::Matrix3d square = light.orientation.transpose() * light.orientation;
   if (!square.isApprox(Eigen::Matrix3d::Identity(), kSlack))
@@ -174,11 +189,15 @@ void check_light(PhotometricLight& light, Scene& scene, const std::string& where
   const Vec3 size = light.opening.size();
   if (!size.allFinite() || (size.array() < 0).any())
     throw InputError(where, "the size of its opening is negative or not a number", "Give 0 or more.");
+  const Vec3 reach = Vec3::Constant(size.maxCoeff());
+  check_near_room(light.position - reach, "the position", room, where);
+  check_near_room(light.position + reach, "the position", room, where);
 }
 
-void check_camera(const Camera& camera, const std::string& where) {
-  if (!camera.eye.allFinite() || !camera.look_at.allFinite() || !camera.up.allFinite())
-    throw InputError(where, "eye, look-at point or up is not a number", "Give finite x, y, z.");
+void check_camera(const Camera& camera, const Box& room, const std::string& where) {
+  if (!camera.up.allFinite()) throw InputError(where, "up is not a number", "Give finite x, y, z.");
+  check_near_room(camera.eye, "the eye", room, where);
+  check_place(camera.look_at, "the look-at point", where);
   const Vec3 view = camera.look_at - camera.eye;
   if (view.stableNorm() <= 0)
     throw InputError(where, "the eye is the point it looks at", "Move one of the two.");
@@ -229,6 +248,12 @@ void check_geometry(Scene& scene) {
       }
     }
   }
+  const double longest = bounds(scene).size().maxCoeff();
+  if (longest < limits::kSmallestRoom)
+    throw InputError(
+        in_file(scene, "room"),
+        fmt::format("its longest side is {:g} m; the least is {:g} m", longest, limits::kSmallestRoom),
+        kLengthAdvice);
   if (flattened > 0)
     scene.warnings.push_back(fmt::format(
         "{} face(s) have a shading normal that is zero or not a number and are shown flat.", flattened));
@@ -258,24 +283,26 @@ void check_luminous_surfaces(const Scene& scene) {
 }
 
 void check_lights(Scene& scene) {
+  const Box room = bounds(scene);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     std::visit(
         [&](auto& light) {
           const std::string name =
               light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light '{}'", light.name);
-          check_light(light, scene, in_file(scene, name));
+          check_light(light, scene, room, in_file(scene, name));
         },
         scene.lights[i]);
   }
 }
 
 void check_cameras(Scene& scene) {
+  const Box room = bounds(scene);
   std::set<std::string> names;
   for (Camera& camera : scene.cameras) {
     if (camera.name.empty()) camera.name = "camera";
     const std::string base = camera.name;
     for (int n = 2; !names.insert(camera.name).second; ++n) camera.name = fmt::format("{}_{}", base, n);
-    check_camera(camera, in_file(scene, fmt::format("camera '{}'", camera.name)));
+    check_camera(camera, room, in_file(scene, fmt::format("camera '{}'", camera.name)));
   }
 }
 

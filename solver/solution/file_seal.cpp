@@ -32,6 +32,14 @@ std::string seal_of(std::string_view bytes) {
   return seal_with(extend_hash(kEmptyHash, bytes));
 }
 
+bool ends_in_seal(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string seal(kSealBytes, '\0');
+  return in.seekg(-static_cast<std::streamoff>(kSealBytes), std::ios::end) &&
+         in.read(seal.data(), static_cast<std::streamsize>(seal.size())) && seal.starts_with(kName) &&
+         seal.ends_with('\n');
+}
+
 Seal check_seal(const std::filesystem::path& file) {
   std::error_code code;
   const std::uintmax_t size = std::filesystem::file_size(file, code);

@@ -18,4 +18,7 @@ enum class Seal { kIntact, kMissing, kBroken };
 /// Reads a whole file and compares. A file that cannot be read has no seal.
 Seal check_seal(const std::filesystem::path& file);
 
+/// Whether a file ends like one of ours, intact or not: reads its last line only.
+bool ends_in_seal(const std::filesystem::path& file);
+
 }  // namespace reemit

@@ -2,8 +2,10 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/support/run_program.h"
 #include "tests/support/small_rooms.h"
@@ -109,9 +111,10 @@ TEST_F(BadOutputs, FullDiskKeepsThePreviousFile) {
   RunOptions full_disk;
   full_disk.largest_file = 200;
   for (const Writer& writer : writers(folder_)) {
-    const std::string output = folder_.write("old" + writer.extension, "what was here before").string();
+    const std::string before = read_bytes(folder_ / "room.h5");
+    const std::string output = folder_.write("old" + writer.extension, before).string();
     expect_refused(writer, output, "old" + writer.extension, full_disk);
-    EXPECT_TRUE(read_bytes(output) == "what was here before") << writer.extension;
+    EXPECT_TRUE(read_bytes(output) == before) << writer.extension;
   }
 }
 
@@ -123,6 +126,53 @@ TEST_F(BadOutputs, FullStandardOutput) {
     EXPECT_EQ(run.exit_code, 2) << command;
     EXPECT_THAT(run.err, HasSubstr("cannot write")) << command;
   }
+}
+
+TEST_F(BadOutputs, StandardErrorThatTakesNothingCostsNoResult) {
+  const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+  int pipe[2];
+  ASSERT_EQ(::pipe2(pipe, O_CLOEXEC), 0);
+  ::close(pipe[0]);  // the reader has left
+  folder_.write("warns.json", replaced(small_json_room(), "[1, 1, 1]", "[300, 1, 1]"));
+  for (const int descriptor : {full, pipe[1], -1}) {
+    RunOptions options;
+    options.stderr_descriptor = descriptor;
+    const std::filesystem::path solution = folder_ / "out.h5";
+    const ProgramRun run = run_reemit(
+        {"solve", (folder_ / "warns.json").string(), "-o", solution.string(), "--packets", "1000", "-v"},
+        options);
+    EXPECT_EQ(run.exit_code, 0) << descriptor;
+    EXPECT_THAT(run.out, HasSubstr("stopped:")) << descriptor;
+    EXPECT_TRUE(std::filesystem::remove(solution)) << descriptor;
+    // An error is told by the exit code at least.
+    options.stdout_path = "/dev/full";
+    EXPECT_EQ(run_reemit({"--version"}, options).exit_code, 2) << descriptor;
+  }
+  ::close(full);
+  ::close(pipe[1]);
+}
+
+TEST_F(BadOutputs, SolveReplacesSolutionsOnly) {
+  const Writer solve = writers(folder_).front();
+  for (const char* name : {"lamp.glb", "other.json", "out", "out.h5.txt"}) {
+    const std::filesystem::path file = folder_.write(name, "of somebody");
+    expect_refused(solve, file.string(), ".h5 or .hdf5");
+    EXPECT_EQ(read_bytes(file), "of somebody");
+  }
+  const std::filesystem::path measured = folder_.write("measured.h5", "\x89HDF\r\n\x1a\n of somebody");
+  expect_refused(solve, measured.string(), "is not a solution");
+  EXPECT_EQ(read_bytes(measured), "\x89HDF\r\n\x1a\n of somebody");
+
+  EXPECT_EQ(write_to(solve, (folder_ / "room.h5").string()).exit_code, 0);
+  EXPECT_EQ(write_to(solve, folder_.write("empty.HDF5", "").string()).exit_code, 0);
+}
+
+TEST_F(BadOutputs, ExportDoesNotReplaceTheRoom) {
+  const std::filesystem::path room = folder_.write("square.glb", small_glb_room());
+  const std::string solution = (folder_ / "square.h5").string();
+  ASSERT_EQ(run_reemit({"solve", room.string(), "-o", solution, "--packets", "1000"}).exit_code, 0);
+  expect_refused({{"export", solution, "--values", "zones"}, ""}, room.string(), "input file");
+  EXPECT_EQ(read_bytes(room), small_glb_room());
 }
 
 }  // namespace

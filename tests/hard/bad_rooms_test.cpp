@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "solver/solution/file_seal.h"
 #include "tests/support/csv_file.h"
 #include "tests/support/run_program.h"
 #include "tests/support/small_rooms.h"
@@ -18,7 +19,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr const char* kOldSolution = "what was here before";
+/// Ends as solutions do; other files would not be replaced in any case.
+const std::string kOldSolution = "what was here before" + seal_of("what was here before");
 
 /// Solves `room`; it must be refused with a message that holds every one of `words`, and an existing output
 /// must stay as it was.

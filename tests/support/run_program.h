@@ -26,8 +26,10 @@ struct RunOptions {
   std::optional<std::uint64_t> largest_file;  ///< No file may grow beyond this [bytes], as on a full disk.
   std::optional<std::uint64_t> most_memory;   ///< Address space [bytes]; not with the address sanitizer.
   std::string stdout_path;                    ///< Where standard output goes instead of into ProgramRun::out.
-  std::filesystem::path working_folder;       ///< Empty: the one of the test.
-  unsigned time_limit_s = 120;                ///< Then the run is killed, so that a hang fails a test.
+  /// Of the test: where standard error goes instead of into ProgramRun::err; -1: it is closed.
+  std::optional<int> stderr_descriptor;
+  std::filesystem::path working_folder;  ///< Empty: the one of the test.
+  unsigned time_limit_s = 120;           ///< Then the run is killed, so that a hang fails a test.
 };
 
 /// A run of the built program that goes on beside the test.
@@ -55,6 +57,8 @@ class RunningProgram {
     ::alarm(options.time_limit_s);
     ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
     ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+    if (options.stderr_descriptor && ::dup2(*options.stderr_descriptor, STDERR_FILENO) < 0)
+      ::close(STDERR_FILENO);
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }

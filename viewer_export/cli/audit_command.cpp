@@ -2,10 +2,10 @@
 #include <memory>
 #include <optional>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "solver/gather/direct_audit.h"
+#include "solver/matrix/interrupted.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/audit_report.h"
@@ -13,6 +13,7 @@
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/direct_audit_report.h"
 #include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/progress.h"
 
 namespace reemit::cli {
@@ -26,8 +27,8 @@ struct AuditOptions {
   OutputStyle style;
 };
 
-/// Nothing if it was interrupted.
-std::optional<DirectAudit> compare_direct_light(const AuditOptions& options, const Solution& solution) {
+/// Throws Interrupted.
+DirectAudit compare_direct_light(const AuditOptions& options, const Solution& solution) {
   const Scene scene = read_room_of(solution, options.solution, options.room);
   const RayScene rays(solution.mesh);
   const InterruptGuard interrupt;
@@ -36,24 +37,21 @@ std::optional<DirectAudit> compare_direct_light(const AuditOptions& options, con
       scene, rays, solution, options.settings, [&progress](double done) { progress.update(done); },
       interrupt.requested());
   progress.finish();
-  if (interrupt.requested()) return std::nullopt;
+  if (interrupt.requested()) throw Interrupted("the comparison was interrupted");
   return audit;
 }
 
 ExitCode run_audit(const AuditOptions& options) {
   const Solution solution = load_solution(options.solution);
   std::optional<DirectAudit> direct;
-  if (options.direct) {
-    direct = compare_direct_light(options, solution);
-    if (!direct) return ExitCode::kInterrupted;
-  }
+  if (options.direct) direct = compare_direct_light(options, solution);
   if (options.style.json) {
     nlohmann::ordered_json document = audit_json(solution.audit, solution.surface_names);
     if (direct) document["direct"] = direct_audit_json(*direct, solution);
-    fmt::print("{}\n", document.dump(2));
+    print_json(document);
   } else {
-    fmt::print("{}", audit_text(solution.audit, solution.surface_names));
-    if (direct) fmt::print("\n{}", direct_audit_text(*direct, solution));
+    print_result(audit_text(solution.audit, solution.surface_names));
+    if (direct) print_result('\n' + direct_audit_text(*direct, solution));
   }
   const bool sound = solution.audit.balanced() && (!direct || direct->agrees());
   return sound ? ExitCode::kDone : ExitCode::kCheckFailed;

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 #include "viewer_export/still/default_cameras.h"
 
 namespace reemit::cli {
@@ -15,6 +16,9 @@ Camera camera_of_options(const CameraOptions& options, const Scene& scene) {
   Camera camera;
   camera.name = "view";
   camera.eye = *options.eye;
+  const Box room = bounds(scene);
+  const std::string problem = distance_problem(camera.eye, room.centre(), room.size().maxCoeff());
+  if (!problem.empty()) throw InputError("--eye", problem, "Move it nearer and narrow --fov.");
   camera.look_at = options.look_at.value();
   camera.up = options.up.value_or(up_direction(scene));
   const Vec3 forward = camera.look_at - camera.eye;

@@ -42,12 +42,12 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
         {"vertices", data.vertex_count()}, {"triangles", data.triangles.size()},
         {"error", known_error(data.info)}, {"seconds", seconds}};
     add_zones(json, data.info.zones);
-    fmt::print("{}\n", json.dump(2));
+    print_json(json);
     return;
   }
-  fmt::print("{}: {} vertices, {} triangles, noise {}, zones {}, {:.2f} s\n", options.output.string(),
-             data.vertex_count(), data.triangles.size(), percent_text(known_error(data.info)),
-             zones_text(data.info.zones), seconds);
+  print_result(fmt::format("{}: {} vertices, {} triangles, noise {}, zones {}, {:.2f} s\n",
+                           options.output.string(), data.vertex_count(), data.triangles.size(),
+                           percent_text(known_error(data.info)), zones_text(data.info.zones), seconds));
 }
 
 ExitCode run_export(const ExportOptions& options) {
@@ -58,6 +58,7 @@ ExitCode run_export(const ExportOptions& options) {
   check_output_file(options.output, options.solution);
   const Solution solution = load_solution(options.solution);
   const Scene scene = read_room_of(solution, options.solution, options.room);
+  check_output_file(options.output, scene.source);  // a .glb may be the room
   const RayScene rays(solution.mesh);
 
   const auto start = std::chrono::steady_clock::now();

@@ -10,6 +10,7 @@
 
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/solution_report.h"
@@ -71,9 +72,10 @@ ExitCode export_form_factors(const FormFactorExport& options) {
     nlohmann::ordered_json json = form_factor_json(report);
     json["file"] = options.output.string();
     json["seconds"] = seconds;
-    fmt::print("{}\n", json.dump(2));
+    print_json(json);
   } else {
-    fmt::print("{}: {:.2f} s\n{}\n", options.output.string(), seconds, form_factor_text(report));
+    print_result(
+        fmt::format("{}: {:.2f} s\n{}\n", options.output.string(), seconds, form_factor_text(report)));
   }
   return ExitCode::kDone;
 }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "mesh/build_mesh.h"
@@ -48,9 +47,9 @@ ExitCode show_solution(const InfoOptions& options) {
   const Solution solution = load_solution(options.file);
   const std::string status = room_status(solution, options.file);
   if (options.style.json) {
-    fmt::print("{}\n", solution_json(solution, options.file, status).dump(2));
+    print_json(solution_json(solution, options.file, status));
   } else {
-    fmt::print("{}", solution_text(solution, options.file, status));
+    print_result(solution_text(solution, options.file, status));
     print_warnings(solution.mesh_report.warnings);
     print_warnings(solution.light_warnings);
   }
@@ -62,9 +61,9 @@ ExitCode show_room(const InfoOptions& options) {
   const MeshResult meshed = build_mesh(scene);
   const std::vector<std::string> light_warnings = luminaire_warnings(scene, meshed.mesh);
   if (options.style.json) {
-    fmt::print("{}\n", room_json(scene, meshed, light_warnings).dump(2));
+    print_json(room_json(scene, meshed, light_warnings));
   } else {
-    fmt::print("{}", room_text(scene, meshed));
+    print_result(room_text(scene, meshed));
     std::fflush(stdout);
     print_warnings(scene.warnings);
     print_warnings(meshed.report.warnings);

@@ -3,7 +3,12 @@
 
 namespace reemit::cli {
 
-/// While it lives, the first SIGINT or SIGTERM asks long work to stop and the second one ends the program at
+/// From here on SIGINT, SIGTERM and SIGHUP end the program at once with a line on stderr and the exit code of
+/// an interrupted run, unless one of the classes below says otherwise. So loading and meshing, whose results
+/// are worth nothing in part, need not ask. A SIGHUP that the caller ignores (nohup) stays ignored.
+void end_on_signals();
+
+/// While it lives, the first of these signals asks long work to stop and the second one ends the program at
 /// once. At most one may live at a time: signals belong to the process.
 class InterruptGuard {
  public:

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "scenes/model/limits.h"
+
 namespace reemit::cli {
 namespace {
 
@@ -104,7 +106,7 @@ double parse_number(const std::string& text) {
   return *value;
 }
 
-Vec3 parse_point(const std::string& text) {
+Vec3 parse_direction(const std::string& text) {
   Vec3 point{0, 0, 0};
   std::string_view rest = text;
   for (int axis = 0; axis < 3; ++axis) {
@@ -116,6 +118,13 @@ Vec3 parse_point(const std::string& text) {
     point[axis] = *value;
     if (axis < 2) rest.remove_prefix(comma + 1);
   }
+  return point;
+}
+
+Vec3 parse_point(const std::string& text) {
+  const Vec3 point = parse_direction(text);
+  if (point.cwiseAbs().maxCoeff() > limits::kFarthest)
+    refuse(text, fmt::format("a place; no coordinate may exceed {:g} m", limits::kFarthest));
   return point;
 }
 

@@ -22,6 +22,8 @@ double parse_positive(const std::string& text);
 /// Finite number.
 double parse_number(const std::string& text);
 /// Three finite numbers "X,Y,Z".
+Vec3 parse_direction(const std::string& text);
+/// The same within limits::kFarthest [m].
 Vec3 parse_point(const std::string& text);
 
 struct PixelSize {

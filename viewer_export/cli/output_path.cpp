@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kChooseAnother = "choose another output with -o";
 
 void check_can_write(const fs::path& file) {
+  const FinishWriting finish;
   try {
     check_writable(file);
   } catch (const ResourceError& problem) {

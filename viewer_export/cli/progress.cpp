@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include "viewer_export/cli/messages.h"
 
 namespace reemit::cli {
 
@@ -40,19 +41,17 @@ void Progress::update(double done, const std::string& detail, double seconds_lef
     line += fmt::format(", {} left", duration_text(seconds_left));
   }
   if (style_ == ProgressStyle::kLines) {
-    fmt::print(stderr, "{}\n", line);
+    print_error_text(line + '\n');
   } else {
-    fmt::print(stderr, "\r{:<{}}", line, drawn_);
+    print_error_text(fmt::format("\r{:<{}}", line, drawn_));
     drawn_ = line.size();
   }
-  std::fflush(stderr);
 }
 
 void Progress::finish() {
   const std::lock_guard lock(mutex_);
   if (drawn_ == 0) return;
-  fmt::print(stderr, "\r{:<{}}\r", "", drawn_);
-  std::fflush(stderr);
+  print_error_text(fmt::format("\r{:<{}}\r", "", drawn_));
   drawn_ = 0;
 }
 

@@ -110,7 +110,7 @@ class Renderer {
 
   /// Prints the one document of --json.
   void finish() const {
-    if (options_.style.json) fmt::print("{}\n", nlohmann::ordered_json{{"pictures", pictures_}}.dump(2));
+    if (options_.style.json) print_json(nlohmann::ordered_json{{"pictures", pictures_}});
   }
 
  private:
@@ -142,12 +142,12 @@ class Renderer {
       pictures_.push_back(std::move(picture));
       return;
     }
-    fmt::print(
+    print_result(fmt::format(
         "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel, noise {}, zones {}, {}{:.2f} s\n",
         job.file.string(), job.camera.name, image.width, image.height, integrator, mean_samples(image),
         percent_text(known_error(image.info)), zones_text(image.info.zones),
         written.tone_mapped ? fmt::format("exposure {:+.2f} EV, ", written.tone_map.exposure_ev()) : "",
-        seconds);
+        seconds));
   }
 
   const RenderOptions& options_;
@@ -177,8 +177,10 @@ ExitCode run_render(RenderOptions options) {
   std::size_t done = 0;
   while (done < jobs.size() && !renderer.interrupted()) renderer.render(jobs[done++]);
   if (renderer.interrupted() && !options.style.quiet) {
-    print_note(fmt::format("interrupted; {} of {} pictures written, the last one as far as it got", done,
-                           jobs.size()));
+    print_note(
+        fmt::format("interrupted; {} of {} pictures written, the last one with the samples it had "
+                    "(zone values where it had none)",
+                    done, jobs.size()));
   }
   renderer.finish();
   return ExitCode::kDone;
@@ -215,7 +217,7 @@ void add_view_options(CLI::App& render, RenderOptions& options) {
                                     "What it looks at [m]");
   look_at->needs(eye);
   eye->needs(look_at);
-  add_parsed_option(render, "--up", options.camera.up, parse_point, "X,Y,Z",
+  add_parsed_option(render, "--up", options.camera.up, parse_direction, "X,Y,Z",
                     "Which way is up (default: 0,0,1 for MGF rooms, else 0,1,0)")
       ->needs(eye);
   render.add_option("--fov", options.camera.fov_deg, "Full vertical field of view [deg]")

@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <iostream>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -12,6 +11,7 @@
 #include "scenes/model/error.h"
 #include "solver/matrix/interrupted.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/output_path.h"
 
 #include "reemit/version.h"
@@ -62,15 +62,13 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
 
 ExitCode fail(const std::string& message, ExitCode code) {
   std::fflush(stdout);
-  fmt::print(stderr, "reemit: error: {}\n", message);
+  print_error_text(fmt::format("reemit: error: {}\n", message));
   return code;
 }
 
 /// What printed last may still wait in a buffer when the disk behind stdout is full.
 ExitCode checked_output(ExitCode code) {
-  std::cout.flush();
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
-  return fail("standard output: cannot write", ExitCode::kBadInput);
+  return results_arrived() ? code : fail("standard output: cannot write", ExitCode::kBadInput);
 }
 
 ExitCode parse_and_run(CLI::App& program, const Action& action, int argc, const char* const* argv) {

@@ -11,6 +11,7 @@
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
+#include "solver/solution/file_seal.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
@@ -22,9 +23,12 @@
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/formats/file_extension.h"
 
 namespace reemit::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kDefaultErrorTarget = 0.02;
 /// Zones aimed at without --zone-area: the time of the matrix grows with their square.
@@ -66,10 +70,22 @@ ProgressCallback progress_callback(Progress& progress, SolveMethod method) {
   };
 }
 
+/// A slip of the hand (the room twice, a table of measurements) must not cost a file that is not ours.
+void check_solution_output(const std::filesystem::path& output, const std::filesystem::path& room) {
+  check_output_file(output, room);
+  const std::string extension = lower_case_extension(output);
+  if (extension != ".h5" && extension != ".hdf5")
+    throw InputError(output.string(), "a solution file ends in .h5 or .hdf5",
+                     "write -o " + fs::path(output).replace_extension(".h5").string());
+  if (fs::exists(output) && !fs::is_empty(output) && !ends_in_seal(output))
+    throw InputError(output.string(), "exists and is not a solution, so it is not replaced",
+                     "choose another output with -o, or remove the file if it is a solution cut short");
+}
+
 ExitCode run_solve(const SolveOptions& options) {
   const bool matrix = options.solver.method == SolveMethod::kMatrix;
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
-  check_output_file(options.output, options.room);
+  check_solution_output(options.output, options.room);
   const Scene scene = read_scene(options.room, options.read);
   if (!options.style.quiet) {
     print_warnings(scene.warnings);
@@ -109,9 +125,9 @@ ExitCode run_solve(const SolveOptions& options) {
       missed_by_zones("gathered light", settings.error_target, solution.record.gather_bias);
   if (!missed.empty() && !options.style.quiet) print_note(missed);
   if (options.style.json) {
-    fmt::print("{}\n", solve_json(scene, solution, options.output).dump(2));
+    print_json(solve_json(scene, solution, options.output));
   } else {
-    fmt::print("{}\n", solve_line(solution));
+    print_result(solve_line(solution) + '\n');
   }
   return ExitCode::kDone;
 }
@@ -133,7 +149,9 @@ void add_solve_command(CLI::App& program, Action& action) {
   solve.add_option("room", options->room, "Room file: .json .obj .gltf .glb .mgf")
       ->required()
       ->type_name("ROOM");
-  solve.add_option("-o,--output", options->output, "Solution file to write (HDF5)")
+  solve
+      .add_option("-o,--output", options->output,
+                  "Solution file to write (HDF5): .h5 or .hdf5; replaces a solution, nothing else")
       ->required()
       ->type_name("SOLUTION");
 

@@ -7,10 +7,21 @@
 namespace reemit {
 namespace {
 
-std::string zones_text(const std::optional<ZoneBias>& zones) {
+InfoValue zones_value(const std::optional<ZoneBias>& zones) {
   if (!zones) return "not known";
-  if (zones->bound == 0) return "0";
-  return zones->certain() ? fmt::format("{:.2g}", zones->rms) : fmt::format("below {:.2g}", zones->bound);
+  if (zones->bound == 0) return 0.0;
+  if (!zones->certain()) return fmt::format("below {:.2g}", zones->bound);
+  return zones->rms;
+}
+
+std::string text_of(const std::string& text) {
+  return text;
+}
+std::string text_of(std::uint64_t number) {
+  return std::to_string(number);
+}
+std::string text_of(double number) {
+  return fmt::format("{:.4g}", number);
 }
 
 }  // namespace
@@ -22,22 +33,29 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::vector<std::pair<std::string, std::string>> describe(const ExportInfo& info, const BandSet& bands) {
-  std::vector<std::pair<std::string, std::string>> lines{
+std::vector<std::pair<std::string, InfoValue>> describe_values(const ExportInfo& info, const BandSet& bands) {
+  std::vector<std::pair<std::string, InfoValue>> lines{
       {"program", "reemit " + info.program_version},
       {"room", info.room},
       {"room hash", info.room_hash},
       {"units", "lengths in m, radiance in W/(m2 sr), irradiance in W/m2, each within its band"},
       {"bands", fmt::format("{}", fmt::join(bands.names(), " "))},
       {"luminance", bands.efficacy_statement()},
-      {"seed", std::to_string(info.seed)},
-      {"relative error by noise", info.error > 0 ? fmt::format("{:.4g}", info.error) : "not known"},
-      {"relative error by zones", zones_text(info.zones)}};
+      {"seed", info.seed},
+      {"relative error by noise", info.error > 0 ? InfoValue(info.error) : InfoValue("not known")},
+      {"relative error by zones", zones_value(info.zones)}};
   lines.insert(lines.end(), info.settings.begin(), info.settings.end());
   for (auto& [name, value] : lines) {
     name = one_line(std::move(name));
-    value = one_line(std::move(value));
+    if (auto* text = std::get_if<std::string>(&value)) *text = one_line(std::move(*text));
   }
+  return lines;
+}
+
+std::vector<std::pair<std::string, std::string>> describe(const ExportInfo& info, const BandSet& bands) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const auto& [name, value] : describe_values(info, bands))
+    lines.emplace_back(name, std::visit([](const auto& v) { return text_of(v); }, value));
   return lines;
 }
 

@@ -3,12 +3,16 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "scenes/model/bands.h"
 #include "solver/tally/zone_bias.h"
 
 namespace reemit {
+
+/// A value of the info: text where it is no number, "not known" too.
+using InfoValue = std::variant<std::string, std::uint64_t, double>;
 
 /// What every exported file says about where its numbers come from.
 struct ExportInfo {
@@ -19,16 +23,19 @@ struct ExportInfo {
   double error = 0;        ///< Relative standard error of the exported values, as a fraction; 0 = not known.
   /// What the zones add to that; nothing if it is not known.
   std::optional<ZoneBias> zones = std::nullopt;
-  /// Further settings worth keeping, in the order they are written: {"gather rays", "256"}.
-  std::vector<std::pair<std::string, std::string>> settings;
+  /// Further settings worth keeping, in the order they are written: {"gather rays", 256}.
+  std::vector<std::pair<std::string, InfoValue>> settings;
 };
 
 /// The text with control characters replaced by spaces: a line break would end a comment of a file header
 /// early.
 std::string one_line(std::string text);
 
-/// The info as {name, value} pairs for headers and metadata: program, room, units, efficacy, seed, error,
-/// settings. Values are one line each: line breaks inside become spaces.
+/// The info as {name, value} pairs for metadata that knows numbers: program, room, units, efficacy, seed,
+/// error, settings. Texts are one line each: line breaks inside become spaces.
+std::vector<std::pair<std::string, InfoValue>> describe_values(const ExportInfo& info, const BandSet& bands);
+
+/// The same as text, for headers.
 std::vector<std::pair<std::string, std::string>> describe(const ExportInfo& info, const BandSet& bands);
 
 }  // namespace reemit

@@ -8,13 +8,19 @@
 
 namespace reemit {
 
+/// With its dot: ".glb" of "Room.GLB".
+inline std::string lower_case_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
+}
+
 /// The row of a format table whose `extension` is that of the file name (case is ignored). Throws InputError
 /// that lists the known ones.
 template <class Format>
 const Format& format_by_extension(std::span<const Format> formats, const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string extension = lower_case_extension(file);
   std::string known;
   for (const Format& format : formats) {
     if (format.extension == extension) return format;

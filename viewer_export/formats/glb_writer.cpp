@@ -131,7 +131,8 @@ std::vector<Attribute> attributes_of(const VertexData& data, const VertexColours
 
 Json extras_of(const VertexData& data, const ToneMap& tone_map) {
   Json extras;
-  for (const auto& [name, value] : describe(data.info, data.bands)) extras[name] = value;
+  for (const auto& [name, value] : describe_values(data.info, data.bands))
+    std::visit([&extras, &key = name](const auto& v) { extras[key] = v; }, value);
   extras["_RADIANCE"] = "W/(m2 sr), linear Rec.709";
   extras["_IRRADIANCE"] = "W/m2, linear Rec.709";
   extras["COLOR_0"] = tone_map.statement();

@@ -21,7 +21,7 @@ double sample_filter(PixelFilter filter, double u) {
 
 std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates) {
   // Finishing turns three of the replicates into layers.
-  return ((2 + std::max<std::size_t>(replicates, 3)) * bands + 6) * sizeof(float);
+  return ((2 + std::max<std::size_t>(replicates, 3)) * bands + 6) * sizeof(float) + 1;
 }
 
 Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts)
@@ -38,6 +38,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
     image_.depth.assign(pixels, 0.0F);
     image_.normal.assign(3 * pixels, 0.0F);
     seen_.assign(pixels, 0.0F);
+    begun_.assign(pixels, 0);
   } catch (const std::bad_alloc&) {
     throw ResourceError("still",
                         "out of memory for " + std::to_string(pixels) + " pixels of " +
@@ -47,6 +48,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
 }
 
 void Film::add(std::size_t pixel, std::size_t replicate, const PixelBlock& block) {
+  begun_[pixel] = std::max(begun_[pixel], static_cast<std::uint8_t>(replicate + 1));
   const auto samples = static_cast<float>(block.samples);
   const float share = samples / (static_cast<float>(block.earlier) + samples);
   const float share_of_all = samples / (image_.samples[pixel] + samples);
@@ -70,6 +72,19 @@ ReplicateMean Film::replicate_mean(std::size_t pixel, std::size_t band) const {
   });
 }
 
+// Of fewer replicates than planned each counts as one of its own: most have parts of their own, too.
+ReplicateMean Film::mean_so_far(std::size_t pixel, std::size_t band) const {
+  const std::size_t begun = begun_[pixel];
+  if (begun == replicates_) return replicate_mean(pixel, band);
+  if (begun == 0) return {};
+  return mean_of_replicates(
+      begun, 1, [&](std::size_t r) { return static_cast<double>(means_[r][pixel * bands_ + band]); });
+}
+
+bool Film::has_gaps() const {
+  return std::find(begun_.begin(), begun_.end(), 0) != begun_.end();
+}
+
 double Film::radiance(std::size_t pixel, std::size_t band) const {
   return replicate_mean(pixel, band).mean;
 }
@@ -79,13 +94,13 @@ double Film::squared_error(std::size_t pixel, std::size_t band) const {
 }
 
 StillImage Film::finish() {
-  const bool have_errors = replicates_ >= 2;
+  const bool have_errors = std::find(begun_.begin(), begun_.end(), 1) == begun_.end();
   for (std::size_t r = replicates_; r < 3; ++r) means_[r].resize(image_.direct.size());
   for (std::size_t pixel = 0; pixel < image_.pixel_count(); ++pixel) {
     for (std::size_t b = 0; b < bands_; ++b) {
       // In place: replicates 0, 1 and 2 become the layers radiance, indirect and standard error.
       const std::size_t k = pixel * bands_ + b;
-      const ReplicateMean mean = replicate_mean(pixel, b);
+      const ReplicateMean mean = mean_so_far(pixel, b);
       const double error = have_errors ? std::sqrt(mean.squared_error) : 0.0;
       means_[0][k] = static_cast<float>(mean.mean);
       means_[1][k] = std::max(0.0F, means_[0][k] - image_.direct[k]);

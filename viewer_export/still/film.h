@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -49,20 +50,25 @@ class Film {
   /// Memory that a pixel takes while rendering [bytes].
   static std::size_t bytes_per_pixel(std::size_t bands, std::size_t replicates);
 
+  /// The replicates of a pixel begin in their order.
   void add(std::size_t pixel, std::size_t replicate, const PixelBlock& block);
 
   std::size_t replicates() const { return replicates_; }
+  bool has_gaps() const;  ///< A pixel has no sample.
+  // Pre of both: all replicates of the pixel have begun.
   double radiance(std::size_t pixel, std::size_t band) const;
   /// Square of the standard error of radiance; infinite with one replicate.
   double squared_error(std::size_t pixel, std::size_t band) const;
   /// Size, bands and the layers that hold means already: direct, albedo, samples.
   const StillImage& image() const { return image_; }
 
-  /// Makes the layers and hands the picture over. The film is empty afterwards.
+  /// Makes the layers and hands the picture over. Replicates that have not begun do not count, and there are
+  /// no errors where a pixel has fewer than two. The film is empty afterwards.
   StillImage finish();
 
  private:
   ReplicateMean replicate_mean(std::size_t pixel, std::size_t band) const;
+  ReplicateMean mean_so_far(std::size_t pixel, std::size_t band) const;
 
   std::size_t bands_;
   std::size_t replicates_;
@@ -70,6 +76,7 @@ class Film {
   StillImage image_;  // depth, normal: sums over samples that saw something
   std::array<std::vector<float>, kReplicates> means_;
   std::vector<float> seen_;
+  std::vector<std::uint8_t> begun_;  // replicates, by pixel
 };
 
 }  // namespace reemit

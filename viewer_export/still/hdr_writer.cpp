@@ -24,11 +24,23 @@ std::string extra_header(const StillImage& image, const ToneMap& tone_map) {
   return lines;
 }
 
-// What a shared-exponent pixel can hold: finite and not negative.
+// What a shared-exponent pixel can hold: finite, not negative, and three times eight bits. The encoder cuts
+// what is beyond the eight bits, which would make pictures 0.3 % darker, so they are rounded to here.
 std::vector<float> representable(std::span<const float> rgb) {
   constexpr float kLargest = 1e38F;
+  constexpr int kMantissaBits = 8;
   std::vector<float> result(rgb.begin(), rgb.end());
   for (float& value : result) value = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, kLargest);
+  for (std::size_t pixel = 0; pixel + 2 < result.size(); pixel += 3) {
+    const float largest = std::max({result[pixel], result[pixel + 1], result[pixel + 2]});
+    if (largest == 0) continue;
+    int exponent = 0;
+    // Rounding may carry the largest beyond the eight bits of its exponent; the next one then serves all.
+    if (std::frexp(largest, &exponent) >= 1 - std::ldexp(1.0F, -kMantissaBits - 1)) ++exponent;
+    for (std::size_t c = pixel; c < pixel + 3; ++c)
+      result[c] = std::ldexp(std::nearbyint(std::ldexp(result[c], kMantissaBits - exponent)),
+                             exponent - kMantissaBits);
+  }
   return result;
 }
 

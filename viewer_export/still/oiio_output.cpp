@@ -72,6 +72,7 @@ std::string encode(const std::string& format, const OIIO::ImageSpec& spec, OIIO:
 }  // namespace
 
 void describe_image(const StillImage& image, OIIO::ImageSpec& spec) {
+  spec.attribute("DateTime", "");  // or the time of writing would be added: equal runs give equal files
   spec.attribute("Software", "reemit " + image.info.program_version);
   for (auto [name, value] : describe(image.info, image.bands)) {
     std::replace(name.begin(), name.end(), ' ', '_');

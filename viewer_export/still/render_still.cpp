@@ -102,14 +102,25 @@ class Rendering {
       const int wished = std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(samples) / 2)),
                                     kSmallestBlock, kLargestBlock);
       const int block = std::min(wished, most_samples_ - samples);
-      render_block({samples, block, log2_samples_});
+      const int replicates = static_cast<int>(film_.replicates());
+      // The first block goes over the picture several times, by one replicate, one more, two more, and so on,
+      // so that there is a whole picture early.
+      for (int first = 0; first < replicates && !interrupt_;) {
+        const int count = samples > 0 ? replicates : std::max(1, first);
+        render_block({samples, block, log2_samples_, first, count});
+        first += count;
+      }
       if (interrupt_) break;
       samples += block;
       progress_now_.samples = samples * static_cast<int>(film_.replicates());
       measure();
       if (std::none_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.active; })) break;
     }
+    if (film_.has_gaps()) fill_what_is_missing();
   }
+
+  /// Whether the run ended before every pixel had a sample of its own.
+  bool has_zone_values() const { return has_zone_values_; }
 
   double error() const { return progress_now_.error; }
   bool limited_by_zones() const {
@@ -130,7 +141,19 @@ class Rendering {
       const std::lock_guard lock(progress_mutex_);
       ++done;
       const double share = static_cast<double>(done) / static_cast<double>(active.size());
-      report((block.first + block.samples * share) / most_samples_);
+      const double of_block =
+          (block.first_replicate + block.replicates * share) / static_cast<double>(film_.replicates());
+      report((block.first + block.samples * of_block) / most_samples_);
+    });
+  }
+
+  void fill_what_is_missing() {
+    has_zone_values_ = true;
+    const auto width = static_cast<std::size_t>(film_.image().width);
+    tbb::parallel_for(std::size_t{0}, tiles_.size(), [&](std::size_t i) {
+      const Tile& t = tiles_[i].tile;
+      const std::size_t corner = static_cast<std::size_t>(t.y0) * width + static_cast<std::size_t>(t.x0);
+      if (film_.image().samples[corner] == 0) renderer_.fill_with_zones(t, film_);
     });
   }
 
@@ -188,6 +211,7 @@ class Rendering {
   const std::atomic<bool>& interrupt_;
   std::vector<TileState> tiles_;
   bool to_target_;
+  bool has_zone_values_ = false;
   int most_samples_ = 1;  // per replicate
   int log2_samples_ = 0;
   std::mutex progress_mutex_;
@@ -205,11 +229,11 @@ ExportInfo describe_still(const Scene& scene, const Solution& solution, const St
   info.error = std::isfinite(error) ? error : 0;
   info.settings = {{"integrator", to_string(settings.integrator)},
                    {"pixel filter", to_string(settings.filter)},
-                   {"still seed", std::to_string(settings.seed)}};
+                   {"still seed", settings.seed}};
   if (settings.integrator != Integrator::kZones)
-    info.settings.emplace_back("shadow rays per sample", std::to_string(settings.light_samples));
+    info.settings.emplace_back("shadow rays per sample", static_cast<std::uint64_t>(settings.light_samples));
   if (settings.integrator == Integrator::kGather)
-    info.settings.emplace_back("gather rays per sample", std::to_string(settings.gathers));
+    info.settings.emplace_back("gather rays per sample", static_cast<std::uint64_t>(settings.gathers));
   return info;
 }
 
@@ -245,6 +269,8 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
     Rendering rendering(renderer, settings, film, progress, interrupt);
     rendering.run();
     ExportInfo info = describe_still(scene, solution, settings, rendering.error());
+    if (rendering.has_zone_values())
+      info.settings.emplace_back("interrupted", "tiles that were not reached hold zone values");
     if (!interrupt) info.zones = renderer.zone_bias(solution, film);
     image = film.finish();
     image.info = std::move(info);

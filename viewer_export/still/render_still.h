@@ -59,9 +59,10 @@ using StillProgressCallback = std::function<void(const StillProgress&)>;
 /// with 7 degrees of freedom, so a 95 % interval is 2.36 standard errors to each side. With an error target,
 /// 16 x 16 pixel tiles that have reached it get no more samples, nor do tiles whose error is that of the zone
 /// solution (StillImage::limited_by_zones). Bit for bit the same for any number of threads. `progress` (may
-/// be empty) is called from one thread at a time. When `interrupt` becomes true, returns what stands. Throws
-/// InputError for settings or a camera out of range and a room that is not the one solved, ResourceError when
-/// the picture does not fit into memory.
+/// be empty) is called from one thread at a time. The first samples go over the whole picture one replicate
+/// after the other: when `interrupt` becomes true, returns what stands, a noisier picture; tiles that have
+/// not had a sample by then hold zone values. Throws InputError for settings or a camera out of range and a
+/// room that is not the one solved, ResourceError when the picture does not fit into memory.
 StillImage render_still(const Scene& scene, const Solution& solution, const RayScene& rays,
                         const Camera& camera, const StillSettings& settings,
                         const StillProgressCallback& progress, const std::atomic<bool>& interrupt);

@@ -17,7 +17,9 @@ struct TileRenderer::PixelSums {
   std::uint64_t index;  // of the pixel in the picture
   std::uint32_t batch;  // of the random numbers
   std::uint32_t part;   // of the zone solution
-  float share;          // 1 / samples
+  std::uint32_t parts;  // from there on, whose mean zones are read; gather rays read the first
+  Integrator integrator;
+  float share;  // 1 / samples
   float* direct;
   float* indirect;
   float* albedo;
@@ -43,20 +45,23 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
   const auto picture_width = static_cast<std::size_t>(film.image().width);
   const std::size_t pixels =
       static_cast<std::size_t>(tile.x1 - tile.x0) * static_cast<std::size_t>(tile.y1 - tile.y0);
-  std::vector<float> values(3 * bands * pixels * film.replicates(), 0.0F);
+  const int last_replicate = block.first_replicate + block.replicates;
+  std::vector<float> values(3 * bands * pixels * static_cast<std::size_t>(block.replicates), 0.0F);
   std::vector<float> weight(bands);
   std::vector<PixelBlock> found;
-  found.reserve(pixels * film.replicates());
+  found.reserve(pixels * static_cast<std::size_t>(block.replicates));
   GatherBatch batch(gather_);
   float* next = values.data();
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1; ++x) {
       const std::size_t pixel = static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x);
-      for (int r = 0; r < static_cast<int>(film.replicates()); ++r, next += 3 * bands) {
+      for (int r = block.first_replicate; r < last_replicate; ++r, next += 3 * bands) {
         PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
                        pixel,
                        static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
                        static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(field_.parts()),
+                       1,
+                       settings_->integrator,
                        1.0F / static_cast<float>(block.samples),
                        next,
                        next + bands,
@@ -79,8 +84,37 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
   auto next_found = found.begin();
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1; ++x)
-      for (std::size_t r = 0; r < film.replicates(); ++r)
-        film.add(static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x), r, *next_found++);
+      for (int r = block.first_replicate; r < last_replicate; ++r)
+        film.add(static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x),
+                 static_cast<std::size_t>(r), *next_found++);
+}
+
+void TileRenderer::fill_with_zones(const Tile& tile, Film& film) const {
+  const std::size_t bands = field_.band_count();
+  std::vector<float> values(3 * bands);
+  GatherBatch batch(gather_);
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
+                                static_cast<std::size_t>(x);
+      std::fill(values.begin(), values.end(), 0.0F);
+      float* direct = values.data();
+      PixelSums sums{
+          PointSampler(settings_->seed, RngPurpose::kPixel, pixel, 0, 0),
+          pixel,
+          0,
+          0,
+          static_cast<std::uint32_t>(field_.parts()),
+          Integrator::kZones,
+          1.0F,
+          direct,
+          direct + bands,
+          direct + 2 * bands,
+          nullptr,
+          {.direct = direct, .indirect = direct + bands, .albedo = direct + 2 * bands, .samples = 1}};
+      add_sample(x + 0.5, y + 0.5, 0, sums, batch);
+      film.add(pixel, 0, sums.found);
+    }
 }
 
 void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const {
@@ -102,16 +136,17 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
     sums.direct[b] += emission * emitted[b];
     sums.albedo[b] += sums.share * reflectance[b];
   }
-  if (settings_->integrator != Integrator::kZones) {
+  if (sums.integrator != Integrator::kZones) {
     add_light(point, sample, sums, batch);
     return;
   }
-  const float* all = field_.reflected(t, hit.u, hit.v, hit.front, sums.part);
   const float* direct = field_.reflected_direct(t, hit.u, hit.v, hit.front);
-  for (std::size_t b = 0; b < bands; ++b) {
-    sums.direct[b] += sums.share * direct[b];
-    sums.indirect[b] += sums.share * (all[b] - direct[b]);
+  const float share_of_part = sums.share / static_cast<float>(sums.parts);
+  for (std::uint32_t part = sums.part; part < sums.part + sums.parts; ++part) {
+    const float* all = field_.reflected(t, hit.u, hit.v, hit.front, part);
+    for (std::size_t b = 0; b < bands; ++b) sums.indirect[b] += share_of_part * (all[b] - direct[b]);
   }
+  for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += sums.share * direct[b];
 }
 
 void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums, GatherBatch& batch) const {

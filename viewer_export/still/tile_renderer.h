@@ -18,11 +18,13 @@ struct Tile {
   int x0, y0, x1, y1;
 };
 
-/// Samples of every replicate of a pixel that are taken in one go.
+/// Samples of some replicates of a pixel that are taken in one go.
 struct SampleBlock {
   int first = 0;
   int samples = 1;
   int log2_samples = 0;  ///< No sample number of this picture reaches 2^log2_samples.
+  int first_replicate = 0;
+  int replicates = 1;
 };
 
 /// Renders tiles. Const members may be called from any thread for different tiles.
@@ -38,8 +40,12 @@ class TileRenderer {
   /// Parts of the zone solution that the replicates read in turn.
   std::size_t parts() const { return field_.parts(); }
 
-  /// Adds samples first .. first+samples-1 of every replicate to each pixel of the tile.
+  /// Adds samples first .. first+samples-1 of the replicates of the block to each pixel of the tile.
   void render(const Tile& tile, const SampleBlock& block, Film& film) const;
+
+  /// For a picture that ends before its first pass does: gives each pixel of a tile the zone values that a
+  /// ray through its middle sees, as one sample of its first replicate.
+  void fill_with_zones(const Tile& tile, Film& film) const;
 
   /// What the zones do to the picture on the film, relative as StillSettings::error_target: from points seen
   /// through pixels all over it, with about two per cent of the rays of the picture. Exactly 0 for a

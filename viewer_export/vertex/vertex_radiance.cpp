@@ -103,9 +103,9 @@ void describe(const Scene& scene, const Solution& solution, const VertexSettings
   info.seed = solution.settings.seed;
   info.settings.emplace_back("vertex values", settings.average_zones ? "zone averages" : "final gather");
   if (settings.average_zones) return;
-  info.settings.emplace_back("gather rays", std::to_string(settings.gather_rays));
-  info.settings.emplace_back("light samples", std::to_string(settings.light_samples));
-  info.settings.emplace_back("gather seed", std::to_string(settings.seed));
+  info.settings.emplace_back("gather rays", static_cast<std::uint64_t>(settings.gather_rays));
+  info.settings.emplace_back("light samples", static_cast<std::uint64_t>(settings.light_samples));
+  info.settings.emplace_back("gather seed", settings.seed);
 }
 
 }  // namespace

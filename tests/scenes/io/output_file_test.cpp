@@ -1,8 +1,13 @@
 #include "scenes/io/output_file.h"
 
+#include <csignal>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "scenes/model/error.h"
 #include "tests/support/small_disk.h"
@@ -15,6 +20,7 @@ using test::read_bytes;
 using test::SmallDisk;
 using test::TempFolder;
 using test::write_bytes;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -104,6 +110,25 @@ TEST(OutputFile, TwoFilesOfOneNameDoNotMeet) {
   second.commit();
   EXPECT_EQ(read_bytes(folder / "a.txt"), "second");
   EXPECT_EQ(folder.listing().size(), 1U);
+}
+
+TEST(OutputFile, RemovesWhatKilledRunsLeft) {
+  const TempFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    OutputFile file(folder / "a.txt");
+    file.write("half");
+    raise(SIGKILL);
+  }
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  ASSERT_EQ(folder.listing(), std::vector<std::string>{fmt::format("a.txt.{}.partial", child)});
+  // Files of others, however alike.
+  write_bytes(folder / "a.txt.partial", "");
+  write_bytes(folder / "a.txt.draft.partial", "");
+  write_bytes(folder / "b.a.txt.123.partial", "");
+  OutputFile(folder / "a.txt").commit();
+  EXPECT_THAT(folder.listing(),
+              ElementsAre("a.txt", "a.txt.draft.partial", "a.txt.partial", "b.a.txt.123.partial"));
 }
 
 TEST(CheckWritable, AcceptsNewAndExistingFilesWithoutTouchingThem) {

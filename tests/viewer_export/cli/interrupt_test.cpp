@@ -3,11 +3,13 @@
 #include <string>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/run_program.h"
 #include "tests/support/small_rooms.h"
+#include "tests/support/solved_room.h"
 #include "tests/support/temp_folder.h"
 
 namespace reemit::test {
@@ -32,7 +34,7 @@ void wait_for_progress(const RunningProgram& program) {
 }
 
 TEST(Interrupt, FirstSignalKeepsTheSolutionSoFar) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const TempFolder folder;
     folder.write("room.json", small_json_room());
     RunningProgram program = start_endless_solve(folder);
@@ -67,12 +69,42 @@ TEST(Interrupt, SecondSignalLeavesNoHalfFile) {
 TEST(Interrupt, KilledRunKeepsThePreviousSolution) {
   const TempFolder folder;
   folder.write("room.json", small_json_room());
-  folder.write("room.h5", "the previous one");
+  const std::string previous = read_bytes(solve_small_room(folder, "room.h5"));
   RunningProgram program = start_endless_solve(folder);
   wait_for_progress(program);
   program.send(SIGKILL);
   EXPECT_EQ(program.wait().exit_code, -SIGKILL);
-  EXPECT_TRUE(read_bytes(folder / "room.h5") == "the previous one");
+  EXPECT_TRUE(read_bytes(folder / "room.h5") == previous);
+}
+
+/// Boxes that all pass through their neighbours, so that meshing takes its time.
+std::string crossing_boxes(int count) {
+  std::string boxes;
+  for (int i = 0; i < count * count * count; ++i) {
+    const double x = 0.7 * (i % count), y = 0.7 * (i / count % count), z = 0.7 * (i / count / count);
+    boxes += fmt::format(R"({{"material": "lamp", "box": {{"min": [{}, {}, {}], "max": [{}, {}, {}]}}}},)", x,
+                         y, z, x + 0.9, y + 0.8, z + 0.85);
+  }
+  boxes.pop_back();
+  return R"({"format": "reemit-room", "version": 1, "bands": "rgb",
+    "materials": {"lamp": {"reflectance": 0.5, "exitance": 1}}, "objects": [)" +
+         boxes + "]}";
+}
+
+TEST(Interrupt, MeshingEndsAtOnceAndLeavesNothing) {
+  const TempFolder folder;
+  folder.write("room.json", crossing_boxes(12));
+  RunningProgram program({"solve", (folder / "room.json").string(), "-o", (folder / "room.h5").string()});
+  // What was assumed about the file is said between reading and meshing.
+  for (int i = 0; i < 2000 && program.errors_so_far().find("has a colour") == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  program.send(SIGINT);
+  const auto sent = std::chrono::steady_clock::now();
+  const ProgramRun run = program.wait();
+  EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(1));
+  EXPECT_EQ(run.exit_code, 130);
+  EXPECT_THAT(run.err, HasSubstr("reemit: error: interrupted before there was a result"));
+  EXPECT_THAT(folder.listing(), ElementsAre("room.json"));
 }
 
 }  // namespace

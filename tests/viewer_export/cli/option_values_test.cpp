@@ -61,7 +61,10 @@ TEST(OptionValues, Points) {
   EXPECT_EQ(parse_point(" 1 , 2 , 3 "), Vec3(1, 2, 3));
   for (const char* text : {"", "1,2", "1,2,3,4", "1;2;3", "1,,3", "1,2,nan", "a,b,c"}) {
     EXPECT_THROW(parse_point(text), std::invalid_argument) << text;
+    EXPECT_THROW(parse_direction(text), std::invalid_argument) << text;
   }
+  EXPECT_THROW(parse_point("1e20,1,1"), std::invalid_argument);
+  EXPECT_EQ(parse_direction("1e20,1,1"), Vec3(1e20, 1, 1));
 }
 
 TEST(OptionValues, PictureSizes) {

@@ -46,6 +46,22 @@ TEST_F(Pipeline, SolveEndsWithOneLine) {
     EXPECT_THAT(out, HasSubstr(word));
 }
 
+TEST_F(Pipeline, NamesThatAreNotUtf8GiveValidJson) {
+  folder_.write("room.mtl", small_obj_materials());
+  folder_.write("old.obj", replaced(small_obj_room(), "o walls",
+                                    "o b\x8e"
+                                    "c"));
+  const std::string solution = path("old.h5");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", path("old.obj")},
+        {"solve", path("old.obj"), "-o", solution, "--packets", "1000"},
+        {"audit", solution}}) {
+    std::vector<std::string> arguments = command;
+    arguments.emplace_back("--json");
+    EXPECT_TRUE(json::accept(output_of(arguments))) << command.front();
+  }
+}
+
 TEST_F(Pipeline, SolveAsJsonIsOneDocument) {
   const json report = json::parse(output_of({"solve", path("room.json"), "-o", path("room.h5"), "--zone-area",
                                              "0.05", "--packets", "20000", "--seed", "5", "--json"}));

@@ -108,7 +108,10 @@ TEST(GlbWriter, StatesUnitsSeedAndExposure) {
   write_vertex_data(data, folder / "a.glb");
   const tinygltf::Model model = read_glb(folder / "a.glb");
   const tinygltf::Value& extras = model.asset.extras;
-  EXPECT_EQ(extras.Get("seed").Get<std::string>(), "77");
+  EXPECT_EQ(extras.Get("seed").GetNumberAsInt(), 77);
+  EXPECT_EQ(extras.Get("gather rays").GetNumberAsInt(), 256);
+  EXPECT_TRUE(extras.Get("relative error by noise").IsNumber());
+  EXPECT_TRUE(extras.Get("room hash").IsString());
   EXPECT_THAT(extras.Get("units").Get<std::string>(), testing::HasSubstr("W/(m2 sr)"));
   EXPECT_EQ(extras.Get("exposure").GetNumberAsDouble(), 0.5);
 }

@@ -263,22 +263,41 @@ TEST(RenderStill, one_sample_gives_no_errors) {
   EXPECT_NO_THROW(check_consistent(image));
 }
 
-TEST(RenderStill, interrupt_returns_what_stands) {
-  const RoomBuilder room = lamp_room();
-  const Solution solution = test::uniform_solution(room, 1, 0.5);
+TEST(RenderStill, interrupted_stills_are_noisier_stills) {
+  // In a furnace every pixel sees the same radiance, whatever it was found with.
+  const RoomBuilder room = furnace(3, 0.5, 8);
+  const Solution solution = test::uniform_solution(room, 3, 3);
   const RayScene rays(solution.mesh);
-  std::atomic<bool> interrupt{false};
-  StillSettings settings = small_still(Integrator::kPath, 1 << 20);
-  const StillImage image = render_still(
-      room.scene(), solution, rays, inside(), settings,
-      [&](const StillProgress& now) {
-        EXPECT_GE(now.fraction, 0);
-        EXPECT_LE(now.fraction, 1);
-        interrupt = true;
-      },
-      interrupt);
-  EXPECT_EQ(image.radiance.size(), 24U * 20U);
-  for (const float l : image.radiance) EXPECT_TRUE(std::isfinite(l));
+  for (const Integrator integrator : {Integrator::kGather, Integrator::kPath}) {
+    StillSettings settings = small_still(integrator, 1 << 14);
+    settings.width = 100;  // 14 tiles
+    settings.height = 18;
+    for (const int last_report : {1, 17, 60}) {
+      std::atomic<bool> interrupt{false};
+      int reports = 0;
+      const StillImage image = render_still(
+          room.scene(), solution, rays, inside(), settings,
+          [&](const StillProgress& now) {
+            EXPECT_GE(now.fraction, 0);
+            EXPECT_LE(now.fraction, 1);
+            if (++reports == last_report) interrupt = true;
+          },
+          interrupt);
+      SCOPED_TRACE(to_string(integrator) + ", " + std::to_string(last_report));
+      EXPECT_NO_THROW(check_consistent(image));
+      MeanTest pixels;
+      for (const float l : image.radiance) {
+        EXPECT_GT(l, 0.2 * 6 / pi);
+        pixels.add(static_cast<double>(l));
+      }
+      EXPECT_TRUE(pixels.agrees_with(6 / pi));
+      const auto [fewest, most] = std::minmax_element(image.samples.begin(), image.samples.end());
+      EXPECT_GE(*fewest, 1);
+      EXPECT_LE(*most, 3 * std::max(*fewest, 2.0F)) << "all tiles get on alike";
+      const bool whole = last_report >= 14;  // all tiles had their first samples
+      EXPECT_EQ(image.info.settings.back().first == "interrupted", !whole);
+    }
+  }
 }
 
 TEST(RenderStill, refuses_nonsense) {
