@@ -27,7 +27,7 @@ struct ObjGeometry {
 
 /// Reads the geometry of an OBJ file, and through `materials` the MTL files it names. Polygons stay polygons.
 /// Throws InputError with file and line for everything that tinyobjloader would read as 0 or skip: missing or
-/// garbled numbers, indices out of range, unknown materials, faces without material.
+/// garbled numbers, indices out of range.
 ObjGeometry read_obj_geometry(const std::filesystem::path& file, ObjMaterials& materials);
 
 }  // namespace reemit

@@ -54,8 +54,8 @@ Scene read_obj_scene(const fs::path& file, const ReadOptions& /*options*/) {
   scene.bands = BandSet::rgb();
   ObjMaterials materials;
   ObjGeometry geometry = read_obj_geometry(file, materials);
+  scene.warnings = materials.warnings();
   scene.materials = std::move(materials.materials);
-  scene.warnings = std::move(materials.warnings);
   scene.warnings.insert(scene.warnings.end(), geometry.warnings.begin(), geometry.warnings.end());
   build_surfaces(geometry, scene);
   tell_surfaces_apart(scene);
@@ -64,7 +64,7 @@ Scene read_obj_scene(const fs::path& file, const ReadOptions& /*options*/) {
     if (auto camera = read_obj_camera(beside, scene.warnings)) scene.cameras.push_back(std::move(*camera));
   scene.notes.push_back(
       "OBJ: metres; Kd is the linear Rec.709 reflectance of both sides, Ke the radiance of the front in "
-      "W/(m2 sr).");
+      "W/(m2 sr); transparent shares of the light and what mirrors take are not reflected diffusely.");
   return scene;
 }
 
