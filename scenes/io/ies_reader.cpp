@@ -62,7 +62,7 @@ class IesFile {
     read_tilt();
     read_lamps();
     read_grid();
-    text_.expect_end();
+    warn_of_rest(text_);
     finish();
     return std::move(result_);
   }
@@ -120,7 +120,12 @@ class IesFile {
           "Put the file beside this one, or write TILT=NONE if the output does not depend on tilt.");
     IesText data(file);
     read_tilt_data(data);
-    data.expect_end();
+    warn_of_rest(data);
+  }
+
+  void warn_of_rest(IesText& text) {
+    const std::string rest = text.rest_as_text();
+    if (!rest.empty()) result_.warnings.push_back(rest + ".");
   }
 
   /// A room does not say which way is up, so only the factor of the upright luminaire can be applied.
@@ -241,6 +246,8 @@ class IesFile {
       result_.warnings.push_back(fmt::format(
           "{}: the horizontal angles end at {} degrees; from there to 360 it is taken to plane 0.", file,
           grid_.horizontal.back()));
+    const std::string unusual = unusual_range(grid_);
+    if (!unusual.empty()) result_.warnings.push_back(fmt::format("{}: {}.", file, unusual));
     if (grid_.type != PhotometricType::kC && std::fabs(grid_.vertical.front()) < 1)
       result_.warnings.push_back(
           fmt::format("{}: the vertical angles begin at 0 degrees, so no light goes to angles below.", file));

@@ -239,6 +239,36 @@ TEST_F(IesReader, WarnsOfMoreLightThanTheLampsGive) {
   EXPECT_THAT(read(replaced(kGood, "1 800 2.0", "1 1e6 2.0")).warnings, SizeIs(1));
 }
 
+TEST_F(IesReader, TextAfterTheLastValueIsLeft) {
+  const double flux = read(kGood).table->total_flux();
+  for (const char* rest : {"END\n", "\r\nEND", " 92.5  paint reflectance\n", "\n[MORE] 1\n2 3\n"}) {
+    const IesLuminaire l = read(std::string(kGood) + rest);
+    EXPECT_EQ(l.table->total_flux(), flux) << rest;
+    ASSERT_THAT(l.warnings, SizeIs(1)) << rest;
+    EXPECT_THAT(l.warnings[0], HasSubstr("lamp.ies:1")) << rest;
+  }
+}
+
+TEST_F(IesReader, IsDarkOutsideOfAnglesThatCoverLess) {
+  // An uplight whose table begins a little below the horizon.
+  const IesLuminaire up = read(replaced(replaced(kGood, "1 800", "1 1200"), "0 45 90\n", "85 135 180\n"));
+  ASSERT_THAT(up.warnings, SizeIs(1));
+  EXPECT_THAT(up.warnings[0], HasSubstr("from 85 to 180 degrees only"));
+  EXPECT_NEAR(up.table->intensity(type_c(85, 0)), 100, 1e-9);
+  EXPECT_NEAR(up.table->intensity(type_c(135, 90)), 60, 1e-9);
+  EXPECT_EQ(up.table->intensity(type_c(84, 0)), 0);
+  const IesLuminaire spot = read(replaced(kGood, "0 45 90\n", "0 10 25\n"));
+  EXPECT_EQ(spot.table->intensity(type_c(26, 0)), 0);
+  EXPECT_THAT(spot.warnings, SizeIs(1));
+  // Floodlights of type B are measured around their beam only.
+  const std::string flood =
+      replaced(replaced(kGood, "3 2 1 2", "3 2 2 2"), "0 45 90\n0 90", "-30 0 30\n-20 20");
+  const IesLuminaire b = read(flood);
+  EXPECT_THAT(b.warnings, SizeIs(1));
+  EXPECT_NEAR(b.table->intensity({0, 0, -1}), 90, 1e-9);
+  EXPECT_EQ(b.table->intensity({0, std::sin(21 * pi / 180), -std::cos(21 * pi / 180)}), 0);
+}
+
 TEST_F(IesReader, RefusesBrokenFiles) {
   const struct {
     const char *from, *to, *at, *says;
@@ -262,17 +292,19 @@ TEST_F(IesReader, RefusesBrokenFiles) {
       {"3 2 1 2", "3 2 4 2", "lamp.ies:5", "photometric type is 4"},
       {"3 2 1 2", "3 2 1 0", "lamp.ies:5", "units type is 0"},
       {"3 2 1 2", "4 2 1 2", "lamp.ies:8", "do not increase"},
-      {"3 2 1 2", "2 2 1 2", "lamp.ies:7", "0 to 45"},
+      {"3 2 1 2", "2 2 1 2", "lamp.ies:8", "do not increase"},
       {"0.5 1.0 40", "0 1.0 40", "lamp.ies:6", "ballast factor is 0"},
       {"0.5 1.0 40", "0.5 1.0 -40", "lamp.ies:6", "watts"},
       {"0 45 90\n", "0 90 45\n", "lamp.ies:7", "do not increase"},
-      {"0 45 90\n", "10 45 90\n", "lamp.ies:7", "10 to 90"},
+      {"0 45 90\n", "-10 45 90\n", "lamp.ies:7", "-10 to 90"},
+      {"0 45 90\n", "0 45 190\n", "lamp.ies:7", "0 to 190"},
       {"\n0 90\n", "\n0 80\n", "lamp.ies:8", "0 to 80"},
       {"\n0 90\n", "\n90 180\n", "lamp.ies:8", "90 to 180"},
       {"100 60 20", "100 60", "lamp.ies:10", "number 6 of 6 candela"},
       {"100 60 20", "100 -60 20", "lamp.ies:10", "negative"},
       {"100 60 20", "100 inf 20", "lamp.ies:10", "'inf'"},
-      {"100 60 20", "100 60 20 7", "lamp.ies:10", "after the last value"},
+      {"100 60 20", "100 60 20 7", "lamp.ies:10", "'7' comes after the last value"},
+      {"100 60 20\n", "100 60 20\n7 8\nEND\n", "lamp.ies:11", "'7 8' comes after the last value"},
       {"100 80 0\n100 60 20", "0 0 0\n0 0 0", "lamp.ies:10", "gives no light"},
       {"100 60 20", "100 1.7e308 20", "lamp.ies:10", "no number"},
   };
