@@ -57,7 +57,7 @@ class IesFile {
  public:
   explicit IesFile(const std::filesystem::path& file) : path_(file), text_(file) {}
 
-  IesLuminaire read() {
+  MeasuredLuminaire read() {
     read_labels();
     read_tilt();
     read_lamps();
@@ -264,7 +264,7 @@ class IesFile {
 
   std::filesystem::path path_;
   IesText text_;
-  IesLuminaire result_;
+  MeasuredLuminaire result_;
   IesGrid grid_;
   std::string tilt_;
   int edition_ = 1986;
@@ -275,21 +275,8 @@ class IesFile {
 
 }  // namespace
 
-IesLuminaire read_ies_file(const std::filesystem::path& file) {
+MeasuredLuminaire read_ies_file(const std::filesystem::path& file) {
   return IesFile(file).read();
-}
-
-const IesLuminaire& IesLibrary::load(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                                     std::vector<std::string>& notes) {
-  std::error_code error;
-  std::filesystem::path key = std::filesystem::canonical(file, error);
-  if (error) key = file;
-  const auto known = files_.find(key);
-  if (known != files_.end()) return known->second;
-  const IesLuminaire& loaded = files_.emplace(key, read_ies_file(file)).first->second;
-  warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
-  notes.insert(notes.end(), loaded.notes.begin(), loaded.notes.end());
-  return loaded;
 }
 
 }  // namespace reemit

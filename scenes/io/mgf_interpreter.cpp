@@ -120,9 +120,11 @@ void MgfInterpreter::run_line(const File& file, std::size_t& next) {
     run_include(file, line, where);
   } else if (keyword == "ies") {
     run_ies(file, line, where);
-  } else if (unknown_entities_.emplace(keyword).second) {
-    builder_.warnings.push_back(fmt::format(
-        "{}: '{}' is not an MGF entity; it is ignored here and wherever it comes again.", where, keyword));
+  } else {
+    ++builder_.refused["statements"];
+    if (unknown_entities_.emplace(keyword).second)
+      builder_.warnings.push_back(fmt::format(
+          "{}: '{}' is not an MGF entity; it is ignored here and wherever it comes again.", where, keyword));
   }
 }
 

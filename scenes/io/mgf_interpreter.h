@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/io/ies_reader.h"
+#include "scenes/io/measured_luminaire.h"
 #include "scenes/io/mgf_contexts.h"
 #include "scenes/io/mgf_scene_builder.h"
 #include "scenes/io/mgf_transform.h"
@@ -80,7 +80,7 @@ class MgfInterpreter {
   std::set<std::string> unknown_entities_;
   std::uint64_t executed_ = 0;
   std::size_t tessellated_count_ = 0;
-  IesLibrary luminaires_;
+  LuminaireLibrary luminaires_;
   std::vector<PunctualLight> lights_;
   std::vector<std::string> notes_;
 };

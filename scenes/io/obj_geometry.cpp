@@ -135,6 +135,7 @@ class ObjChecker {
     static constexpr std::array kHarmless = {"vt",  "s",     "usemap",   "maplib",
                                              "lod", "bevel", "c_interp", "d_interp"};
     if (std::find(kHarmless.begin(), kHarmless.end(), keyword) != kHarmless.end()) return;
+    ++geometry_.ignored_statements;
     if (warned_.size() >= kMostWarnings || !warned_.emplace(keyword).second) return;
     geometry_.warnings.push_back(fmt::format(
         "{}: '{}' is ignored here and wherever it comes again; only polygons are read.", where_, keyword));

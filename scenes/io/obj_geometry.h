@@ -23,6 +23,7 @@ struct ObjGeometry {
   std::vector<ObjFace> faces;
   std::vector<std::string> groups;  ///< Names made of `o` and `g`; may be empty.
   std::vector<std::string> warnings;
+  std::size_t ignored_statements = 0;  ///< That hold geometry other than polygons, or are of no known kind.
 };
 
 /// Reads the geometry of an OBJ file, and through `materials` the MTL files it names. Polygons stay polygons.

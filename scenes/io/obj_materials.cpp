@@ -111,40 +111,55 @@ std::string ignored_maps(const tinyobj::material_t& m) {
   return maps;
 }
 
+// Where what is said of a material goes.
+struct Telling {
+  std::vector<std::string>& warnings;
+  KindCounts& refused;
+  KindCounts& not_modelled;
+};
+
 Spectrum textured_reflectance(const tinyobj::material_t& m, const fs::path& folder, const std::string& where,
-                              std::vector<std::string>& warnings) {
+                              Telling& tell) {
   const Spectrum kd = spectrum_of(m.diffuse);
   if (m.diffuse_texname.empty()) return kd;
   std::string relative = m.diffuse_texname;
   std::replace(relative.begin(), relative.end(), '\\', '/');
   const TextureAverage average = average_texture(folder / relative);
   if (!average.problem.empty()) {
-    warnings.push_back(fmt::format("{}: Kd {:.3g} {:.3g} {:.3g} is used in place of the texture: {}", where,
-                                   kd[0], kd[1], kd[2], average.problem));
+    ++tell.refused["textures"];
+    tell.warnings.push_back(fmt::format("{}: Kd {:.3g} {:.3g} {:.3g} is used in place of the texture: {}",
+                                        where, kd[0], kd[1], kd[2], average.problem));
     return kd;
   }
-  warnings.push_back(fmt::format("{}: the texture {} is used as its average colour {:.3g} {:.3g} {:.3g}.",
-                                 where, relative, average.rgb[0], average.rgb[1], average.rgb[2]));
+  ++tell.not_modelled["textures"];
+  tell.warnings.push_back(
+      fmt::format("{}: the texture {} is used as its average colour {:.3g} {:.3g} {:.3g}.", where, relative,
+                  average.rgb[0], average.rgb[1], average.rgb[2]));
   return average.rgb;
 }
 
-Material convert(const tinyobj::material_t& m, const fs::path& file, std::vector<std::string>& warnings) {
+Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tell) {
   const std::string where = fmt::format("{}: material '{}'", file.string(), m.name);
   Material material;
   material.name = m.name;
   const ObjLightShares shares =
-      obj_light_shares({textured_reflectance(m, file.parent_path(), where, warnings), spectrum_of(m.specular),
+      obj_light_shares({textured_reflectance(m, file.parent_path(), where, tell), spectrum_of(m.specular),
                         spectrum_of(m.transmittance), m.dissolve, m.ior, m.illum});
   material.reflectance = shares.diffuse;
   material.emitted_radiance = spectrum_of(m.emission);
   NonDiffusePart& rest = material.non_diffuse;
   if ((shares.specular > 0).any()) rest.specular_reflectance = shares.specular;
   if ((shares.transmitted > 0).any()) rest.specular_transmittance = shares.transmitted;
-  if (!shares.doubt.empty()) warnings.push_back(fmt::format("{}: {}.", where, shares.doubt));
+  if (!shares.doubt.empty()) {
+    ++tell.not_modelled["glass_and_mirrors_as_paint"];
+    tell.warnings.push_back(fmt::format("{}: {}.", where, shares.doubt));
+  }
   rest.roughness = std::sqrt(2 / (m.shininess + 2));  // Phong exponent to microfacet roughness [WAL07]
   rest.index_of_refraction = m.ior;
-  if (const std::string maps = ignored_maps(m); !maps.empty())
-    warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));
+  if (const std::string maps = ignored_maps(m); !maps.empty()) {
+    ++tell.not_modelled["other_maps"];
+    tell.warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));
+  }
   return material;
 }
 
@@ -171,6 +186,7 @@ fs::path find_library(const fs::path& folder, const std::string& name) {
 void ObjMaterials::read(const fs::path& folder, const std::string& name, const std::string& where) {
   const fs::path file = find_library(folder, name);
   if (file.empty()) {
+    ++refused["material_files"];
     warnings_.push_back(fmt::format("{}: there is no material file '{}'; its materials are taken as grey.",
                                     where, (folder / name).string()));
     return;
@@ -182,6 +198,7 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
   try {
     text = load_file(file, kLargestMtl);
   } catch (const InputError& error) {
+    ++refused["material_files"];
     warnings_.push_back(
         fmt::format("{}: the material file cannot be read, and its materials are taken as grey: {}", where,
                     error.what()));
@@ -199,7 +216,7 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
                                       file.string(), m.name));
       continue;
     }
-    materials.push_back(convert(m, file, warnings_));
+    materials.push_back(convert(m, file, {warnings_, refused, not_modelled}));
   }
 }
 
@@ -212,6 +229,7 @@ std::size_t ObjMaterials::index_of(const std::string& name, const std::string& w
   material.emitted_radiance = Spectrum::Zero(3);
   materials.push_back(std::move(material));
   if (undefined_.empty()) first_undefined_at_ = where;
+  ++refused["materials"];
   undefined_.push_back(name.empty() ? "faces without 'usemtl'" : fmt::format("'{}'", name));
   return entry->second;
 }

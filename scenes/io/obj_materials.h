@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/model/material.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 
@@ -23,6 +23,7 @@ class ObjMaterials {
   std::vector<std::string> warnings() const;
 
   std::vector<Material> materials;
+  KindCounts refused, not_modelled;  ///< As in Scene.
 
  private:
   std::map<std::string, std::size_t> index_;

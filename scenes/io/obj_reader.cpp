@@ -39,10 +39,12 @@ void build_surfaces(const ObjGeometry& geometry, Scene& scene) {
     for (const Polygon& polygon : polygons) builders[entry->second].add(polygon, face.line);
   }
   for (SurfaceBuilder& builder : builders) scene.surfaces.push_back(builder.take());
-  if (degenerate > 0)
+  if (degenerate > 0) {
+    scene.refused["faces"] += degenerate;
     scene.warnings.push_back(fmt::format(
         "{}: {} face(s) have less than three different corners and were left out, the first in line {}.",
         scene.source, degenerate, first_degenerate));
+  }
 }
 
 }  // namespace
@@ -56,6 +58,9 @@ Scene read_obj_scene(const fs::path& file, const ReadOptions& /*options*/) {
   ObjGeometry geometry = read_obj_geometry(file, materials);
   scene.warnings = materials.warnings();
   scene.materials = std::move(materials.materials);
+  scene.refused = std::move(materials.refused);
+  scene.not_modelled = std::move(materials.not_modelled);
+  if (geometry.ignored_statements > 0) scene.refused["statements"] = geometry.ignored_statements;
   scene.warnings.insert(scene.warnings.end(), geometry.warnings.begin(), geometry.warnings.end());
   build_surfaces(geometry, scene);
   tell_surfaces_apart(scene);
