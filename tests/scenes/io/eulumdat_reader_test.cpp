@@ -78,7 +78,7 @@ std::string ies_text(const Distribution& f) {
 }
 
 double lobe(double gamma) {
-  return 120 + 100 * std::cos(radians(gamma)) + 30 * std::cos(radians(3 * gamma));
+  return 140 + 100 * std::cos(radians(gamma)) + 30 * std::cos(radians(3 * gamma));
 }
 
 const Distribution kDistributions[] = {
