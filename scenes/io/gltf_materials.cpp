@@ -35,6 +35,7 @@ class MaterialReader {
       }
     }
     if (!ignored.empty()) {
+      scene_.not_modelled["material_extensions"] += ignored.size();
       scene_.warnings.push_back(fmt::format("material extensions are ignored: {}", fmt::join(ignored, ", ")));
     }
   }
@@ -88,10 +89,12 @@ class MaterialReader {
     if (texture < 0) return Rgb::Ones();
     const std::optional<Rgb> value = textures_.mean(texture, encoding, where_);
     if (!value) {
+      ++scene_.refused["textures"];
       scene_.warnings.push_back(
           fmt::format("material \"{}\": its {} texture cannot be read and counts as white", name, what));
       return Rgb::Ones();
     }
+    ++scene_.not_modelled["textures"];
     scene_.warnings.push_back(
         fmt::format("material \"{}\": its {} texture is replaced by its mean {:.3f} {:.3f} {:.3f}", name,
                     what, (*value)[0], (*value)[1], (*value)[2]));
@@ -162,6 +165,7 @@ class MaterialReader {
     }
     read_emission(source, material);
     if (source.alphaMode != "OPAQUE") {
+      ++scene_.not_modelled["transparent_materials"];
       scene_.warnings.push_back(
           fmt::format("material \"{}\": alpha mode {} is ignored, the surface is opaque", material.name,
                       source.alphaMode == "MASK" ? "MASK" : "BLEND"));

@@ -6,6 +6,7 @@
 #include <exception>
 #include <fstream>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -103,15 +104,49 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
   return true;
 }
 
-void check_extensions(const tinygltf::Model& model, const std::string& file) {
-  for (const std::string& name : model.extensionsRequired) {
-    if (is_supported(name)) continue;
-    const bool compressed = name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression";
-    throw InputError(
-        file, fmt::format("the file requires the glTF extension \"{}\", which is not supported", name),
-        compressed ? "Decompress the geometry first, for example with: gltf-transform copy in.glb out.glb"
-                   : "Export without this extension.");
-  }
+bool is_meshopt(const std::string& extension) {
+  return extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression";
+}
+
+bool is_compression(const std::string& extension) {
+  return extension == "KHR_draco_mesh_compression" || is_meshopt(extension);
+}
+
+/// How to make a file without this compression of the geometry.
+std::string decoding_advice(const std::string& extension, const std::string& file) {
+  std::string advice = fmt::format(
+      "The geometry is compressed; decode it with: gltf-transform copy '{}' decoded.glb (npm install -g "
+      "@gltf-transform/cli)",
+      file);
+  if (is_meshopt(extension)) advice += fmt::format(", or: gltfpack -i '{}' -o decoded.glb -noq", file);
+  return advice;
+}
+
+/// The texts of an array of the document; what is none of that is for the parser to refuse.
+std::vector<std::string> extension_names(const nlohmann::json& document, const char* key) {
+  std::vector<std::string> names;
+  const auto list = document.find(key);
+  if (list == document.end() || !list->is_array()) return names;
+  for (const nlohmann::json& name : *list)
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  return names;
+}
+
+/// Before the parser, which trips over the holes that compressed geometry leaves and says nothing of the
+/// cause.
+void check_extensions(const nlohmann::json& document, const std::string& file) {
+  for (const std::string& name : extension_names(document, "extensionsRequired"))
+    if (!is_supported(name))
+      throw InputError(
+          file, fmt::format("the file requires the glTF extension \"{}\", which is not supported", name),
+          is_compression(name) ? decoding_advice(name, file) : "Export without this extension.");
+}
+
+/// What to do about a file that the parser refuses.
+std::string parser_advice(const std::vector<std::string>& used, const std::string& file) {
+  const auto compression = std::find_if(used.begin(), used.end(), is_compression);
+  return compression != used.end() ? decoding_advice(*compression, file)
+                                   : "Check the file with the Khronos glTF validator, or export it anew.";
 }
 
 /// Messages of the parser on one line, without bytes that a terminal cannot show, and cut.
@@ -134,10 +169,13 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
   loaded.file = file.string();
   const std::string bytes = load_file(file, kLargestGltf);
   const bool binary = bytes.compare(0, 4, "glTF") == 0;
+  std::vector<std::string> used_extensions;
   {
     // Strict parse first: it bounds the nesting, which the library follows recursively.
     const nlohmann::json document = parse_json(binary ? json_of_glb(bytes, loaded.file) : bytes, loaded.file);
     JsonCursor(document, loaded.file).expect_object();
+    check_extensions(document, loaded.file);
+    used_extensions = extension_names(document, "extensionsUsed");
   }
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keep_encoded, nullptr);
@@ -157,13 +195,12 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
   }
   if (!parsed) {
     throw InputError(loaded.file, tidy(errors.empty() ? "not a valid glTF file" : errors),
-                     "Check the file with the Khronos glTF validator, or export it anew.");
+                     parser_advice(used_extensions, loaded.file));
   }
   if (loaded.model.asset.version.substr(0, 2) != "2.") {
     throw InputError(loaded.file, fmt::format("glTF version \"{}\"", tidy(loaded.model.asset.version)),
                      "Export glTF 2.0.");
   }
-  check_extensions(loaded.model, loaded.file);
   if (!warnings.empty()) loaded.warnings.push_back(tidy(warnings));
   return loaded;
 }

@@ -38,17 +38,27 @@ class NodeReader {
   }
 
   void report() {
-    const auto warn = [&](std::size_t count, const char* what) {
-      if (count > 0) scene_.warnings.push_back(fmt::format("{} {}", count, what));
+    const auto warn = [&](std::size_t count, KindCounts& counts, const char* kind, const char* what) {
+      if (count == 0) return;
+      counts[kind] += count;
+      scene_.warnings.push_back(fmt::format("{} {}", count, what));
     };
-    warn(omissions_.other_modes, "mesh primitive(s) made of points or lines are left out");
-    warn(omissions_.morphed, "mesh primitive(s) have morph targets: the base shape is used");
-    warn(omissions_.coloured, "mesh primitive(s) have vertex colours, which are ignored");
-    warn(omissions_.plain, "mesh primitive(s) have no material: grey with reflectance 0.5 is used");
-    warn(flattened_, "mesh node(s) are left out because their scale is 0");
-    warn(measured_, "measured luminaire(s) (EXT_lights_ies) are left out; a native room can place them");
-    warn(skins_, "skinned node(s) are read in their rest pose");
+    KindCounts& refused = scene_.refused;
+    KindCounts& not_modelled = scene_.not_modelled;
+    warn(omissions_.other_modes, refused, "points_and_lines",
+         "mesh primitive(s) made of points or lines are left out");
+    warn(omissions_.morphed, not_modelled, "morph_targets",
+         "mesh primitive(s) have morph targets: the base shape is used");
+    warn(omissions_.coloured, not_modelled, "vertex_colours",
+         "mesh primitive(s) have vertex colours, which are ignored");
+    warn(omissions_.plain, refused, "materials",
+         "mesh primitive(s) have no material: grey with reflectance 0.5 is used");
+    warn(flattened_, refused, "nodes_of_scale_0", "mesh node(s) are left out because their scale is 0");
+    warn(measured_, refused, "luminaires",
+         "measured luminaire(s) (EXT_lights_ies) are left out; a native room can place them");
+    warn(skins_, not_modelled, "skins", "skinned node(s) are read in their rest pose");
     if (!gltf_.model.animations.empty()) {
+      not_modelled["animations"] += gltf_.model.animations.size();
       scene_.warnings.push_back(
           "animations are ignored: the room is read as it stands in the node hierarchy");
     }
@@ -114,6 +124,7 @@ class NodeReader {
     Camera camera;
     camera.name = source.name.empty() ? name_ : source.name;
     if (source.type != "perspective") {
+      ++scene_.refused["cameras"];
       scene_.warnings.push_back(fmt::format("the orthographic camera \"{}\" is left out", camera.name));
       return;
     }

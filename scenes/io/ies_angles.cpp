@@ -66,16 +66,28 @@ Planes unfolded_planes(const IesGrid& grid, bool& closed) {
 }  // namespace
 
 IesComplaint check_vertical_angles(const IesGrid& grid) {
+  const bool type_c = grid.type == PhotometricType::kC;
   const double first = grid.vertical.front();
   const double last = grid.vertical.back();
-  if (grid.type == PhotometricType::kC) {
-    if (one_of(first, {0, 90}) && one_of(last, {90, 180}) && last > first) return {};
-    return {fmt::format("the vertical angles run from {} to {} degrees", first, last),
-            "In type C photometry they run from 0 to 90, 90 to 180 or 0 to 180 degrees."};
-  }
-  if (one_of(first, {-90, 0}) && same(last, 90)) return {};
+  const double least = type_c ? 0 : -90;
+  const double most = type_c ? 180 : 90;
+  if (first >= least - kSlack && last <= most + kSlack) return {};
   return {fmt::format("the vertical angles run from {} to {} degrees", first, last),
-          "In type A and B photometry they run from -90 or 0 to 90 degrees."};
+          type_c ? "In type C photometry they lie between 0 and 180 degrees."
+                 : "In type A and B photometry they lie between -90 and 90 degrees."};
+}
+
+std::string unusual_range(const IesGrid& grid) {
+  const auto range = [](const char* which, const std::vector<double>& angles) {
+    return fmt::format("the {} angles run from {} to {} degrees only; there is no light outside of them",
+                       which, angles.front(), angles.back());
+  };
+  const std::vector<double>& v = grid.vertical;
+  const std::vector<double>& h = grid.horizontal;
+  if (grid.type == PhotometricType::kC)
+    return one_of(v.front(), {0, 90}) && one_of(v.back(), {90, 180}) ? "" : range("vertical", v);
+  if (!one_of(v.front(), {-90, 0}) || !same(v.back(), 90)) return range("vertical", v);
+  return one_of(h.front(), {-90, 0}) && same(h.back(), 90) ? "" : range("horizontal", h);
 }
 
 IesComplaint check_horizontal_angles(const IesGrid& grid) {
@@ -83,8 +95,10 @@ IesComplaint check_horizontal_angles(const IesGrid& grid) {
   const double last = grid.horizontal.back();
   const std::string problem = fmt::format("the horizontal angles run from {} to {} degrees", first, last);
   if (grid.type != PhotometricType::kC) {
-    if (one_of(first, {-90, 0}) && same(last, 90) && last > first) return {};
-    return {problem, "In type A and B photometry they run from -90 or 0 to 90 degrees."};
+    const bool within = (same(first, 0) || (first >= -90 - kSlack && first < 0)) && last <= 90 + kSlack;
+    if (within && last > 0) return {};
+    return {problem,
+            "In type A and B photometry they run from 0, mirrored, or from below 0 to 90 degrees at most."};
   }
   if (grid.horizontal.size() == 1) {
     if (same(first, 0)) return {};

@@ -14,13 +14,16 @@ struct IesGrid {
   std::vector<double> candela;     ///< candela[horizontal * vertical.size() + vertical]
 };
 
-/// What is wrong with the vertical or horizontal angles, and what they should be; both empty if they are as
-/// LM-63 wants them for the type of photometry.
+/// What is wrong with the vertical or horizontal angles, and what they should be; both empty if they can be
+/// read for the type of photometry.
 struct IesComplaint {
   std::string problem, advice;
 };
 IesComplaint check_vertical_angles(const IesGrid& grid);
 IesComplaint check_horizontal_angles(const IesGrid& grid);
+
+/// What to warn of when angles that can be read cover less than any range that LM-63 knows; else empty.
+std::string unusual_range(const IesGrid& grid);
 
 /// Unfolds the symmetry of the horizontal angles and brings the grid to polar angle and azimuth. The values
 /// are copied, not resampled: mirrored grid lines of a bilinear function give the mirrored function. Sets

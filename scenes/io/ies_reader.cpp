@@ -58,12 +58,12 @@ class IesFile {
  public:
   explicit IesFile(const std::filesystem::path& file) : path_(file), text_(file) {}
 
-  IesLuminaire read() {
+  MeasuredLuminaire read() {
     read_labels();
     read_tilt();
     read_lamps();
     read_grid();
-    text_.expect_end();
+    warn_of_rest(text_);
     finish();
     return std::move(result_);
   }
@@ -121,7 +121,12 @@ class IesFile {
           "Put the file beside this one, or write TILT=NONE if the output does not depend on tilt.");
     IesText data(file);
     read_tilt_data(data);
-    data.expect_end();
+    warn_of_rest(data);
+  }
+
+  void warn_of_rest(IesText& text) {
+    const std::string rest = text.rest_as_text();
+    if (!rest.empty()) result_.warnings.push_back(rest + ".");
   }
 
   /// A room does not say which way is up, so only the factor of the upright luminaire can be applied.
@@ -246,6 +251,8 @@ class IesFile {
       result_.warnings.push_back(fmt::format(
           "{}: the horizontal angles end at {} degrees; from there to 360 it is taken to plane 0.", file,
           grid_.horizontal.back()));
+    const std::string unusual = unusual_range(grid_);
+    if (!unusual.empty()) result_.warnings.push_back(fmt::format("{}: {}.", file, unusual));
     if (grid_.type != PhotometricType::kC && std::fabs(grid_.vertical.front()) < 1)
       result_.warnings.push_back(
           fmt::format("{}: the vertical angles begin at 0 degrees, so no light goes to angles below.", file));
@@ -262,7 +269,7 @@ class IesFile {
 
   std::filesystem::path path_;
   IesText text_;
-  IesLuminaire result_;
+  MeasuredLuminaire result_;
   IesGrid grid_;
   std::string tilt_;
   int edition_ = 1986;
@@ -273,21 +280,8 @@ class IesFile {
 
 }  // namespace
 
-IesLuminaire read_ies_file(const std::filesystem::path& file) {
+MeasuredLuminaire read_ies_file(const std::filesystem::path& file) {
   return IesFile(file).read();
-}
-
-const IesLuminaire& IesLibrary::load(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                                     std::vector<std::string>& notes) {
-  std::error_code error;
-  std::filesystem::path key = std::filesystem::canonical(file, error);
-  if (error) key = file;
-  const auto known = files_.find(key);
-  if (known != files_.end()) return known->second;
-  const IesLuminaire& loaded = files_.emplace(key, read_ies_file(file)).first->second;
-  warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
-  notes.insert(notes.end(), loaded.notes.begin(), loaded.notes.end());
-  return loaded;
 }
 
 }  // namespace reemit

@@ -116,12 +116,18 @@ std::vector<double> IesText::numbers(std::size_t count, const char* what, std::v
   return values;
 }
 
-void IesText::expect_end() {
+std::string IesText::rest_as_text() {
   std::string_view word;
-  if (!next_word(word)) return;
+  if (!next_word(word)) return "";
+  const std::size_t more = std::min(rest_.find_first_of("\r\n"), rest_.size());
+  const std::string_view line = trimmed({word.data(), word.size() + more});
   constexpr std::size_t kShown = 24;
-  fail(fmt::format("'{}' comes after the last value", word.substr(0, kShown)),
-       "There are more values than the counts of vertical and horizontal angles say: correct the counts.");
+  const std::string_view shown = line.substr(0, kShown);
+  if (line.find_first_not_of("0123456789+-.,eE \t") == std::string_view::npos)
+    fail(fmt::format("'{}' comes after the last value", shown),
+         "There are more values than the counts of vertical and horizontal angles say: correct the counts.");
+  rest_ = {};
+  return fmt::format("{}: what follows the last value is not read: '{}'", where(), shown);
 }
 
 std::string IesText::where() const {

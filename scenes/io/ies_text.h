@@ -28,8 +28,9 @@ class IesText {
   /// `count` numbers; `lines` receives the line of each if given.
   std::vector<double> numbers(std::size_t count, const char* what,
                               std::vector<std::uint32_t>* lines = nullptr);
-  /// Demands that nothing but blanks is left.
-  void expect_end();
+  /// Skips text that follows the last value, such as END or a remark, and says what to warn of; empty if only
+  /// blanks are left. A line of numbers means that the counts before it are wrong.
+  std::string rest_as_text();
 
   std::string where() const;  ///< file:line
   [[noreturn]] void fail(const std::string& problem, const std::string& advice) const;

@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kVisibleFrom = 360, kVisibleTo = 830;  // [nm], range of the CIE table
 
+// Never NaN, as colours are compared with each other.
 MgfColour chromaticity(const Eigen::Vector3d& xyz) {
-  return {xyz[0] / xyz.sum(), xyz[1] / xyz.sum()};
+  const MgfColour colour{xyz[0] / xyz.sum(), xyz[1] / xyz.sum()};
+  return std::isfinite(colour.x) && std::isfinite(colour.y) ? colour : MgfColour{0, 0};
 }
 
 template <class Density>
@@ -32,8 +34,9 @@ MgfColour integrate(double from_nm, double to_nm, const Density& density) {
 }  // namespace
 
 bool is_valid_chromaticity(double x, double y) {
-  constexpr double kLeastY = 1e-3;  // the spectral locus stays above 0.0048
-  return x >= 0 && y >= kLeastY && x + y <= 1 + 1e-9;
+  constexpr double kLeastY = 1e-3;    // the spectral locus stays above 0.0048
+  constexpr double kRounding = 1e-3;  // deep red rounded to three digits: 0.735 + 0.266
+  return x >= 0 && y >= kLeastY && x + y <= 1 + kRounding;
 }
 
 MgfColour colour_of_spectrum(double from_nm, double to_nm, std::span<const double> samples) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <compare>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace reemit {
@@ -10,15 +11,22 @@ namespace reemit {
 struct MgfColour {
   double x = 1.0 / 3;
   double y = 1.0 / 3;
+  /// Where it was given, for messages, if the owner of the colours keeps that. Not part of the colour.
+  const std::string* given_at = nullptr;
 
-  auto operator<=>(const MgfColour&) const = default;
+  bool operator==(const MgfColour& other) const { return x == other.x && y == other.y; }
+  std::partial_ordering operator<=>(const MgfColour& other) const {
+    return std::pair(x, y) <=> std::pair(other.x, other.y);
+  }
 };
 
-/// x >= 0, y > 0 and x + y <= 1 up to rounding, and y not so small that no visible light has it.
+/// x >= 0, y > 0 and x + y <= 1 up to rounding to three digits, and y not so small that no visible light has
+/// it.
 bool is_valid_chromaticity(double x, double y);
 
-// The functions below return a colour for which is_valid_chromaticity may fail (no light in the visible
-// range); then its components may be NaN.
+// The functions below may return a colour that no light has, for which is_valid_chromaticity fails: the
+// components of CIE daylight are such colours, and mixtures of them are daylight again. Where there is no
+// chromaticity at all, as of a spectrum without visible light, it is (0, 0).
 
 /// Spectrum sampled evenly from from_nm to to_nm [nm], linear in between and 0 outside. Needs from < to, >= 2
 /// samples.
@@ -27,7 +35,8 @@ MgfColour colour_of_spectrum(double from_nm, double to_nm, std::span<const doubl
 /// Black body [K].
 MgfColour colour_of_black_body(double kelvin);
 
-/// Sum of colours weighted by luminance.
+/// Sum of colours weighted by luminance. A colour with y = 0 has none, and no mixture with it has a
+/// chromaticity.
 MgfColour mix_colours(std::span<const std::pair<double, MgfColour>> parts);
 
 }  // namespace reemit

@@ -31,14 +31,9 @@ Vec3 vector_at(const TextLine& line, const std::string& where) {
   return {mgf_number(line, 1, where), mgf_number(line, 2, where), mgf_number(line, 3, where)};
 }
 
-MgfColour checked(const MgfColour& colour, const TextLine& line, const std::string& where) {
-  if (!is_valid_chromaticity(colour.x, colour.y))
-    throw InputError(
-        where,
-        fmt::format("'{}' gives chromaticity ({:.4g}, {:.4g}), which no light has", line.words[0], colour.x,
-                    colour.y),
-        "x, y and 1-x-y must not be negative, and a spectrum needs light between 360 and 830 nm.");
-  return colour;
+// What reflects or sends nothing has no colour.
+MgfColoured coloured(double value, const MgfColour& colour) {
+  return {value, value > 0 ? colour : MgfColour{}};
 }
 
 MgfColour parse_spectrum(const TextLine& line, const std::string& where) {
@@ -112,7 +107,9 @@ const State& MgfNamedContexts<State>::find(std::string_view name, const std::str
   const auto found = named_.find(name);
   if (found == named_.end())
     throw InputError(where, fmt::format("'{}' is not defined", name),
-                     fmt::format("Define it above with '{} =' after its keyword.", name));
+                     fmt::format("Define it above with '{} =' after its keyword. If another file defines it, "
+                                 "name that file before this one on the command line.",
+                                 name));
   return found->second;
 }
 
@@ -124,17 +121,38 @@ bool MgfContexts::run(const TextLine& line, const std::string& where) {
   return run_vertex(line, where) || run_material(line, where) || run_colour(line, where);
 }
 
+void MgfContexts::set_colour(const MgfColour& colour, const std::string& where) {
+  colours.current() = colour;
+  if (!is_valid_chromaticity(colour.x, colour.y))
+    colours.current().given_at = &*impossible_given_at_.insert(where).first;
+}
+
+void MgfContexts::check_current_material(const std::string& where) const {
+  const MgfMaterial& m = materials.current();
+  for (const MgfColoured* part : {&m.rd, &m.td, &m.rs, &m.ts, &m.ed}) {
+    if (is_valid_chromaticity(part->colour.x, part->colour.y)) continue;
+    throw InputError(
+        where,
+        fmt::format("{} has the colour of {}, and no light has its chromaticity ({:.4g}, {:.4g})",
+                    materials.current_name().empty() ? std::string("the unnamed material")
+                                                     : fmt::format("material '{}'", materials.current_name()),
+                    *part->colour.given_at, part->colour.x, part->colour.y),
+        "Give the material another colour: x, y and 1-x-y must not be negative, y not 0, and a spectrum "
+        "needs light between 360 and 830 nm.");
+  }
+}
+
 bool MgfContexts::run_colour(const TextLine& line, const std::string& where) {
   const std::string_view keyword = line.words[0];
   if (keyword == "c") {
     colours.select(line, where);
   } else if (keyword == "cxy") {
     check_argument_count(line, 2, 2, where);
-    colours.current() = checked({mgf_number(line, 1, where), mgf_number(line, 2, where)}, line, where);
+    set_colour({mgf_number(line, 1, where), mgf_number(line, 2, where)}, where);
   } else if (keyword == "cspec") {
-    colours.current() = checked(parse_spectrum(line, where), line, where);
+    set_colour(parse_spectrum(line, where), where);
   } else if (keyword == "cct") {
-    colours.current() = checked(parse_black_body(line, where), line, where);
+    set_colour(parse_black_body(line, where), where);
   } else if (keyword == "cmix") {
     check_argument_count(line, 2, kAnyNumber, where);
     if (line.words.size() % 2 == 0)
@@ -143,7 +161,7 @@ bool MgfContexts::run_colour(const TextLine& line, const std::string& where) {
     std::vector<std::pair<double, MgfColour>> parts;
     for (std::size_t i = 1; i + 1 < line.words.size(); i += 2)
       parts.emplace_back(mgf_number(line, i, where), colours.find(line.words[i + 1], where));
-    colours.current() = checked(mix_colours(parts), line, where);
+    set_colour(mix_colours(parts), where);
   } else {
     return false;
   }
@@ -163,13 +181,13 @@ bool MgfContexts::run_material(const TextLine& line, const std::string& where) {
     material.sides = static_cast<int>(*sides);
   } else if (keyword == "rd" || keyword == "td") {
     check_argument_count(line, 1, 1, where);
-    (keyword == "rd" ? material.rd : material.td) = {fraction_at(line, 1, where), colour};
+    (keyword == "rd" ? material.rd : material.td) = coloured(fraction_at(line, 1, where), colour);
   } else if (keyword == "ed") {
     check_argument_count(line, 1, 1, where);
-    material.ed = {at_least_zero(line, 1, where), colour};
+    material.ed = coloured(at_least_zero(line, 1, where), colour);
   } else if (keyword == "rs" || keyword == "ts") {
     check_argument_count(line, 2, 2, where);
-    (keyword == "rs" ? material.rs : material.ts) = {fraction_at(line, 1, where), colour};
+    (keyword == "rs" ? material.rs : material.ts) = coloured(fraction_at(line, 1, where), colour);
     (keyword == "rs" ? material.rs_roughness : material.ts_roughness) = at_least_zero(line, 2, where);
   } else if (keyword == "ir") {
     check_argument_count(line, 2, 2, where);
@@ -178,7 +196,6 @@ bool MgfContexts::run_material(const TextLine& line, const std::string& where) {
   } else {
     return false;
   }
-  ++material_revision_;
   return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <compare>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -41,6 +42,7 @@ class MgfNamedContexts {
   /// "c", "m" or "v" alone; with a name; with "name ="; with "name = template". Throws InputError at `where`.
   void select(const TextLine& line, const std::string& where);
   State& current() { return *current_; }
+  const State& current() const { return *current_; }
   const std::string& current_name() const { return current_name_; }
   /// Throws InputError at `where` if the name is not defined.
   const State& find(std::string_view name, const std::string& where) const;
@@ -62,18 +64,21 @@ class MgfContexts {
   /// Runs c cxy cspec cct cmix, m sides rd td ed rs ts ir, v p n. False if the entity is none of these.
   /// Throws InputError at `where`.
   bool run(const TextLine& line, const std::string& where);
+  /// Colours are judged here, when a face at `where` uses the current material, not where they are given:
+  /// libraries hold colours to mix with, such as the components of daylight, that no light has. Throws
+  /// InputError that also says where the colour was given.
+  void check_current_material(const std::string& where) const;
 
   MgfNamedContexts<MgfColour> colours;
   MgfNamedContexts<MgfMaterial> materials;
   MgfNamedContexts<MgfVertex> vertices;
-  /// Changes whenever the current material or a field of it does.
-  std::uint64_t material_revision() const { return material_revision_; }
 
  private:
   bool run_colour(const TextLine& line, const std::string& where);
   bool run_material(const TextLine& line, const std::string& where);
   bool run_vertex(const TextLine& line, const std::string& where);
-  std::uint64_t material_revision_ = 0;
+  void set_colour(const MgfColour& colour, const std::string& where);
+  std::set<std::string> impossible_given_at_;  // MgfColour::given_at points into it
 };
 
 /// Number at word `index` of a line; throws InputError at `where` if there is none.

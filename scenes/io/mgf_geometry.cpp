@@ -24,6 +24,7 @@ bool is_polygonal(std::string_view keyword) {
 bool MgfInterpreter::run_geometry(const File& file, const TextLine& line, const std::string& where) {
   const bool curved = is_curved(line.words[0]);
   if (!curved && !is_polygonal(line.words[0])) return false;
+  contexts_.check_current_material(where);
   const MgfSceneBuilder::Target target{object_path_, contexts_.materials.current_name(),
                                        contexts_.materials.current(), file.name, line.number};
   if (line.words[0] == "torus") ++tessellated_count_;

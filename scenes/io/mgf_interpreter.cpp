@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t kDeepestInclude = 100;
 constexpr std::size_t kDeepestObject = 1000;
 constexpr std::uint64_t kMostEntities = 10'000'000;  // executed, arrays and includes unrolled
-constexpr std::uintmax_t kLargestMgf = std::uintmax_t{1} << 30;
+constexpr std::uint64_t kMostIncludes = 1'000'000;
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;  // of all files of a room
 
 std::span<const std::string_view> words_from(const TextLine& line, std::size_t first) {
   return std::span(line.words).subspan(std::min(first, line.words.size()));
@@ -44,33 +45,51 @@ void MgfInterpreter::run(const fs::path& file) {
 }
 
 const MgfInterpreter::File& MgfInterpreter::load(const fs::path& file, const std::string& included_from) {
-  const fs::path key = identity_of(file);
+  const File& loaded = file_at(file, included_from);
   if (open_files_.size() >= kDeepestInclude)
-    throw InputError(included_from, "includes are nested too deep",
+    throw InputError(included_from, "includes are nested too deep: " + chain_of_includes(loaded),
                      fmt::format("At most {}.", kDeepestInclude));
-  if (std::find(open_files_.begin(), open_files_.end(), key) != open_files_.end()) {
-    std::string chain;
-    for (const fs::path& open : open_files_) chain += open.filename().string() + " -> ";
-    throw InputError(included_from,
-                     "files include each other in a circle: " + chain + key.filename().string(),
+  if (std::find(open_files_.begin(), open_files_.end(), &loaded) != open_files_.end())
+    throw InputError(included_from, "files include each other in a circle: " + chain_of_includes(loaded),
                      "Remove one of these includes.");
-  }
-  std::unique_ptr<File>& entry = files_[key];
+  if (!included_from.empty() && ++includes_ > kMostIncludes)
+    throw InputError(included_from,
+                     fmt::format("more than {} files are included, counted each time: {}", kMostIncludes,
+                                 chain_of_includes(loaded)),
+                     "Files that include others several times multiply: check these, and the counts of the "
+                     "arrays (-a) around them.");
+  open_files_.push_back(&loaded);
+  return loaded;
+}
+
+const MgfInterpreter::File& MgfInterpreter::file_at(const fs::path& file, const std::string& included_from) {
+  const File*& spelled = files_by_spelling_[file];
+  if (spelled != nullptr) return *spelled;
+  const fs::path identity = identity_of(file);
+  std::unique_ptr<File>& entry = files_[identity];
   if (!entry) {
     auto loaded = std::make_unique<File>();
+    loaded->path = identity;
     loaded->name = file.lexically_normal().string();
     loaded->folder = file.parent_path();
     try {
-      loaded->text = load_file(file, kLargestMgf);
+      loaded->text = load_file(file, kMostBytes - bytes_);
     } catch (const InputError& error) {
       if (included_from.empty()) throw;
       throw InputError(included_from, std::string("the included file cannot be read: ") + error.what(), "");
     }
+    bytes_ += loaded->text.size();
     loaded->lines = split_lines(loaded->text);
     entry = std::move(loaded);
   }
-  open_files_.push_back(key);
-  return *entry;
+  spelled = entry.get();
+  return *spelled;
+}
+
+std::string MgfInterpreter::chain_of_includes(const File& last) const {
+  std::string chain;
+  for (const File* open : open_files_) chain += open->path.filename().string() + " -> ";
+  return chain + last.path.filename().string();
 }
 
 void MgfInterpreter::run_file(const File& file) {
@@ -101,9 +120,11 @@ void MgfInterpreter::run_line(const File& file, std::size_t& next) {
     run_include(file, line, where);
   } else if (keyword == "ies") {
     run_ies(file, line, where);
-  } else if (unknown_entities_.emplace(keyword).second) {
-    builder_.warnings.push_back(fmt::format(
-        "{}: '{}' is not an MGF entity; it is ignored here and wherever it comes again.", where, keyword));
+  } else {
+    ++builder_.refused["statements"];
+    if (unknown_entities_.emplace(keyword).second)
+      builder_.warnings.push_back(fmt::format(
+          "{}: '{}' is not an MGF entity; it is ignored here and wherever it comes again.", where, keyword));
   }
 }
 

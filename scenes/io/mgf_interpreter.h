@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/io/ies_reader.h"
+#include "scenes/io/measured_luminaire.h"
 #include "scenes/io/mgf_contexts.h"
 #include "scenes/io/mgf_scene_builder.h"
 #include "scenes/io/mgf_transform.h"
@@ -21,7 +21,8 @@ namespace reemit {
 /// transforms and objects are its state, geometry its output.
 class MgfInterpreter {
  public:
-  /// Throws InputError with file and line.
+  /// Runs one more file of the room: contexts stay as the files before it left them, transforms and objects
+  /// end with their file. Throws InputError with file and line.
   void run(const std::filesystem::path& file);
   /// Moves materials, surfaces, lights and warnings into the scene.
   void finish(Scene& scene);
@@ -29,7 +30,8 @@ class MgfInterpreter {
 
  private:
   struct File {
-    std::string name;  // as messages show it
+    std::filesystem::path path;  // canonical
+    std::string name;            // as messages show it
     std::filesystem::path folder;
     std::string text;
     std::vector<TextLine> lines;
@@ -43,6 +45,8 @@ class MgfInterpreter {
   };
 
   const File& load(const std::filesystem::path& file, const std::string& included_from);
+  const File& file_at(const std::filesystem::path& file, const std::string& included_from);
+  std::string chain_of_includes(const File& last) const;
   void run_file(const File& file);
   void run_line(const File& file, std::size_t& next);
   void begin_transform(MgfTransform transform, std::size_t first_line);
@@ -63,8 +67,11 @@ class MgfInterpreter {
 
   MgfContexts contexts_;
   MgfSceneBuilder builder_;
-  std::map<std::filesystem::path, std::unique_ptr<File>> files_;  // by canonical path
-  std::vector<std::filesystem::path> open_files_;                 // chain of includes, canonical
+  std::map<std::filesystem::path, std::unique_ptr<File>> files_;    // by canonical path
+  std::map<std::filesystem::path, const File*> files_by_spelling_;  // as entities name them
+  std::vector<const File*> open_files_;                             // chain of includes
+  std::uintmax_t bytes_ = 0;                                        // of all files
+  std::uint64_t includes_ = 0;                                      // run, repeated ones each time
   std::vector<Frame> frames_;
   std::vector<std::string> objects_;
   std::string object_path_;
@@ -73,7 +80,7 @@ class MgfInterpreter {
   std::set<std::string> unknown_entities_;
   std::uint64_t executed_ = 0;
   std::size_t tessellated_count_ = 0;
-  IesLibrary luminaires_;
+  LuminaireLibrary luminaires_;
   std::vector<PunctualLight> lights_;
   std::vector<std::string> notes_;
 };

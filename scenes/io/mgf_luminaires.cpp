@@ -13,7 +13,7 @@ namespace {
 
 /// Places a luminaire whose nadir is -z and whose C = 0 is +x. The transforms of MGF are similarities: their
 /// scale applies to the opening, as to all sizes, but not to the intensities.
-PhotometricLight placed(const IesLuminaire& luminaire, const Eigen::Affine3d& transform,
+PhotometricLight placed(const MeasuredLuminaire& luminaire, const Eigen::Affine3d& transform,
                         const std::string& where) {
   PhotometricLight light;
   const double scale = std::cbrt(std::fabs(transform.linear().determinant()));
@@ -42,7 +42,7 @@ void MgfInterpreter::run_ies(const File& file, const TextLine& line, const std::
                      "Remove the luminaire or give it power.");
   const std::size_t first = std::min<std::size_t>(has_factor ? 4 : 2, line.words.size());
   const MgfTransform transform(std::span(line.words).subspan(first), where);
-  const IesLuminaire* luminaire = nullptr;
+  const MeasuredLuminaire* luminaire = nullptr;
   try {
     luminaire =
         &luminaires_.load(mgf_mentioned_file(file.folder, line.words[1], where), builder_.warnings, notes_);

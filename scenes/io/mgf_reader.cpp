@@ -7,12 +7,20 @@
 namespace reemit {
 
 Scene read_mgf_scene(const std::filesystem::path& file, const ReadOptions& /*options*/) {
+  return read_mgf_files({&file, 1});
+}
+
+Scene read_mgf_files(std::span<const std::filesystem::path> files) {
   Scene scene;
-  scene.name = file.stem().string();
-  scene.source = file.string();
   scene.bands = BandSet::rgb();
   MgfInterpreter interpreter;
-  interpreter.run(file);
+  for (const std::filesystem::path& file : files) {
+    interpreter.run(file);
+    if (!scene.name.empty()) scene.name += "+";
+    if (!scene.source.empty()) scene.source += " + ";
+    scene.name += file.stem().string();
+    scene.source += file.string();
+  }
   interpreter.finish(scene);
   scene.notes.push_back(
       "MGF: metres; emittance in lm/m2 was divided by pi and 179 lm/W; colours are linear Rec.709, "

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/kind_counts.h"
 #include "scenes/io/mgf_material.h"
 #include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
@@ -38,6 +39,7 @@ void check_place(const Vec3& place, const MgfSceneBuilder::Target& target) {
 void MgfSceneBuilder::add(const std::vector<Polygon>& faces, const Eigen::Affine3d& transform,
                           const Target& target) {
   if (faces.empty()) {
+    ++refused["faces"];
     warnings.push_back(fmt::format("{}: the face has less than three different corners and was left out.",
                                    at_line(target.file, target.line)));
     return;
@@ -86,6 +88,7 @@ MaterialId MgfSceneBuilder::material_id(const Target& target) {
     const int version =
         ++material_names_[base];  // a context that was changed after use counts as a new material
     const std::string name = version == 1 ? base : fmt::format("{}#{}", base, version);
+    if (target.material.ir_imaginary != 0) ++not_modelled["metals"];
     materials_.push_back(
         convert_mgf_material(target.material, name, at_line(target.file, target.line), warnings));
   }
@@ -96,6 +99,8 @@ void MgfSceneBuilder::finish(Scene& scene) {
   for (SurfaceBuilder& builder : surfaces_) scene.surfaces.push_back(builder.take());
   scene.materials = std::move(materials_);
   tell_surfaces_apart(scene);
+  add_counts(refused, scene.refused);
+  add_counts(not_modelled, scene.not_modelled);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
 }
 

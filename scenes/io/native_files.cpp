@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "scenes/io/gltf_reader.h"
+#include "scenes/io/kind_counts.h"
 #include "scenes/io/native_objects.h"
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/ply_reader.h"
@@ -65,6 +66,10 @@ NativeObjects::ReferencedFile& NativeObjects::load(const JsonCursor& path) {
     loaded.surfaces = std::move(read.surfaces);
     loaded.materials = std::move(read.materials);
     loaded.bands = read.bands;
+    add_counts(read.refused, scene_.refused);
+    add_counts(read.not_modelled, scene_.not_modelled);
+    if (!read.lights.empty()) scene_.refused["luminaires"] += read.lights.size();
+    if (!read.cameras.empty()) scene_.refused["cameras"] += read.cameras.size();
     for (const std::string& warning : read.warnings)
       scene_.warnings.push_back(fmt::format("{}: {}", name, warning));
     for (const std::string& note : read.notes) scene_.notes.push_back(fmt::format("{}: {}", name, note));

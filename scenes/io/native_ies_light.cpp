@@ -80,7 +80,7 @@ PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& 
   at.expect_object({"type", "name", "file", "position", "direction", "look_at", "c0", "rotate_deg", "color",
                     "scale", "flux_lm", "opening", "mount", "away"});
   const JsonCursor path = at.at("file");
-  const IesLuminaire* file = nullptr;
+  const MeasuredLuminaire* file = nullptr;
   try {
     file = &library_.load(folder_ / path.string(), scene_.warnings, scene_.notes);
   } catch (const InputError& error) {

@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <string>
 
-#include "scenes/io/ies_reader.h"
 #include "scenes/io/json_cursor.h"
+#include "scenes/io/measured_luminaire.h"
 #include "scenes/model/scene.h"
 
 namespace reemit {
@@ -22,7 +22,7 @@ class NativeIesLights {
   std::filesystem::path folder_;
   double unit_;
   Scene& scene_;
-  IesLibrary library_;
+  LuminaireLibrary library_;
 };
 
 }  // namespace reemit

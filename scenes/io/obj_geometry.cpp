@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -81,11 +82,10 @@ class ObjChecker {
     clean_ += '\n';
     if (corners < 3)
       throw InputError(where_, fmt::format("a face with {} corners", corners), "A face needs at least 3.");
-    if (!material_known_)
-      throw InputError(where_, "the face has no material", "Put 'usemtl' before it and 'mtllib' at the top.");
+    if (!material_) material_ = materials_.index_of("", where_);
     ObjFace face;
     face.group = group_;
-    face.material = material_;
+    face.material = *material_;
     face.line = line.number;
     geometry_.faces.push_back(std::move(face));
   }
@@ -112,14 +112,7 @@ class ObjChecker {
                        "Write v, v/vt, v//vn or v/vt/vn with indices from 1 (or from -1, backwards).");
   }
 
-  void use_material(const TextLine& line) {
-    const std::string name = rest_of(line, 1);
-    if (!materials_.contains(name))
-      throw InputError(where_, fmt::format("material '{}' is not defined", name),
-                       "Name the MTL file that defines it with 'mtllib' above, or add it there.");
-    material_ = materials_.index_of(name);
-    material_known_ = true;
-  }
+  void use_material(const TextLine& line) { material_ = materials_.index_of(rest_of(line, 1), where_); }
 
   // A list of files, or one whose name has blanks.
   void load_materials(const TextLine& line) {
@@ -130,7 +123,7 @@ class ObjChecker {
     if (!fs::exists(folder / names[0], ignored)) names.assign(line.words.begin() + 1, line.words.end());
     for (std::string& name : names) {
       std::replace(name.begin(), name.end(), '\\', '/');
-      if (libraries_.insert(name).second) materials_.read(folder / name, where_);
+      if (libraries_.insert(name).second) materials_.read(folder, name, where_);
     }
   }
 
@@ -148,6 +141,7 @@ class ObjChecker {
     static constexpr std::array kHarmless = {"vt",  "s",     "usemap",   "maplib",
                                              "lod", "bevel", "c_interp", "d_interp"};
     if (std::find(kHarmless.begin(), kHarmless.end(), keyword) != kHarmless.end()) return;
+    ++geometry_.ignored_statements;
     if (warned_.size() >= kMostWarnings || !warned_.emplace(keyword).second) return;
     geometry_.warnings.push_back(fmt::format(
         "{}: '{}' is ignored here and wherever it comes again; only polygons are read.", where_, keyword));
@@ -159,8 +153,8 @@ class ObjChecker {
   std::string where_, clean_, object_;
   std::map<std::string, std::size_t> group_indices_{{"", 0}};
   std::set<std::string> libraries_, warned_;
-  std::size_t group_ = 0, material_ = 0;
-  bool material_known_ = false;
+  std::size_t group_ = 0;
+  std::optional<std::size_t> material_;
 };
 
 // What the callbacks of tinyobjloader fill; faces come in the order of the first pass.

@@ -23,11 +23,12 @@ struct ObjGeometry {
   std::vector<ObjFace> faces;
   std::vector<std::string> groups;  ///< Names made of `o` and `g`; may be empty.
   std::vector<std::string> warnings;
+  std::size_t ignored_statements = 0;  ///< That hold geometry other than polygons, or are of no known kind.
 };
 
 /// Reads the geometry of an OBJ file, and through `materials` the MTL files it names. Polygons stay polygons.
 /// Throws InputError with file and line for everything that tinyobjloader would read as 0 or skip: missing or
-/// garbled numbers, indices out of range, unknown materials, faces without material.
+/// garbled numbers, indices out of range.
 ObjGeometry read_obj_geometry(const std::filesystem::path& file, ObjMaterials& materials);
 
 }  // namespace reemit

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tiny_obj_loader.h>
 
+#include "scenes/io/obj_light_shares.h"
 #include "scenes/io/text_file.h"
 #include "scenes/io/text_parse.h"
 #include "scenes/io/texture_average.h"
@@ -18,6 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uintmax_t kLargestMtl = std::uintmax_t{64} << 20;
+constexpr double kGrey = 0.5;  // reflectance of materials that nobody defines
 
 // Numbers a statement of a MTL file must have. tinyobjloader reads what is missing or garbled as 0.
 struct NumberRule {
@@ -91,15 +95,6 @@ Spectrum spectrum_of(const tinyobj::real_t (&rgb)[3]) {
   return Eigen::Array3d(rgb[0], rgb[1], rgb[2]);
 }
 
-// Light that goes straight through: 1 - d, coloured by Tf; Tf alone in the refracting illumination models.
-Spectrum transmittance_of(const tinyobj::material_t& m) {
-  const Spectrum filter = spectrum_of(m.transmittance);
-  const bool refracts = m.illum == 6 || m.illum == 7;
-  const double share = m.dissolve < 1 ? 1 - m.dissolve : (refracts ? 1 : 0);
-  if ((filter > 0).any()) return share * filter;
-  return m.dissolve < 1 ? Spectrum::Constant(3, share) : Spectrum::Zero(3);
-}
-
 std::string ignored_maps(const tinyobj::material_t& m) {
   std::string maps;
   const auto add = [&maps](const char* keyword, const std::string& file) {
@@ -116,48 +111,98 @@ std::string ignored_maps(const tinyobj::material_t& m) {
   return maps;
 }
 
+// Where what is said of a material goes.
+struct Telling {
+  std::vector<std::string>& warnings;
+  KindCounts& refused;
+  KindCounts& not_modelled;
+};
+
 Spectrum textured_reflectance(const tinyobj::material_t& m, const fs::path& folder, const std::string& where,
-                              std::vector<std::string>& warnings) {
+                              Telling& tell) {
   const Spectrum kd = spectrum_of(m.diffuse);
   if (m.diffuse_texname.empty()) return kd;
   std::string relative = m.diffuse_texname;
   std::replace(relative.begin(), relative.end(), '\\', '/');
   const TextureAverage average = average_texture(folder / relative);
   if (!average.problem.empty()) {
-    warnings.push_back(fmt::format("{}: Kd {:.3g} {:.3g} {:.3g} is used in place of the texture: {}", where,
-                                   kd[0], kd[1], kd[2], average.problem));
+    ++tell.refused["textures"];
+    tell.warnings.push_back(fmt::format("{}: Kd {:.3g} {:.3g} {:.3g} is used in place of the texture: {}",
+                                        where, kd[0], kd[1], kd[2], average.problem));
     return kd;
   }
-  warnings.push_back(fmt::format("{}: the texture {} is used as its average colour {:.3g} {:.3g} {:.3g}.",
-                                 where, relative, average.rgb[0], average.rgb[1], average.rgb[2]));
+  ++tell.not_modelled["textures"];
+  tell.warnings.push_back(
+      fmt::format("{}: the texture {} is used as its average colour {:.3g} {:.3g} {:.3g}.", where, relative,
+                  average.rgb[0], average.rgb[1], average.rgb[2]));
   return average.rgb;
 }
 
-Material convert(const tinyobj::material_t& m, const fs::path& file, std::vector<std::string>& warnings) {
+Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tell) {
   const std::string where = fmt::format("{}: material '{}'", file.string(), m.name);
   Material material;
   material.name = m.name;
-  material.reflectance = textured_reflectance(m, file.parent_path(), where, warnings);
+  const ObjLightShares shares =
+      obj_light_shares({textured_reflectance(m, file.parent_path(), where, tell), spectrum_of(m.specular),
+                        spectrum_of(m.transmittance), m.dissolve, m.ior, m.illum});
+  material.reflectance = shares.diffuse;
   material.emitted_radiance = spectrum_of(m.emission);
   NonDiffusePart& rest = material.non_diffuse;
-  if (const Spectrum ks = spectrum_of(m.specular); (ks > 0).any()) rest.specular_reflectance = ks;
-  if (const Spectrum through = transmittance_of(m); (through > 0).any())
-    rest.specular_transmittance = through;
+  if ((shares.specular > 0).any()) rest.specular_reflectance = shares.specular;
+  if ((shares.transmitted > 0).any()) rest.specular_transmittance = shares.transmitted;
+  if (!shares.doubt.empty()) {
+    ++tell.not_modelled["glass_and_mirrors_as_paint"];
+    tell.warnings.push_back(fmt::format("{}: {}.", where, shares.doubt));
+  }
   rest.roughness = std::sqrt(2 / (m.shininess + 2));  // Phong exponent to microfacet roughness [WAL07]
   rest.index_of_refraction = m.ior;
-  if (const std::string maps = ignored_maps(m); !maps.empty())
-    warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));
+  if (const std::string maps = ignored_maps(m); !maps.empty()) {
+    ++tell.not_modelled["other_maps"];
+    tell.warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));
+  }
   return material;
+}
+
+// The file as it is named; else one of that name beside the room, whatever its case: paths of another
+// computer and file systems that ignore case leave both. Empty if there is none.
+fs::path find_library(const fs::path& folder, const std::string& name) {
+  std::error_code ignored;
+  if (fs::is_regular_file(folder / name, ignored)) return folder / name;
+  const auto lower = [](std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+  };
+  const std::string wanted = lower(fs::path(name).filename().string());
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored))
+    if (lower(entry.path().filename().string()) == wanted) found.push_back(folder / entry.path().filename());
+  std::sort(found.begin(), found.end());  // folders are listed in any order
+  return found.empty() ? fs::path() : found.front();
 }
 
 }  // namespace
 
-void ObjMaterials::read(const fs::path& file, const std::string& where) {
+void ObjMaterials::read(const fs::path& folder, const std::string& name, const std::string& where) {
+  const fs::path file = find_library(folder, name);
+  if (file.empty()) {
+    ++refused["material_files"];
+    warnings_.push_back(fmt::format("{}: there is no material file '{}'; its materials are taken as grey.",
+                                    where, (folder / name).string()));
+    return;
+  }
+  if (file != folder / name)
+    warnings_.push_back(fmt::format("{}: there is no material file '{}'; '{}' is taken.", where,
+                                    (folder / name).string(), file.string()));
   std::string text;
   try {
     text = load_file(file, kLargestMtl);
   } catch (const InputError& error) {
-    throw InputError(where, std::string("the material file cannot be read: ") + error.what(), "");
+    ++refused["material_files"];
+    warnings_.push_back(
+        fmt::format("{}: the material file cannot be read, and its materials are taken as grey: {}", where,
+                    error.what()));
+    return;
   }
   std::istringstream stream(checked_text(text, file.string()));
   std::map<std::string, int> names;
@@ -167,12 +212,39 @@ void ObjMaterials::read(const fs::path& file, const std::string& where) {
   for (const tinyobj::material_t& m : loaded) {
     if (m.name.empty()) continue;
     if (!index_.try_emplace(m.name, materials.size()).second) {
-      warnings.push_back(fmt::format("{}: material '{}' is defined again; the first definition counts.",
-                                     file.string(), m.name));
+      warnings_.push_back(fmt::format("{}: material '{}' is defined again; the first definition counts.",
+                                      file.string(), m.name));
       continue;
     }
-    materials.push_back(convert(m, file, warnings));
+    materials.push_back(convert(m, file, {warnings_, refused, not_modelled}));
   }
+}
+
+std::size_t ObjMaterials::index_of(const std::string& name, const std::string& where) {
+  const auto [entry, added] = index_.try_emplace(name, materials.size());
+  if (!added) return entry->second;
+  Material material;
+  material.name = name.empty() ? "no material" : name;
+  material.reflectance = Spectrum::Constant(3, kGrey);
+  material.emitted_radiance = Spectrum::Zero(3);
+  materials.push_back(std::move(material));
+  if (undefined_.empty()) first_undefined_at_ = where;
+  ++refused["materials"];
+  undefined_.push_back(name.empty() ? "faces without 'usemtl'" : fmt::format("'{}'", name));
+  return entry->second;
+}
+
+std::vector<std::string> ObjMaterials::warnings() const {
+  std::vector<std::string> all = warnings_;
+  if (undefined_.empty()) return all;
+  constexpr std::size_t kMostNames = 8;
+  const std::size_t named = std::min(undefined_.size(), kMostNames);
+  all.push_back(fmt::format(
+      "{}: {} material(s) are not defined and are taken as grey, reflectance {}: {}{}.", first_undefined_at_,
+      undefined_.size(), kGrey,
+      fmt::join(undefined_.begin(), undefined_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+      undefined_.size() > named ? ", ..." : ""));
+  return all;
 }
 
 }  // namespace reemit

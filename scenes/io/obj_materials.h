@@ -4,26 +4,32 @@
 #include <string>
 #include <vector>
 
-#include "scenes/model/material.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 
 /// The materials of the MTL files a room names. In linear Rec.709: Kd is the diffuse reflectance, Ke the
-/// radiance in W/(m2 sr) of the front; surfaces reflect on both sides. Ks, Ns, d, Tr, Tf and Ni go to the
-/// non-diffuse part. A map_Kd stands for Kd by its average colour: exporters write Kd beside it as a mean, a
-/// default or a leftover, so it is not multiplied in.
+/// radiance in W/(m2 sr) of the front; surfaces reflect on both sides. What Ks, d, Tr, Tf and illum take of
+/// the light goes to the non-diffuse part (obj_light_shares.h). A map_Kd stands for Kd by its average colour:
+/// exporters write Kd beside it as a mean, a default or a leftover, so it is not multiplied in.
 class ObjMaterials {
  public:
-  /// Reads one MTL file. Throws InputError with file and line; `where` says which line asked for it.
-  void read(const std::filesystem::path& file, const std::string& where);
-  bool contains(const std::string& name) const { return index_.contains(name); }
-  std::size_t index_of(const std::string& name) const { return index_.at(name); }
+  /// Reads one MTL file; `name` is relative to `folder`, `where` says which line asked for it. A file that is
+  /// not there leaves a warning. Throws InputError with file and line.
+  void read(const std::filesystem::path& folder, const std::string& name, const std::string& where);
+  /// A name that no file has defined becomes grey; the empty one stands for no material.
+  std::size_t index_of(const std::string& name, const std::string& where);
+  /// Of all that was read and asked for; one for all names that are not defined.
+  std::vector<std::string> warnings() const;
 
   std::vector<Material> materials;
-  std::vector<std::string> warnings;
+  KindCounts refused, not_modelled;  ///< As in Scene.
 
  private:
   std::map<std::string, std::size_t> index_;
+  std::vector<std::string> warnings_;
+  std::vector<std::string> undefined_;  // as messages show them
+  std::string first_undefined_at_;
 };
 
 }  // namespace reemit

@@ -39,10 +39,12 @@ void build_surfaces(const ObjGeometry& geometry, Scene& scene) {
     for (const Polygon& polygon : polygons) builders[entry->second].add(polygon, face.line);
   }
   for (SurfaceBuilder& builder : builders) scene.surfaces.push_back(builder.take());
-  if (degenerate > 0)
+  if (degenerate > 0) {
+    scene.refused["faces"] += degenerate;
     scene.warnings.push_back(fmt::format(
         "{}: {} face(s) have less than three different corners and were left out, the first in line {}.",
         scene.source, degenerate, first_degenerate));
+  }
 }
 
 }  // namespace
@@ -54,8 +56,11 @@ Scene read_obj_scene(const fs::path& file, const ReadOptions& /*options*/) {
   scene.bands = BandSet::rgb();
   ObjMaterials materials;
   ObjGeometry geometry = read_obj_geometry(file, materials);
+  scene.warnings = materials.warnings();
   scene.materials = std::move(materials.materials);
-  scene.warnings = std::move(materials.warnings);
+  scene.refused = std::move(materials.refused);
+  scene.not_modelled = std::move(materials.not_modelled);
+  if (geometry.ignored_statements > 0) scene.refused["statements"] = geometry.ignored_statements;
   scene.warnings.insert(scene.warnings.end(), geometry.warnings.begin(), geometry.warnings.end());
   build_surfaces(geometry, scene);
   tell_surfaces_apart(scene);
@@ -64,7 +69,7 @@ Scene read_obj_scene(const fs::path& file, const ReadOptions& /*options*/) {
     if (auto camera = read_obj_camera(beside, scene.warnings)) scene.cameras.push_back(std::move(*camera));
   scene.notes.push_back(
       "OBJ: metres; Kd is the linear Rec.709 reflectance of both sides, Ke the radiance of the front in "
-      "W/(m2 sr).");
+      "W/(m2 sr); transparent shares of the light and what mirrors take are not reflected diffusely.");
   return scene;
 }
 

@@ -40,11 +40,28 @@ const Reader& reader_for(const std::filesystem::path& file) {
                    "Known extensions:" + known);
 }
 
+/// Whether `other` may be one room with `first`.
+void check_joins(const std::filesystem::path& first, const std::filesystem::path& other) {
+  for (const std::filesystem::path& file : {first, other})
+    if (reader_for(file).read != read_mgf_scene)
+      throw InputError(
+          file.string(),
+          fmt::format("{} and {} cannot be read as one room: only MGF files can", first.string(),
+                      other.string()),
+          "Put OBJ, PLY and glTF files together in a JSON room, each as an object with a \"file\".");
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
-  check_readable_file(file);
-  Scene scene = reader_for(file).read(file, options);
+  return read_scene(std::span(&file, 1), options);
+}
+
+Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options) {
+  for (const std::filesystem::path& file : files) check_readable_file(file);
+  for (const std::filesystem::path& file : files.subspan(1)) check_joins(files.front(), file);
+  Scene scene =
+      files.size() > 1 ? read_mgf_files(files) : reader_for(files.front()).read(files.front(), options);
   if (options.force_two_sided)
     for (Material& material : scene.materials) material.two_sided = true;
   finish_scene(scene);

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "scenes/model/scene.h"
@@ -25,5 +26,9 @@ struct ReadOptions {
 /// Reads a room; the format follows from the extension: .json .obj .gltf .glb .mgf (case is ignored).
 /// The result has been through finish_scene. Throws InputError with file and line (or JSON pointer).
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// The same for files, one or more, that are one room: only MGF has such rooms, read in order as one context.
+/// Throws InputError for others.
+Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options = {});
 
 }  // namespace reemit

@@ -85,6 +85,11 @@ void warn_of_ignored_parts(Scene& scene, const std::vector<bool>& used) {
     if (!used[i]) continue;
     const std::string parts = ignored_parts(m, scene.bands);
     if (parts.empty()) continue;
+    const NonDiffusePart& rest = m.non_diffuse;
+    for (const auto& [kind, part] : {std::pair("specular_reflectance", &rest.specular_reflectance),
+                                     std::pair("diffuse_transmittance", &rest.diffuse_transmittance),
+                                     std::pair("specular_transmittance", &rest.specular_transmittance)})
+      if (part->size() > 0 && (*part > 0).any()) ++scene.not_modelled[kind];
     scene.warnings.push_back(
         fmt::format("Material '{}': only its diffuse reflectance {:.3g} is modelled; ignored (this light is "
                     "absorbed): {}.",

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,9 @@
 #include "scenes/model/surface.h"
 
 namespace reemit {
+
+/// How often each kind of thing occurs; the kinds are listed in docs/command_line.md.
+using KindCounts = std::map<std::string, std::size_t>;
 
 /// A room as read from file: plain data in metres, watts and steradians.
 /// Readers fill it in any order, then call finish_scene, after which it is not changed any more.
@@ -23,6 +28,8 @@ struct Scene {
   std::vector<Camera> cameras;        ///< Names are unique.
   std::vector<std::string> warnings;  ///< What the user should know: ignored parts, assumptions, repairs.
   std::vector<std::string> notes;     ///< Conversions and assumptions that were applied (units, efficacy).
+  KindCounts refused;       ///< Parts of the file that were left out: damaged, missing, or of no known kind.
+  KindCounts not_modelled;  ///< Parts that were understood, but whose effect on light is not simulated.
 
   const Material& material_of(const Surface& s) const { return materials[s.material.index()]; }
 };

@@ -9,19 +9,26 @@ namespace reemit {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path find_room(const Solution& solution, const fs::path& solution_file,
-                   const std::optional<fs::path>& override) {
+fs::path find_room_file(const fs::path& stored, const fs::path& solution_file) {
   std::error_code code;
-  if (override) {
-    if (fs::exists(*override, code)) return *override;
-    throw InputError(override->string(), "no such room file", "Check the spelling of the name.");
-  }
-  const fs::path stored = solution.room_path;
   if (fs::exists(stored, code)) return stored;
   const fs::path beside = solution_file.parent_path() / stored.filename();
   if (stored.has_filename() && fs::exists(beside, code)) return beside;
   throw InputError(solution_file.string(), "the room it was solved from is gone: " + stored.string(),
                    "Put the room file back, or beside the solution, or name it with --room.");
+}
+
+std::vector<fs::path> find_room(const Solution& solution, const fs::path& solution_file,
+                                const std::vector<fs::path>& override) {
+  std::error_code code;
+  for (const fs::path& file : override)
+    if (!fs::exists(file, code))
+      throw InputError(file.string(), "no such room file", "Check the spelling of the name.");
+  if (!override.empty()) return override;
+  std::vector<fs::path> files;
+  for (const std::string& stored : room_files(solution))
+    files.push_back(find_room_file(stored, solution_file));
+  return files;
 }
 
 // The hash says that the rooms are the same; what is left to check are numbers of the solution file itself.
@@ -41,15 +48,14 @@ bool fits(const Solution& solution, const Scene& scene) {
 }  // namespace
 
 Scene read_room_of(const Solution& solution, const fs::path& solution_file,
-                   const std::optional<fs::path>& override) {
-  const fs::path room = find_room(solution, solution_file, override);
-  Scene scene = read_scene(room, solution.read_options);
+                   const std::vector<fs::path>& override) {
+  Scene scene = read_scene(find_room(solution, solution_file, override), solution.read_options);
   if (content_hash(scene) != solution.room_hash)
-    throw InputError(room.string(),
+    throw InputError(scene.source,
                      "the room has changed since " + solution_file.string() + " was solved from it",
-                     "Solve it again, or restore the file as it was.");
+                     "Solve it again, or restore its files as they were.");
   if (!fits(solution, scene))
-    throw InputError(solution_file.string(), "is damaged: its zones do not fit the room " + room.string(),
+    throw InputError(solution_file.string(), "is damaged: its zones do not fit the room " + scene.source,
                      "Restore a copy of the file or solve the room again.");
   return scene;
 }

@@ -108,6 +108,12 @@ Estimate Solution::radiosity(ZoneId z, std::size_t band) const {
   return {emitted_radiosity(z, band) + reflectance * e.mean, error};
 }
 
+std::vector<std::string> room_files(const Solution& solution) {
+  std::vector<std::string> files{solution.room_path};
+  files.insert(files.end(), solution.more_room_paths.begin(), solution.more_room_paths.end());
+  return files;
+}
+
 void keep_surfaces(const Scene& scene, Solution& solution) {
   solution.surface_names.clear();
   solution.surface_materials.clear();

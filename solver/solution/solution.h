@@ -93,8 +93,9 @@ struct SolveRecord {
 /// Zone values are irradiances; radiosity follows as B = M_e + rho E with the zone's material.
 struct Solution {
   std::string program_version;
-  std::string room_path;  ///< As given to solve, made absolute.
-  std::string room_hash;  ///< content_hash of the room.
+  std::string room_path;                     ///< As given to solve, made absolute.
+  std::vector<std::string> more_room_paths;  ///< Further files of a room of several, in order, absolute.
+  std::string room_hash;                     ///< content_hash of the room.
   ReadOptions read_options;
   MeshSettings mesh_settings;
   SolverSettings settings;
@@ -126,6 +127,9 @@ struct Solution {
                            std::size_t band) const;      ///< M_e = pi L_e of the side the zone is on [W/m2].
   Estimate radiosity(ZoneId z, std::size_t band) const;  ///< B = M_e + rho E [W/m2].
 };
+
+/// The files of its room, one or more, in order.
+std::vector<std::string> room_files(const Solution& solution);
 
 /// Copies into a solution what it keeps of the room's surfaces: their names and materials.
 void keep_surfaces(const Scene& scene, Solution& solution);

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include <fmt/format.h>
+
 #include "solver/solution/solution.h"
 
 // The scalar fields of a solution file, each named once for both directions. `archive` is a writer that takes
@@ -8,6 +10,11 @@
 // below. Names end in the unit where there is one.
 
 namespace reemit {
+
+/// Attribute that holds the path of a further file of the room, from 0.
+inline std::string room_path_attribute(std::size_t further) {
+  return fmt::format("room_path_{}", further + 2);
+}
 
 template <class Archive, class Options>
 void transfer_read_options(Archive& archive, Options& options) {

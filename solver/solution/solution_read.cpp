@@ -283,6 +283,8 @@ Solution read_all(const Hdf5Group& root) {
   Solution solution;
   solution.program_version = root.read_text_attribute("program_version");
   solution.room_path = root.read_text_attribute("room_path");
+  for (std::size_t i = 0; root.has_attribute(room_path_attribute(i)); ++i)
+    solution.more_room_paths.push_back(root.read_text_attribute(room_path_attribute(i)));
   solution.room_hash = root.read_text_attribute("room_hash");
   read_settings(root, solution);
   solution.bands = read_bands(root);

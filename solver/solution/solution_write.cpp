@@ -315,6 +315,8 @@ void write_all(const Hdf5Group& root, const Solution& solution) {
   root.write_attribute(
       "units", std::string("lengths in m, areas in m2, power in W; every band holds the power within it"));
   root.write_attribute("room_path", solution.room_path);
+  for (std::size_t i = 0; i < solution.more_room_paths.size(); ++i)
+    root.write_attribute(room_path_attribute(i), solution.more_room_paths[i]);
   root.write_attribute("room_hash", solution.room_hash);
   write_settings(root, solution);
   write_bands(root, solution.bands);

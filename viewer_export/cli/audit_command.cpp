@@ -21,7 +21,7 @@ namespace {
 
 struct AuditOptions {
   std::filesystem::path solution;
-  std::optional<std::filesystem::path> room;
+  std::vector<std::filesystem::path> room;
   bool direct = false;
   DirectAuditSettings settings;
   OutputStyle style;

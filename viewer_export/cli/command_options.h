@@ -97,9 +97,13 @@ inline void add_gltf_unit_options(CLI::App& command, ReadOptions& options) {
                     "if Blender wrote the file, none if it was one before 3.4, else 179)");
 }
 
-inline void add_room_option(CLI::App& command, std::optional<std::filesystem::path>& room) {
-  command.add_option("--room", room, "Room file, if it is no longer where it was solved from")
-      ->type_name("ROOM");
+inline void add_room_option(CLI::App& command, std::vector<std::filesystem::path>& room) {
+  command
+      .add_option("--room", room,
+                  "Room file, if it is no longer where it was solved from; of a room of several\n"
+                  "files give all, in order, each with its own --room")
+      ->type_name("ROOM")
+      ->allow_extra_args(false);
 }
 
 }  // namespace reemit::cli

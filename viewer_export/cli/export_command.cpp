@@ -1,8 +1,8 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,7 +27,7 @@ namespace {
 
 struct ExportOptions {
   std::filesystem::path solution;
-  std::optional<std::filesystem::path> room;
+  std::vector<std::filesystem::path> room;
   std::filesystem::path output;
   VertexSettings vertex;
   bool form_factors = false;

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
@@ -27,7 +28,7 @@ std::vector<std::pair<std::string, std::string>> notes_of(const Solution& soluti
                                                           std::uint64_t seed) {
   std::vector<std::pair<std::string, std::string>> notes{
       {"program", fmt::format("reemit {}", kProgramVersion)},
-      {"room", solution.room_path},
+      {"room", fmt::format("{}", fmt::join(room_files(solution), " + "))},
       {"room_hash", solution.room_hash},
       {"meaning",
        "factor: share of the power that zone_from sends out uniformly which reaches zone_to directly"},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -22,7 +23,7 @@ namespace reemit::cli {
 namespace {
 
 struct InfoOptions {
-  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;
   ReadOptions read;
   OutputStyle style;
 };
@@ -44,12 +45,13 @@ std::string room_status(const Solution& solution, const std::filesystem::path& f
 }
 
 ExitCode show_solution(const InfoOptions& options) {
-  const Solution solution = load_solution(options.file);
-  const std::string status = room_status(solution, options.file);
+  const std::filesystem::path& file = options.files.front();
+  const Solution solution = load_solution(file);
+  const std::string status = room_status(solution, file);
   if (options.style.json) {
-    print_json(solution_json(solution, options.file, status));
+    print_json(solution_json(solution, file, status));
   } else {
-    print_result(solution_text(solution, options.file, status));
+    print_result(solution_text(solution, file, status));
     print_warnings(solution.mesh_report.warnings);
     print_warnings(solution.light_warnings);
   }
@@ -57,7 +59,7 @@ ExitCode show_solution(const InfoOptions& options) {
 }
 
 ExitCode show_room(const InfoOptions& options) {
-  const Scene scene = read_scene(options.file, options.read);
+  const Scene scene = read_scene(options.files, options.read);
   const MeshResult meshed = build_mesh(scene);
   const std::vector<std::string> light_warnings = luminaire_warnings(scene, meshed.mesh);
   if (options.style.json) {
@@ -72,23 +74,43 @@ ExitCode show_room(const InfoOptions& options) {
   return ExitCode::kDone;
 }
 
+ExitCode show(const InfoOptions& options) {
+  const auto solution = std::find_if(options.files.begin(), options.files.end(), is_solution);
+  if (solution == options.files.end()) {
+    try {
+      return show_room(options);
+    } catch (const InputError& problem) {
+      // Names in the message may be in any encoding; they must not hide what is wrong.
+      if (options.style.json)
+        fmt::print("{}\n", refused_room_json(options.files, problem.what())
+                               .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      throw;
+    }
+  }
+  if (options.files.size() > 1)
+    throw InputError(solution->string(), "it is a solution, and it is not the only file",
+                     "Give one solution, or the files of one room.");
+  return show_solution(options);
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App& info = *program.add_subcommand("info", "Say what a room or a solution holds");
   info.footer(
-      "Warnings about the geometry go to stderr, and into the document with --json.\n"
+      "Warnings about the geometry go to stderr, and into the document with --json, which also counts by\n"
+      "kind what of the files was refused and what is not modelled.\n"
       "Example:\n"
       "  reemit info room.json");
-  info.add_option("file", options->file, "Room (.json .obj .gltf .glb .mgf) or solution file")
+  info.add_option("file", options->files,
+                  "Room (.json .obj .gltf .glb .mgf; several .mgf files are read in order as one room)\n"
+                  "or solution file")
       ->required()
       ->type_name("ROOM|SOLUTION");
   add_gltf_unit_options(info, options->read);
   add_json_option(info, options->style);
-  info.callback([options, &action] {
-    action = [options] { return is_solution(options->file) ? show_solution(*options) : show_room(*options); };
-  });
+  info.callback([options, &action] { action = [options] { return show(*options); }; });
 }
 
 }  // namespace reemit::cli

@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 
 struct RenderOptions {
   fs::path solution;
-  std::optional<fs::path> room;
+  std::vector<fs::path> room;
   fs::path output;
   std::string format;  ///< Of pictures in a folder: an extension with its dot.
   CameraOptions camera;

@@ -170,6 +170,27 @@ Json luminaire_json(const LuminaireRow& luminaire, const BandSet& bands) {
   return json;
 }
 
+Json counts_json(const KindCounts& counts) {
+  std::size_t sum = 0;
+  Json kinds = Json::object();
+  for (const auto& [kind, count] : counts) {
+    sum += count;
+    kinds[kind] = count;
+  }
+  return {{"count", sum}, {"kinds", kinds}};
+}
+
+/// "3 faces, 1 textures", or what to say of none.
+std::string counts_text(const KindCounts& counts) {
+  std::string text;
+  for (const auto& [kind, count] : counts) {
+    std::string words = kind;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
+  }
+  return text.empty() ? "none" : text;
+}
+
 }  // namespace
 
 std::string room_text(const Scene& scene, const MeshResult& meshed) {
@@ -193,10 +214,25 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
     repaired += fmt::format("{}{} {}", repaired.empty() ? "" : ", ", count, words);
   }
   text += fmt::format("repairs       {}\n", repaired.empty() ? "none" : repaired);
+  text += fmt::format("refused       {}\n", counts_text(scene.refused));
+  text += fmt::format("not modelled  {}\n", counts_text(scene.not_modelled));
   text += '\n' + materials_text(scene) + '\n' + surfaces_text(scene, meshed.report) + '\n' +
           luminaires_text(scene, meshed.report) + '\n' + cameras_text(scene);
   for (const std::string& note : scene.notes) text += "note: " + note + '\n';
   return text;
+}
+
+Json refused_room_json(const std::vector<std::filesystem::path>& files, const std::string& message) {
+  const std::size_t end = message.find('\n');
+  const std::size_t advice = end == std::string::npos ? end : message.find_first_not_of(' ', end + 1);
+  Json json{{"kind", "refused"},
+            {"files", Json::array()},
+            {"refused", counts_json({{"rooms", 1}})},
+            {"not_modelled", counts_json({})},
+            {"error", message.substr(0, end)},
+            {"advice", advice == std::string::npos ? "" : message.substr(advice)}};
+  for (const std::filesystem::path& file : files) json["files"].push_back(file.string());
+  return json;
 }
 
 Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<std::string>& light_warnings) {
@@ -250,6 +286,8 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
                                {"width_px", camera.width},
                                {"height_px", camera.height}});
   }
+  json["refused"] = counts_json(scene.refused);
+  json["not_modelled"] = counts_json(scene.not_modelled);
   json["warnings"] = scene.warnings;
   for (const std::string& warning : meshed.report.warnings) json["warnings"].push_back(warning);
   for (const std::string& warning : light_warnings) json["warnings"].push_back(warning);

@@ -1,6 +1,7 @@
 #include "viewer_export/cli/solution_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "viewer_export/cli/error_text.h"
@@ -40,6 +41,7 @@ Json record_json(const Solution& solution) {
             {"balanced", solution.audit.balanced()},
             {"bands", solution.bands.names()},
             {"room", solution.room_path},
+            {"room_files", room_files(solution)},
             {"room_hash", solution.room_hash}};
   add_zones(json, record.gather_bias);
   return json;
@@ -129,7 +131,7 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
   const SolveRecord& record = solution.record;
   std::string text =
       fmt::format("{}: solution, written by reemit {}\n", file.string(), solution.program_version);
-  text += fmt::format("room      {} ({})\n", solution.room_path, room_status);
+  text += fmt::format("room      {} ({})\n", fmt::join(room_files(solution), " + "), room_status);
   text += fmt::format("hash      {}\n", solution.room_hash);
   text += fmt::format("bands     {} ({})\n", fmt::join(solution.bands.names(), " "),
                       solution.bands.efficacy_statement());

@@ -35,7 +35,7 @@ constexpr double kDefaultErrorTarget = 0.02;
 constexpr int kMatrixZoneCount = 2000;
 
 struct SolveOptions {
-  std::filesystem::path room;
+  std::vector<std::filesystem::path> room;
   std::filesystem::path output;
   ReadOptions read;
   MeshSettings mesh;
@@ -85,7 +85,7 @@ void check_solution_output(const std::filesystem::path& output, const std::files
 ExitCode run_solve(const SolveOptions& options) {
   const bool matrix = options.solver.method == SolveMethod::kMatrix;
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
-  check_solution_output(options.output, options.room);
+  for (const std::filesystem::path& file : options.room) check_solution_output(options.output, file);
   const Scene scene = read_scene(options.room, options.read);
   if (!options.style.quiet) {
     print_warnings(scene.warnings);
@@ -111,7 +111,12 @@ ExitCode run_solve(const SolveOptions& options) {
   Solution solution = solve(scene, std::move(meshed), settings, progress_callback(progress, settings.method),
                             interrupt.requested());
   progress.finish();
-  solution.room_path = std::filesystem::absolute(options.room).lexically_normal().string();
+  const auto stored = [](const std::filesystem::path& file) {
+    return std::filesystem::absolute(file).lexically_normal().string();
+  };
+  solution.room_path = stored(options.room.front());
+  for (std::size_t i = 1; i < options.room.size(); ++i)
+    solution.more_room_paths.push_back(stored(options.room[i]));
   solution.read_options = options.read;
   solution.mesh_settings = mesh_settings;
   write_output([&] { save_solution(solution, options.output); });
@@ -145,8 +150,12 @@ void add_solve_command(CLI::App& program, Action& action) {
       "at once.\n"
       "Examples:\n"
       "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
+      "  reemit solve materials.mgf room.mgf lamps.mgf -o office.h5\n"
       "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7");
-  solve.add_option("room", options->room, "Room file: .json .obj .gltf .glb .mgf")
+  solve
+      .add_option("room", options->room,
+                  "Room file: .json .obj .gltf .glb .mgf; several .mgf files are read in order\n"
+                  "as one room")
       ->required()
       ->type_name("ROOM");
   solve

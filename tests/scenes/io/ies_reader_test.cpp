@@ -39,7 +39,7 @@ Vec3 type_c(double gamma_deg, double c_deg) {
 
 class IesReader : public ::testing::Test {
  protected:
-  IesLuminaire read(const std::string& text) { return read_ies_file(folder_.write("lamp.ies", text)); }
+  MeasuredLuminaire read(const std::string& text) { return read_ies_file(folder_.write("lamp.ies", text)); }
   std::string refusal(const std::string& text) {
     try {
       read(text);
@@ -56,7 +56,7 @@ class IesReader : public ::testing::Test {
 };
 
 TEST_F(IesReader, ReadsNameFactorsAndOpening) {
-  const IesLuminaire l = read(kGood);
+  const MeasuredLuminaire l = read(kGood);
   EXPECT_EQ(l.name, "A lamp");
   EXPECT_THAT(l.warnings, IsEmpty());
   // Candela multiplier 2 and ballast factor 0.5, each once.
@@ -70,7 +70,7 @@ TEST_F(IesReader, ReadsNameFactorsAndOpening) {
 }
 
 TEST_F(IesReader, ClosedFormsOfTheValidationTables) {
-  const IesLuminaire axial = read_ies_file(source("axial.ies"));
+  const MeasuredLuminaire axial = read_ies_file(source("axial.ies"));
   EXPECT_EQ(axial.name, "axial");
   EXPECT_EQ(axial.opening.shape, LuminousOpening::Shape::kPoint);
   EXPECT_EQ(axial.lamp_lumens, 0) << "absolute photometry";
@@ -87,7 +87,7 @@ TEST_F(IesReader, ClosedFormsOfTheValidationTables) {
       EXPECT_NEAR(
           illuminance(*axial.table, radii[i] * std::cos(turn), radii[i] * std::sin(turn), 2.5) / e_axial[i],
           1, 1e-12);
-  const IesLuminaire planes = read_ies_file(source("planes.ies"));
+  const MeasuredLuminaire planes = read_ies_file(source("planes.ies"));
   EXPECT_NEAR(planes.table->total_flux(), 2508.47521269804, 1e-9);
   const double points[][3] = {{0, 0, 88.88888888888889},   {1, 0, 72.99077339921196},
                               {0, 1, 78.22652091720406},   {1, 1, 65.483944007406},
@@ -106,7 +106,7 @@ TEST_F(IesReader, AllEditionsAndLineEnds) {
   EXPECT_EQ(read(crlf).name, "A lamp");
   for (const char* header : {"IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019", "IESNA86"})
     EXPECT_EQ(read(replaced(kGood, "IESNA:LM-63-2002", header)).table->total_flux(), flux) << header;
-  const IesLuminaire old =
+  const MeasuredLuminaire old =
       read(replaced(kGood, "IESNA:LM-63-2002\n[TEST] 1\n[LUMINAIRE] A lamp", "Acme\nA lamp"));
   EXPECT_EQ(old.table->total_flux(), flux);
   EXPECT_EQ(old.name, "Acme");
@@ -120,31 +120,31 @@ TEST_F(IesReader, TheSecondFactorCountsInOldEditionsOnly) {
   const std::string text = replaced(kGood, "0.5 1.0 40", "0.5 0.25 40");
   EXPECT_NEAR(read(replaced(text, "IESNA:LM-63-2002", "IESNA91")).table->total_flux(), flux / 4, 1e-12);
   EXPECT_EQ(read(replaced(text, "IESNA:LM-63-2002", "IES:LM-63-2019")).table->total_flux(), flux);
-  const IesLuminaire l = read(text);
+  const MeasuredLuminaire l = read(text);
   EXPECT_EQ(l.table->total_flux(), flux);
   ASSERT_THAT(l.warnings, SizeIs(1));
   EXPECT_THAT(l.warnings[0], HasSubstr("lamp.ies:6"));
 }
 
 TEST_F(IesReader, Symmetries) {
-  const auto at = [](const IesLuminaire& l, double c) { return l.table->intensity(type_c(45, c)); };
+  const auto at = [](const MeasuredLuminaire& l, double c) { return l.table->intensity(type_c(45, c)); };
   const auto with = [&](const std::string& angles, const std::string& rows) {
     const auto count = std::count(angles.begin(), angles.end(), ' ') + 1;
     return read("IESNA91\nTILT=NONE\n1 -1 1 3 " + std::to_string(count) + " 1 2 0 0 0\n1 1 0\n0 45 90\n" +
                 angles + "\n" + rows);
   };
-  const IesLuminaire quadrant = with("0 45 90", "9 1 0 9 2 0 9 4 0");
+  const MeasuredLuminaire quadrant = with("0 45 90", "9 1 0 9 2 0 9 4 0");
   for (const double c : {22.5, 157.5, 202.5, 337.5, -22.5}) EXPECT_NEAR(at(quadrant, c), 1.5, 1e-12) << c;
-  const IesLuminaire half = with("0 90 180", "9 1 0 9 2 0 9 4 0");
+  const MeasuredLuminaire half = with("0 90 180", "9 1 0 9 2 0 9 4 0");
   for (const double c : {135.0, 225.0}) EXPECT_NEAR(at(half, c), 3, 1e-12) << c;
   for (const double c : {45.0, 315.0}) EXPECT_NEAR(at(half, c), 1.5, 1e-12) << c;
-  const IesLuminaire across = with("90 180 270", "9 1 0 9 2 0 9 4 0");
+  const MeasuredLuminaire across = with("90 180 270", "9 1 0 9 2 0 9 4 0");
   for (const double c : {180.0, 0.0, 360.0}) EXPECT_NEAR(at(across, c), 2, 1e-12) << c;
   for (const double c : {225.0, 315.0}) EXPECT_NEAR(at(across, c), 3, 1e-12) << c;
-  const IesLuminaire all = with("0 90 180 360", "9 1 0 9 2 0 9 4 0 9 1 0");
+  const MeasuredLuminaire all = with("0 90 180 360", "9 1 0 9 2 0 9 4 0 9 1 0");
   EXPECT_NEAR(at(all, 270), 2.5, 1e-12);
   EXPECT_NEAR(at(with("0", "9 1 0"), 123), 1, 1e-12);
-  const IesLuminaire open = with("0 90 180 270", "9 1 0 9 2 0 9 4 0 9 3 0");
+  const MeasuredLuminaire open = with("0 90 180 270", "9 1 0 9 2 0 9 4 0 9 3 0");
   EXPECT_NEAR(at(open, 315), 2, 1e-12);
   EXPECT_THAT(open.warnings, SizeIs(1));
 }
@@ -158,7 +158,7 @@ TEST_F(IesReader, TypesAAndB) {
                 " 2 0 0 0\n1 1 0\n-90 0 90\n" + horizontal + "\n" + rows);
   };
   // Type A: the beam (0, 0) is x, positive horizontal angles are clockwise seen from above.
-  const IesLuminaire a = table(3, "-90 0 90");
+  const MeasuredLuminaire a = table(3, "-90 0 90");
   EXPECT_NEAR(a.table->intensity({1, 0, 0}), 10, 1e-12);
   EXPECT_EQ(a.table->intensity({-1, 0, 0}), 0);
   const double s = std::sqrt(0.5);
@@ -166,7 +166,7 @@ TEST_F(IesReader, TypesAAndB) {
   EXPECT_NEAR(a.table->intensity({s * s, s * s, -s}), 5.75, 1e-12);
   EXPECT_NEAR(table(3, "0 90").table->intensity({s * s, s * s, -s}), 5.75, 1e-12) << "mirrored";
   // Type B: (0, 0) is the nadir, vertical 90 is x; latitudes run to -y.
-  const IesLuminaire b = table(2, "-90 0 90");
+  const MeasuredLuminaire b = table(2, "-90 0 90");
   EXPECT_NEAR(b.table->intensity({0, 0, -1}), 10, 1e-12);
   EXPECT_NEAR(b.table->intensity({-s, 0, -s}), 6, 1e-12);              // vertical -45
   EXPECT_NEAR(b.table->intensity({-s * s, -s, -s * s}), 6.25, 1e-12);  // horizontal 45
@@ -188,11 +188,11 @@ TEST_F(IesReader, TypesAAndB) {
 TEST_F(IesReader, TiltDataAreReadAndTheUprightFactorTaken) {
   const double flux = read(kGood).table->total_flux();
   const std::string tilt = "TILT=INCLUDE\n1\n3\n0 45 90\n0.5 0.9 0.8";
-  const IesLuminaire l = read(replaced(kGood, "TILT=NONE", tilt));
+  const MeasuredLuminaire l = read(replaced(kGood, "TILT=NONE", tilt));
   EXPECT_NEAR(l.table->total_flux(), flux / 2, 1e-12);
   EXPECT_THAT(l.notes, SizeIs(1));
   folder_.write("lamp.tlt", "2 2 0 90\n1 1\n");
-  const IesLuminaire m = read(replaced(kGood, "TILT=NONE", "TILT=lamp.tlt"));
+  const MeasuredLuminaire m = read(replaced(kGood, "TILT=NONE", "TILT=lamp.tlt"));
   EXPECT_EQ(m.table->total_flux(), flux);
   EXPECT_THAT(m.notes, IsEmpty());
 }
@@ -229,7 +229,7 @@ TEST_F(IesReader, OpeningsBySign) {
   expect("IESNA:LM-63-2002", "-2 0 -4", Shape::kCylinder, Axis::kLength, 0, 2, 4);
   expect("IESNA:LM-63-1995", "-2 3 -2", Shape::kEllipsoid, Axis::kHeight, 3, 2, 2);
   expect("IESNA:LM-63-1995", "-2 0 -2", Shape::kEllipsoid, Axis::kHeight, 2, 2, 2);
-  const IesLuminaire odd = read(replaced(kGood, "0.5 0.25 0", "1 1 -1"));
+  const MeasuredLuminaire odd = read(replaced(kGood, "0.5 0.25 0", "1 1 -1"));
   EXPECT_THAT(odd.warnings, SizeIs(1));
 }
 
@@ -237,6 +237,37 @@ TEST_F(IesReader, WarnsOfMoreLightThanTheLampsGive) {
   EXPECT_THAT(read(replaced(kGood, "1 800 2.0", "1 100 2.0")).warnings, SizeIs(1));
   EXPECT_THAT(read(replaced(kGood, "1 800 2.0", "1 -1 2.0")).warnings, IsEmpty());
   EXPECT_THAT(read(replaced(kGood, "1 800 2.0", "1 1e6 2.0")).warnings, SizeIs(1));
+}
+
+TEST_F(IesReader, TextAfterTheLastValueIsLeft) {
+  const double flux = read(kGood).table->total_flux();
+  for (const char* rest : {"END\n", "\r\nEND", " 92.5  paint reflectance\n", "\n[MORE] 1\n2 3\n"}) {
+    const MeasuredLuminaire l = read(std::string(kGood) + rest);
+    EXPECT_EQ(l.table->total_flux(), flux) << rest;
+    ASSERT_THAT(l.warnings, SizeIs(1)) << rest;
+    EXPECT_THAT(l.warnings[0], HasSubstr("lamp.ies:1")) << rest;
+  }
+}
+
+TEST_F(IesReader, IsDarkOutsideOfAnglesThatCoverLess) {
+  // An uplight whose table begins a little below the horizon.
+  const MeasuredLuminaire up =
+      read(replaced(replaced(kGood, "1 800", "1 1200"), "0 45 90\n", "85 135 180\n"));
+  ASSERT_THAT(up.warnings, SizeIs(1));
+  EXPECT_THAT(up.warnings[0], HasSubstr("from 85 to 180 degrees only"));
+  EXPECT_NEAR(up.table->intensity(type_c(85, 0)), 100, 1e-9);
+  EXPECT_NEAR(up.table->intensity(type_c(135, 90)), 60, 1e-9);
+  EXPECT_EQ(up.table->intensity(type_c(84, 0)), 0);
+  const MeasuredLuminaire spot = read(replaced(kGood, "0 45 90\n", "0 10 25\n"));
+  EXPECT_EQ(spot.table->intensity(type_c(26, 0)), 0);
+  EXPECT_THAT(spot.warnings, SizeIs(1));
+  // Floodlights of type B are measured around their beam only.
+  const std::string flood =
+      replaced(replaced(kGood, "3 2 1 2", "3 2 2 2"), "0 45 90\n0 90", "-30 0 30\n-20 20");
+  const MeasuredLuminaire b = read(flood);
+  EXPECT_THAT(b.warnings, SizeIs(1));
+  EXPECT_NEAR(b.table->intensity({0, 0, -1}), 70, 1e-9);
+  EXPECT_EQ(b.table->intensity({0, std::sin(21 * pi / 180), -std::cos(21 * pi / 180)}), 0);
 }
 
 TEST_F(IesReader, RefusesBrokenFiles) {
@@ -262,17 +293,19 @@ TEST_F(IesReader, RefusesBrokenFiles) {
       {"3 2 1 2", "3 2 4 2", "lamp.ies:5", "photometric type is 4"},
       {"3 2 1 2", "3 2 1 0", "lamp.ies:5", "units type is 0"},
       {"3 2 1 2", "4 2 1 2", "lamp.ies:8", "do not increase"},
-      {"3 2 1 2", "2 2 1 2", "lamp.ies:7", "0 to 45"},
+      {"3 2 1 2", "2 2 1 2", "lamp.ies:8", "do not increase"},
       {"0.5 1.0 40", "0 1.0 40", "lamp.ies:6", "ballast factor is 0"},
       {"0.5 1.0 40", "0.5 1.0 -40", "lamp.ies:6", "watts"},
       {"0 45 90\n", "0 90 45\n", "lamp.ies:7", "do not increase"},
-      {"0 45 90\n", "10 45 90\n", "lamp.ies:7", "10 to 90"},
+      {"0 45 90\n", "-10 45 90\n", "lamp.ies:7", "-10 to 90"},
+      {"0 45 90\n", "0 45 190\n", "lamp.ies:7", "0 to 190"},
       {"\n0 90\n", "\n0 80\n", "lamp.ies:8", "0 to 80"},
       {"\n0 90\n", "\n90 180\n", "lamp.ies:8", "90 to 180"},
       {"100 60 20", "100 60", "lamp.ies:10", "number 6 of 6 candela"},
       {"100 60 20", "100 -60 20", "lamp.ies:10", "negative"},
       {"100 60 20", "100 inf 20", "lamp.ies:10", "'inf'"},
-      {"100 60 20", "100 60 20 7", "lamp.ies:10", "after the last value"},
+      {"100 60 20", "100 60 20 7", "lamp.ies:10", "'7' comes after the last value"},
+      {"100 60 20\n", "100 60 20\n7 8\nEND\n", "lamp.ies:11", "'7 8' comes after the last value"},
       {"100 80 0\n100 60 20", "0 0 0\n0 0 0", "lamp.ies:10", "gives no light"},
       {"100 60 20", "100 1.7e308 20", "lamp.ies:10", "no number"},
   };
@@ -301,7 +334,7 @@ TEST_F(IesReader, CutAnywhereItIsRefusedOrRead) {
 
 TEST_F(IesReader, LibraryReadsEachFileOnce) {
   const auto file = folder_.write("a.ies", replaced(kGood, "1 800 2.0", "1 100 2.0"));
-  IesLibrary library;
+  LuminaireLibrary library;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;
   const auto* first = library.load(file, warnings, notes).table.get();

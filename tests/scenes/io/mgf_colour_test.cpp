@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/io/mgf_material.h"
+#include "scenes/model/cie_1931.h"
 #include "scenes/model/colour.h"
 
 namespace reemit {
@@ -23,7 +24,9 @@ TEST(MgfColour, SpectraHaveTheirChromaticity) {
   // Half the range is dark: only the red end is left.
   const MgfColour red = colour_of_spectrum(580, 780, std::vector<double>{0, 1, 1, 1});
   EXPECT_GT(red.x, 0.6);
-  EXPECT_FALSE(is_valid_chromaticity(colour_of_spectrum(900, 1000, flat).x, 0.3));
+  const MgfColour infrared = colour_of_spectrum(900, 1000, flat);
+  EXPECT_EQ(infrared, (MgfColour{0, 0}));
+  EXPECT_FALSE(is_valid_chromaticity(infrared.x, infrared.y));
 }
 
 TEST(MgfColour, BlackBodiesLieOnThePlanckianLocus) {
@@ -39,6 +42,37 @@ TEST(MgfColour, MixingWeighsByLuminance) {
   expect_near(mix_colours(parts), 1.0 / 3, 1.0 / 3, 2e-3);
   const std::vector<std::pair<double, MgfColour>> same = {{3, green}, {5, green}};
   expect_near(mix_colours(same), green.x, green.y, 1e-12);
+}
+
+// The spectrum of daylight is a mean and two components with negative values [CIE04]; a mixture by luminance
+// of their colours, two of which no light has, is D65.
+TEST(MgfColour, DaylightIsMixedFromItsComponents) {
+  const double from = 380, to = 780;
+  const std::vector<double> mean = {
+      63.4,  65.8,  94.8,  104.8, 105.9, 96.8, 113.9, 125.6, 125.5, 121.3, 121.3, 113.5, 113.1, 110.8,
+      106.5, 108.8, 105.3, 104.4, 100,   96,   95.1,  89.1,  90.5,  90.3,  88.4,  84,    85.1,  81.9,
+      82.6,  84.9,  81.3,  71.9,  74.3,  76.4, 63.3,  71.7,  77,    65.2,  47.7,  68.6,  65};
+  const std::vector<double> first = {
+      38.5, 35,  43.4,  46.3, 43.9,  37.1,  36.7,  35.9,  32.6,  27.9,  24.3, 20.1,  16.2,  13.2,
+      8.6,  6.1, 4.2,   1.9,  0,     -1.6,  -3.5,  -3.5,  -5.8,  -7.2,  -8.6, -9.5,  -10.9, -10.7,
+      -12,  -14, -13.6, -12,  -13.3, -12.9, -10.6, -11.6, -12.2, -10.2, -7.8, -11.2, -10.4};
+  const std::vector<double> second = {3,    1.2,  -1.1, -0.5, -0.7, -1.2, -2.6, -2.9, -2.8, -2.6, -2.6,
+                                      -1.8, -1.5, -1.3, -1.2, -1,   -0.5, -0.3, 0,    0.2,  0.5,  2.1,
+                                      3.2,  4.1,  4.7,  5.1,  6.7,  7.3,  8.6,  9.8,  10.2, 8.3,  9.6,
+                                      8.5,  7,    7.6,  8,    6.7,  5.2,  7.4,  6.8};
+  const auto luminance = [&](const std::vector<double>& samples) {
+    double sum = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      sum += samples[i] * cie_1931(from + 10.0 * static_cast<double>(i)).y();
+    return sum;
+  };
+  const MgfColour red_green = colour_of_spectrum(from, to, second);
+  EXPECT_FALSE(is_valid_chromaticity(red_green.x, red_green.y));
+  const std::vector<std::pair<double, MgfColour>> parts = {
+      {luminance(mean), colour_of_spectrum(from, to, mean)},
+      {-0.295 * luminance(first), colour_of_spectrum(from, to, first)},
+      {-0.689 * luminance(second), red_green}};
+  expect_near(mix_colours(parts), 0.3127, 0.3290, 5e-4);
 }
 
 TEST(MgfColour, ChromaticityLimits) {

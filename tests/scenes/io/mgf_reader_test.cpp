@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -255,11 +256,9 @@ TEST_F(MgfReader, NamesFileAndLineOfEveryMistake) {
                           "ir 1.5",
                           "sides 3",
                           "cxy 0.3",
-                          "cxy 0.3 0",
                           "cct 3",
                           "cspec 400 700 1",
                           "cspec 700 400 1 1",
-                          "cspec 400 700 0 0",
                           "cmix 1",
                           "cmix 1 nobody",
                           "cmix 1 a 2",
@@ -283,6 +282,37 @@ TEST_F(MgfReader, NamesFileAndLineOfEveryMistake) {
     else
       EXPECT_THAT(message, HasSubstr("room.mgf:9: ")) << bad;
   }
+}
+
+TEST_F(MgfReader, ColoursAreJudgedWhenAFaceUsesThem) {
+  // A library of colours as it is distributed, with ones that no light has, among them parts of daylight.
+  folder_.write("lights.mgf",
+                "c flame =\ncxy 0.4 0\nc dark =\ncspec 400 700 0 0\nc part =\ncspec 400 700 3 0 -1 -9\n"
+                "c infrared =\ncspec 900 1000 1 1\nc red =\ncxy 0.735 0.266\n"
+                "m of_flame =\nc flame\nrd 0.5\nm black =\nc dark\nrd 0\ned 0\n");
+  const std::string library = "i lights.mgf\n" + kSquare;
+  EXPECT_EQ(test::face_count(read(library + "m black\nf a b c\nm fine =\nc red\nrd 0.2\nf a b c\n")), 2U);
+  for (const auto& [use, given] :
+       {std::pair("m of_flame\nf a b c\n", "lights.mgf:2"),
+        std::pair("c dark\ned 9\nf a b c\n", "lights.mgf:4"),
+        std::pair("m m =\nc infrared\nrs 0.1 0\nsph a 1\n", "lights.mgf:8"),
+        std::pair("m m =\nc\ncmix 1 flame 1 red\ntd 1\nf a b c\n", "room.mgf:12")}) {
+    const std::string message = refusal(library + use);
+    EXPECT_THAT(message, HasSubstr("room.mgf:1")) << use;
+    EXPECT_THAT(message, HasSubstr(given)) << use;
+  }
+}
+
+TEST_F(MgfReader, StopsIncludesThatMultiply) {
+  folder_.write("f0.mgf", "c x =\n");
+  for (int i = 1; i <= 7; ++i) {
+    std::ostringstream text;
+    for (int k = 0; k < 10; ++k) text << "i f" << i - 1 << ".mgf\n";
+    folder_.write(std::string("f").append(std::to_string(i)).append(".mgf"), text.str());
+  }
+  const std::string message = refusal("i f7.mgf\n");
+  EXPECT_THAT(message, HasSubstr("files are included"));
+  EXPECT_THAT(message, HasSubstr("room.mgf -> f7.mgf -> f6.mgf"));
 }
 
 TEST_F(MgfReader, StopsRunawayArrays) {

@@ -40,6 +40,34 @@ TEST(SceneReader, ForcesTwoSidesWhenAsked) {
   EXPECT_TRUE(read_scene(file, {EmissiveUnits::kCandela, true}).materials.at(0).two_sided);
 }
 
+TEST(SceneReader, SeveralMgfFilesAreOneRoom) {
+  const test::TempFolder folder;
+  const std::vector<std::filesystem::path> files = {
+      folder.write("materials.mgf", "m paint =\nrd 0.25\nv a =\np 0 0 0\nxf -t 0 0 9\n"),
+      folder.write("room.mgf", "v b =\np 1 0 0\nv c =\np 1 1 0\nm paint\nf a b c\n"),
+      folder.write("lamps.mgf", "m lamp =\ned 100\nf a b c\n")};
+  const Scene scene = read_scene(files);
+  ASSERT_EQ(scene.surfaces.size(), 2U);
+  EXPECT_EQ(scene.material_of(scene.surfaces[0]).reflectance[0], 0.25);
+  EXPECT_EQ(bounds(scene).max.z(), 0) << "transforms end with their file";
+  EXPECT_EQ(scene.name, "materials+room+lamps");
+  EXPECT_THAT(scene.source, AllOf(HasSubstr("materials.mgf + "), HasSubstr("lamps.mgf")));
+  const std::string whole =
+      test::read_bytes(files[0]) + "xf\n" + test::read_bytes(files[1]) + test::read_bytes(files[2]);
+  EXPECT_EQ(content_hash(scene), content_hash(read_scene(folder.write("whole.mgf", whole))));
+
+  for (const std::vector<std::filesystem::path>& mixed :
+       {std::vector{files[1], folder.write("chair.obj", "x")},
+        std::vector{folder.write("a.json", "x"), files[1]}}) {
+    try {
+      read_scene(mixed);
+      ADD_FAILURE() << "was read";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("only MGF files can"), HasSubstr("JSON room")));
+    }
+  }
+}
+
 TEST(SceneReader, RefusesWhatIsNoRoomFile) {
   const test::TempFolder folder;
   EXPECT_THAT(refusal(folder / "nothing.mgf"), HasSubstr("no such file"));

@@ -44,10 +44,30 @@ TEST_F(RoomOfSolution, IsFoundBesideTheSolution) {
 
 TEST_F(RoomOfSolution, IsTakenFromWhereTheUserSays) {
   std::filesystem::rename(folder_ / "room.json", folder_ / "other.json");
-  EXPECT_EQ(read_room_of(solution_, file_, folder_ / "other.json").surfaces.size(),
+  EXPECT_EQ(read_room_of(solution_, file_, {folder_ / "other.json"}).surfaces.size(),
             solution_.surface_names.size());
-  EXPECT_THAT([&] { read_room_of(solution_, file_, folder_ / "none.json"); },
+  EXPECT_THAT([&] { read_room_of(solution_, file_, {folder_ / "none.json"}); },
               ThrowsMessage<InputError>(HasSubstr("no such room file")));
+}
+
+TEST_F(RoomOfSolution, OfSeveralFilesIsFoundBesideTheSolutionOrByTheirNames) {
+  const std::vector<std::filesystem::path> files = {
+      folder_.write("materials.mgf", "m paint =\nrd 0.25\n"),
+      folder_.write("room.mgf", "v a =\np 0 0 0\nv b =\np 1 0 0\nv c =\np 1 1 0\nm paint\nf a b c\n")};
+  const Scene scene = read_scene(files);
+  solution_.room_path = files[0].string();
+  solution_.more_room_paths = {files[1].string()};
+  solution_.room_hash = content_hash(scene);
+  solution_.bands = scene.bands;
+  keep_surfaces(scene, solution_);
+  solution_.mesh = build_mesh(scene).mesh;
+  EXPECT_EQ(read_room_of(solution_, file_).surfaces.size(), 1U);
+  std::filesystem::rename(files[1], folder_ / "moved/room.mgf");
+  EXPECT_THAT(read_room_of(solution_, file_).source, HasSubstr("moved/room.mgf"));
+  std::filesystem::rename(folder_ / "moved/room.mgf", folder_ / "other.mgf");
+  EXPECT_THAT([&] { read_room_of(solution_, file_); }, ThrowsMessage<InputError>(HasSubstr("room.mgf")));
+  EXPECT_THAT(read_room_of(solution_, file_, {files[0], folder_ / "other.mgf"}).source,
+              HasSubstr("other.mgf"));
 }
 
 TEST_F(RoomOfSolution, IsMissedWithAdvice) {

@@ -14,6 +14,7 @@ inline Solution sample_solution(const BandSet& bands) {
   Solution s;
   s.program_version = "1.2.3";
   s.room_path = "/rooms/kitchen – north.json";
+  s.more_room_paths = {"/rooms/lamps.mgf", "/rooms/chairs\n2.mgf"};
   s.room_hash = "0123456789abcdef";
   s.read_options = {EmissiveUnits::kWatt, true, 683.5};
   s.mesh_settings.zone_area = 0.125;

@@ -27,6 +27,7 @@ using testing::ThrowsMessage;
 void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.program_version, b.program_version);
   EXPECT_EQ(a.room_path, b.room_path);
+  EXPECT_EQ(a.more_room_paths, b.more_room_paths);
   EXPECT_EQ(a.room_hash, b.room_hash);
   EXPECT_EQ(a.read_options, b.read_options);
   EXPECT_EQ(a.mesh_settings.zone_area, b.mesh_settings.zone_area);

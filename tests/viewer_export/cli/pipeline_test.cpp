@@ -213,6 +213,55 @@ TEST_F(Pipeline, InfoOfASolution) {
   EXPECT_THAT(output_of({"info", path("room.h5")}), HasSubstr("seed 77"));
 }
 
+TEST_F(Pipeline, SeveralMgfFilesAreOneRoomForAllCommands) {
+  std::filesystem::create_directory(folder_ / "moved");
+  folder_.write("materials.mgf", "m paint =\nrd 0.5\nm lamp =\nsides 1\ned 1000\n");
+  folder_.write("room.mgf",
+                "v a =\np 0 0 0\nv b =\np 2 0 0\nv c =\np 2 2 0\nv d =\np 0 2 0\nm paint\nprism a b c d 2\n");
+  folder_.write("lamps.mgf", "m lamp\nv e =\np 1 1 1\nsph e 0.2\n");
+  const std::vector<std::string> files = {path("materials.mgf"), path("room.mgf"), path("lamps.mgf")};
+  const json room = json::parse(output_of({"info", files[0], files[1], files[2], "--json"}));
+  EXPECT_EQ(room["surfaces"].size(), 2U);
+  output_of({"solve", files[0], files[1], files[2], "-o", path("room.h5"), "--packets", "2000", "--zone-area",
+             "1", "--quiet"});
+  EXPECT_EQ(json::parse(output_of({"info", path("room.h5"), "--json"}))["room_files"].size(), 3U);
+  for (const char* name : {"room.mgf", "lamps.mgf"})
+    std::filesystem::rename(folder_ / name, folder_ / ("moved/" + std::string(name)));
+  const ProgramRun lost = run_reemit({"export", path("room.h5"), "-o", path("a.csv"), "--values", "zones"});
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_THAT(lost.err, HasSubstr("--room"));
+  output_of({"export", path("room.h5"), "-o", path("a.csv"), "--values", "zones", "--room", files[0],
+             "--room", path("moved/room.mgf"), "--room", path("moved/lamps.mgf")});
+  EXPECT_EQ(run_reemit({"info", path("room.h5"), files[0]}).exit_code, 2);
+}
+
+TEST_F(Pipeline, InfoTellsWhatIsRefusedAndWhatIsNotModelled) {
+  folder_.write("glass.mtl",
+                "newmtl glass\nKd 1 1 1\nd 0.1\nmap_bump b.png\nnewmtl mirror\nKd 1 1 1\nillum 5\n");
+  const std::string obj =
+      "mtllib glass.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2\nusemtl glass\nf 1 2 3\nusemtl mirror\n"
+      "f 1 3 4\nusemtl gone\nf 4 3 2\nf 1 1 1\n";
+  folder_.write("glass.obj", obj);
+  const json room = json::parse(output_of({"info", path("glass.obj"), "--json"}));
+  EXPECT_EQ(room["refused"],
+            json::parse(R"({"count": 3, "kinds": {"faces": 1, "materials": 1, "statements": 1}})"));
+  EXPECT_EQ(room["not_modelled"],
+            json::parse(R"({"count": 3, "kinds": {"glass_and_mirrors_as_paint": 1, "other_maps": 1,
+                        "specular_transmittance": 1}})"));
+  EXPECT_THAT(output_of({"info", path("glass.obj")}),
+              HasSubstr("not modelled  1 glass and mirrors as paint"));
+  EXPECT_EQ(json::parse(output_of({"info", path("room.json"), "--json"}))["not_modelled"]["count"], 0);
+
+  folder_.write("bad.obj", obj + "f 1 2 99\n");
+  const ProgramRun refused = run_reemit({"info", path("bad.obj"), "--json"});
+  EXPECT_EQ(refused.exit_code, 2);
+  const json document = json::parse(refused.out);
+  EXPECT_EQ(document["kind"], "refused");
+  EXPECT_EQ(document["refused"]["count"], 1);
+  EXPECT_THAT(document["error"].get<std::string>(), HasSubstr("bad.obj:14: index 99 is out of range"));
+  EXPECT_EQ(document["advice"], "The file has 4.");
+}
+
 TEST_F(Pipeline, WarningsGoToStandardErrorAndQuietSilencesThem) {
   folder_.write("dark.json", replaced(small_json_room(), R"(, "exitance": [30, 25, 20])", ""));
   const std::vector<std::string> solve{"solve",         path("dark.json"), "-o",

@@ -1,0 +1,32 @@
+#include "scenes/io/measured_luminaire.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "scenes/io/eulumdat_reader.h"
+#include "scenes/io/ies_reader.h"
+
+namespace reemit {
+
+MeasuredLuminaire read_luminaire_file(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".ldt" ? read_eulumdat_file(file) : read_ies_file(file);
+}
+
+const MeasuredLuminaire& LuminaireLibrary::load(const std::filesystem::path& file,
+                                                std::vector<std::string>& warnings,
+                                                std::vector<std::string>& notes) {
+  std::error_code error;
+  std::filesystem::path key = std::filesystem::canonical(file, error);
+  if (error) key = file;
+  const auto known = files_.find(key);
+  if (known != files_.end()) return known->second;
+  const MeasuredLuminaire& loaded = files_.emplace(key, read_luminaire_file(file)).first->second;
+  warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
+  notes.insert(notes.end(), loaded.notes.begin(), loaded.notes.end());
+  return loaded;
+}
+
+}  // namespace reemit
