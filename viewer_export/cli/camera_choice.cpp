@@ -7,6 +7,7 @@
 
 #include "scenes/model/error.h"
 #include "viewer_export/still/default_cameras.h"
+#include "viewer_export/still/up_direction.h"
 
 namespace reemit::cli {
 namespace {
@@ -16,7 +17,7 @@ Camera camera_of_options(const CameraOptions& options, const Scene& scene) {
   camera.name = "view";
   camera.eye = *options.eye;
   camera.look_at = options.look_at.value();
-  camera.up = options.up.value_or(up_direction(scene));
+  camera.up = options.up.value_or(up_of_format(scene));
   const Vec3 forward = camera.look_at - camera.eye;
   if (!options.up && forward.cross(camera.up).norm() < 1e-6 * forward.norm()) {
     camera.up =
