@@ -34,4 +34,4 @@ done
 solve cornellBox_gltf "$rooms/gltf/cornell/cornellBox-2.80-Eevee-gltf.gltf"
 
 # shellcheck disable=SC2086 # names without spaces, on purpose several
-"$build/bench/bench_automatic_cameras" $set_of_solutions -o "$picture"
+"$build/bench/bench_automatic_cameras" $set_of_solutions --spp 4 -o "$picture"

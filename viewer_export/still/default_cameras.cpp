@@ -141,7 +141,7 @@ double score(const ViewContent& content, double enclosed) {
 
 /// Best views in turn; each further one by how much it shows that those before it do not.
 std::vector<View> choose_views(const std::vector<Panorama>& panoramas, const std::vector<Eye>& eyes,
-                               float median) {
+                               float width) {
   std::vector<View> chosen;
   std::unordered_set<std::uint64_t> known;
   while (chosen.size() < kMostCameras) {
@@ -149,7 +149,7 @@ std::vector<View> choose_views(const std::vector<Panorama>& panoramas, const std
     double highest = 0;
     for (std::size_t i = 0; i < panoramas.size(); ++i)
       for (int column = 0; column < Panorama::kColumns; column += kTurn) {
-        const ViewContent content = content_of(panoramas[i], column, kNear * median, known);
+        const ViewContent content = content_of(panoramas[i], column, kNear * width, known);
         const double value = score(content, eyes[i].enclosed) * content.novelty;
         if (value <= highest) continue;
         highest = value;

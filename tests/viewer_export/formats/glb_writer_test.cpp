@@ -151,7 +151,6 @@ TEST(GlbWriter, RoomsWithZUpAreTurnedByANode) {
   const Eigen::Quaterniond turn(root.rotation[3], root.rotation[0], root.rotation[1], root.rotation[2]);
   EXPECT_LT((turn * data.up - Vec3(0, 1, 0)).norm(), 1e-12);
   EXPECT_LT((turn * Vec3(1, 0, 0) - Vec3(1, 0, 0)).norm(), 1e-12);
-  expect_valid(folder / "z.glb");
 }
 
 TEST(GlbWriter, BacksDoNotLieInTheirFronts) {
@@ -186,6 +185,14 @@ TEST(GlbWriter, NothingToDrawIsAnError) {
 TEST(GlbWriter, SatisfiesTheKhronosValidatorInRgb) {
   const TempFolder folder;
   write_vertex_data(sample_vertices(BandSet::rgb()), folder / "a.glb");
+  expect_valid(folder / "a.glb");
+}
+
+TEST(GlbWriter, SatisfiesTheKhronosValidatorWithZUp) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::rgb());
+  data.up = Vec3(0, 0, 1);
+  write_vertex_data(data, folder / "a.glb");
   expect_valid(folder / "a.glb");
 }
 
