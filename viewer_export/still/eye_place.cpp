@@ -19,7 +19,8 @@ struct Sights {
   int all = 0;
   int nothing = 0;
   int lit = 0;
-  int backs = 0;  ///< Of one-sided faces: a camera looks through them.
+  int backs = 0;        ///< Of one-sided faces: a camera looks through them.
+  int from_behind = 0;  ///< Sides that are not the front, those included.
 
   void add(const RayScene& rays, const Solution& solution, const Scene& scene, const Vec3f& origin,
            const Vec3f& direction) {
@@ -29,6 +30,7 @@ struct Sights {
       ++nothing;
       return;
     }
+    if (!hit.front) ++from_behind;
     const BaseTriangle& triangle = rays.mesh().triangle(hit.triangle);
     if (!hit.front && !triangle.two_sided) {
       ++backs;
@@ -93,7 +95,10 @@ std::string eye_warning(const Camera& camera, const Scene& scene, const Solution
            "shown; move it inside for a view with all walls";
   if (outside)
     return "the eye is outside of the room and sees its outer sides, where no light comes; move it inside";
-  return "the eye is inside of a wall or a solid, where no light comes; move it into the room";
+  if (all.from_behind > kMostWrong * all.met())
+    return "the eye is inside of a wall or a solid, where no light comes; move it into the room";
+  return "no light comes to anything around the eye; it stands in a void or in a part of the room that the "
+         "luminaires do not reach";
 }
 
 }  // namespace reemit

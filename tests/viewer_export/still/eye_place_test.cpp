@@ -92,6 +92,22 @@ TEST(EyePlace, ARoomWithoutLightIsNoFaultOfTheCamera) {
   EXPECT_THAT(eye_warning(camera, room.scene(), solution, rays), IsEmpty());
 }
 
+TEST(EyePlace, AnUnlitRoomIsNotTakenForASolid) {
+  // Two rooms, fronts inside; light is in the first alone.
+  RoomBuilder room = room_of(two_sided, false);
+  const MaterialId m = room.material("wall", 0.5, 0, true);
+  room.box(Vec3(5, 0, 0), Vec3(9, 3, 5), {m, m, m, m, m, m}, 2);
+  Solution solution = lit_inside(room);
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    if (solution.mesh.zone_centroid(ZoneId(z)).x() > 4.5)
+      solution.sums.direct[z] = solution.sums.indirect[z] = 0;
+  const RayScene rays(solution.mesh);
+  Camera camera;
+  camera.eye = Vec3(7, 1.6, 4);
+  camera.look_at = Vec3(7, 1, 0);
+  EXPECT_THAT(eye_warning(camera, room.scene(), solution, rays), HasSubstr("luminaires do not reach"));
+}
+
 TEST(EyePlace, LookingAwayFromTheRoomIsSaid) {
   EXPECT_THAT(warning(room_of(one_sided, false), Vec3(2, 1.6, 60), Vec3(2, 1.6, 70)),
               HasSubstr("nothing of the room"));
