@@ -1,12 +1,15 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/model/error.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
@@ -20,6 +23,7 @@
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/text_table.h"
 #include "viewer_export/formats/export_table.h"
+#include "viewer_export/still/room_exposure.h"
 #include "viewer_export/vertex/vertex_radiance.h"
 
 namespace reemit::cli {
@@ -28,7 +32,7 @@ namespace {
 struct ExportOptions {
   std::filesystem::path solution;
   std::vector<std::filesystem::path> room;
-  std::filesystem::path output;
+  std::vector<std::filesystem::path> outputs;  ///< At least one; all hold the same values.
   VertexSettings vertex;
   bool form_factors = false;
   ToneMapSettings tone_map;
@@ -37,28 +41,51 @@ struct ExportOptions {
 
 void report(const ExportOptions& options, const VertexData& data, double seconds) {
   if (options.style.json) {
-    nlohmann::ordered_json json{
-        {"file", options.output.string()}, {"values", options.vertex.average_zones ? "zones" : "gather"},
-        {"vertices", data.vertex_count()}, {"triangles", data.triangles.size()},
-        {"error", known_error(data.info)}, {"seconds", seconds}};
+    auto files = nlohmann::ordered_json::array();
+    for (const std::filesystem::path& output : options.outputs) files.push_back(output.string());
+    nlohmann::ordered_json json{{"file", files.front()},
+                                {"files", files},
+                                {"values", options.vertex.average_zones ? "zones" : "gather"},
+                                {"vertices", data.vertex_count()},
+                                {"triangles", data.triangles.size()},
+                                {"error", known_error(data.info)},
+                                {"seconds", seconds}};
     add_zones(json, data.info.zones);
     print_json(json);
     return;
   }
-  print_result(fmt::format("{}: {} vertices, {} triangles, noise {}, zones {}, {:.2f} s\n",
-                           options.output.string(), data.vertex_count(), data.triangles.size(),
-                           percent_text(known_error(data.info)), zones_text(data.info.zones), seconds));
+  std::string names;
+  for (const std::filesystem::path& output : options.outputs)
+    names += (names.empty() ? "" : ", ") + output.string();
+  print_result(fmt::format("{}: {} vertices, {} triangles, noise {}, zones {}, {:.2f} s\n", names,
+                           data.vertex_count(), data.triangles.size(), percent_text(known_error(data.info)),
+                           zones_text(data.info.zones), seconds));
+}
+
+/// Refuses unknown formats, files that cannot be written and one file given twice before the work.
+void check_outputs(const ExportOptions& options) {
+  std::set<std::filesystem::path> seen;
+  for (const std::filesystem::path& output : options.outputs) {
+    export_format_of(output);
+    check_output_file(output, options.solution);
+    if (!seen.insert(std::filesystem::weakly_canonical(output)).second)
+      throw InputError(output.string(), "the same output is given twice", "give each file once");
+  }
 }
 
 ExitCode run_export(const ExportOptions& options) {
-  if (options.form_factors)
-    return export_form_factors(
-        {options.solution, options.output, options.vertex.seed, options.vertex.threads, options.style});
-  export_format_of(options.output);  // refuses an unknown one before the work
-  check_output_file(options.output, options.solution);
+  if (options.form_factors) {
+    if (options.outputs.size() > 1)
+      throw InputError("-o", fmt::format("{} files for form factors", options.outputs.size()),
+                       "give one file with --form-factors");
+    return export_form_factors({options.solution, options.outputs.front(), options.vertex.seed,
+                                options.vertex.threads, options.style});
+  }
+  check_outputs(options);
   const Solution solution = load_solution(options.solution);
   const Scene scene = read_room_of(solution, options.solution, options.room);
-  check_output_file(options.output, scene.source);  // a .glb may be the room
+  for (const std::filesystem::path& output : options.outputs)
+    check_output_file(output, scene.source);  // a .glb may be the room
   const RayScene rays(solution.mesh);
 
   const auto start = std::chrono::steady_clock::now();
@@ -68,8 +95,9 @@ ExitCode run_export(const ExportOptions& options) {
       scene, solution, rays, options.vertex, [&progress](double done) { progress.update(done); },
       interrupt.requested());
   progress.finish();
-  data.tone_map = options.tone_map;
-  write_output([&] { write_vertex_data(data, options.output); });
+  data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map);
+  for (const std::filesystem::path& output : options.outputs)
+    write_output([&] { write_vertex_data(data, output); });
 
   if (data.limited_by_zones && !options.style.quiet) {
     print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
@@ -84,7 +112,9 @@ ExitCode run_export(const ExportOptions& options) {
 }
 
 std::string output_help() {
-  std::string help = "File to write, the format by its extension:";
+  std::string help =
+      "File to write, the format by its extension; may be given again: all are written from one\n"
+      "gathering. Formats:";
   for (const ExportFormat& format : export_formats()) {
     help += fmt::format("\n{}  {}", format.extension, format.description);
   }
@@ -101,11 +131,15 @@ void add_export_command(CLI::App& program, Action& action) {
   command.footer(
       "Examples:\n"
       "  reemit export room.h5 -o room.ply\n"
+      "  reemit export room.h5 -o room.glb -o room.csv --error 1%\n"
       "  reemit export room.h5 -o room.csv --samples 1024\n"
       "  reemit export room.h5 -o quick.glb --values zones\n"
       "  reemit export room.h5 -o factors.csv --form-factors");
   command.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
-  command.add_option("-o,--output", options->output, output_help())->required()->type_name("FILE");
+  command.add_option("-o,--output", options->outputs, output_help())
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE");
   add_room_option(command, options->room);
 
   command.option_defaults()->group("Values");
@@ -135,7 +169,7 @@ void add_export_command(CLI::App& program, Action& action) {
   form_factors->excludes(
       add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
                         "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
-                        "(default: from the values)"));
+                        "(default: as stills of the room's cameras together)"));
 
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);

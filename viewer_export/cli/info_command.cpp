@@ -80,10 +80,7 @@ ExitCode show(const InfoOptions& options) {
     try {
       return show_room(options);
     } catch (const InputError& problem) {
-      // Names in the message may be in any encoding; they must not hide what is wrong.
-      if (options.style.json)
-        fmt::print("{}\n", refused_room_json(options.files, problem.what())
-                               .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      if (options.style.json) print_json(refused_room_json(options.files, problem.what()));
       throw;
     }
   }

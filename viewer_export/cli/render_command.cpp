@@ -25,6 +25,7 @@
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/still/eye_place.h"
 #include "viewer_export/still/image_file.h"
 #include "viewer_export/still/render_still.h"
 
@@ -91,6 +92,9 @@ class Renderer {
 
   void render(const Job& job) {
     const auto start = std::chrono::steady_clock::now();
+    const std::string badly_placed = eye_warning(job.camera, scene_, solution_, rays_);
+    if (!badly_placed.empty() && !options_.style.quiet)
+      print_warnings({fmt::format("camera '{}': {}", job.camera.name, badly_placed)});
     Progress progress("rendering " + job.camera.name,
                       progress_style(options_.style.quiet, options_.style.verbose));
     const auto on_progress = [&progress](const StillProgress& now) {

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
@@ -139,7 +141,10 @@ Json extras_of(const VertexData& data, const ToneMap& tone_map) {
   extras["exposure"] = tone_map.exposure();
   extras["exposure_ev"] = tone_map.exposure_ev();
   extras["white"] = tone_map.white();
-  extras["axes"] = "as in the room file";
+  const bool turned = data.up.z() > 0.5;
+  extras["axes"] = turned ? "in the meshes as in the room file, z up; the node above them turns z up to y up"
+                          : "as in the room file";
+  extras["backs"] = fmt::format("moved {:.3g} m off their fronts", back_gap(data));
   return extras;
 }
 
@@ -219,6 +224,12 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
   }
   Json roots = Json::array();
   for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
+  if (data.up.z() > 0.5) {  // glTF has y up
+    const double half = std::numbers::sqrt2 / 2;
+    nodes.push_back(
+        {{"name", "z up to y up"}, {"rotation", {-half, 0.0, 0.0, half}}, {"children", std::move(roots)}});
+    roots = Json::array({nodes.size() - 1});
+  }
   gltf["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
   gltf["nodes"] = std::move(nodes);
   gltf["meshes"] = std::move(meshes);
@@ -235,7 +246,8 @@ std::optional<ToneMap> write_glb(const VertexData& data, OutputFile& file) {
   const Vec3 origin = single_precision_origin(data);
   std::vector<Eigen::Vector3f> positions;
   positions.reserve(data.vertex_count());
-  for (const Vec3& p : data.positions) positions.push_back((p - origin).cast<float>());
+  for (const Vec3& p : positions_for_viewing(data, back_gap(data)))
+    positions.push_back((p - origin).cast<float>());
   const Layout layout = lay_out(data, positions);
   if (layout.parts.empty())
     throw InputError("glTF export", "the room has no triangle to draw", "Check the room with `reemit info`.");

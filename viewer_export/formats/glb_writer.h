@@ -8,9 +8,10 @@
 namespace reemit {
 
 /// Binary glTF 2.0: one mesh and node per surface, unlit, COLOR_0 tone-mapped, radiometric values in
-/// `_RADIANCE` and its companions. Specified in docs/export_formats.md. glTF allows no infinite or undefined
-/// number: those are written as the largest float and as 0. Throws InputError when nothing is left to draw or
-/// the file would exceed the 4 GiB of the format.
+/// `_RADIANCE` and its companions; a node turns rooms with z up, backs lie off their fronts. Specified in
+/// docs/export_formats.md. glTF allows no infinite or undefined number: those are written as the largest
+/// float and as 0. Throws InputError when nothing is left to draw or the file would exceed the 4 GiB of the
+/// format.
 std::optional<ToneMap> write_glb(const VertexData& data, OutputFile& file);
 
 }  // namespace reemit

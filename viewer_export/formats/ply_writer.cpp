@@ -12,10 +12,13 @@ namespace {
 
 constexpr const char* kRgbNames[] = {"r", "g", "b"};
 
-void write_header(const VertexData& data, const ToneMap& tone_map, bool double_positions, OutputFile& file) {
+void write_header(const VertexData& data, const ToneMap& tone_map, double gap, bool double_positions,
+                  OutputFile& file) {
   file.write("ply\nformat binary_little_endian 1.0\n");
   for (const auto& [name, value] : describe(data.info, data.bands))
     file.write(fmt::format("comment {}: {}\n", name, value));
+  file.write(fmt::format("comment up: +{}, axes as in the room file\n", data.up.z() > 0.5 ? 'z' : 'y'));
+  if (gap > 0) file.write(fmt::format("comment backs: moved {:.3g} m off their fronts\n", gap));
   file.write("comment quality: luminance [cd/m2]\n");
   file.write(fmt::format("comment red green blue: sRGB, {}\n", tone_map.statement()));
   if (data.bands.kind() != BandKind::kRgb)
@@ -52,7 +55,9 @@ std::optional<ToneMap> write_ply(const VertexData& data, OutputFile& file) {
     throw InputError("PLY export", "more than 2^31-1 vertices", "Write .csv, or solve with larger zones.");
   const VertexColours colours = colours_of(data);
   const bool double_positions = single_precision_origin(data) != Vec3::Zero();
-  write_header(data, colours.tone_map, double_positions, file);
+  const double gap = back_gap(data);
+  const std::vector<Vec3> positions = positions_for_viewing(data, gap);
+  write_header(data, colours.tone_map, gap, double_positions, file);
 
   const std::size_t bands = data.bands.count();
   const bool rgb_room = data.bands.kind() == BandKind::kRgb;
@@ -62,7 +67,7 @@ std::optional<ToneMap> write_ply(const VertexData& data, OutputFile& file) {
   };
   for (std::size_t v = 0; v < data.vertex_count(); ++v) {
     row.clear();
-    for (const double x : data.positions[v])
+    for (const double x : positions[v])
       double_positions ? append_bytes(row, x) : append_bytes(row, static_cast<float>(x));
     for (const double x : data.normals[v]) append_bytes(row, static_cast<float>(x));
     for (const double c : colours.displayable(v)) append_bytes(row, srgb_byte(c));

@@ -8,8 +8,9 @@
 namespace reemit {
 
 /// Binary little-endian PLY: geometry, tone-mapped 8-bit colours, luminance as `quality`, and all radiometric
-/// values as float properties. Specified in docs/export_formats.md. Positions are double instead of float in
-/// a room so far from 0 that float would lose them. Throws InputError for more than 2^31-1 vertices.
+/// values as float properties; backs lie off their fronts. Specified in docs/export_formats.md. Positions are
+/// double instead of float in a room so far from 0 that float would lose them. Throws InputError for more
+/// than 2^31-1 vertices.
 std::optional<ToneMap> write_ply(const VertexData& data, OutputFile& file);
 
 }  // namespace reemit

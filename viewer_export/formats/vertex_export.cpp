@@ -1,6 +1,23 @@
 #include "viewer_export/formats/vertex_export.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace reemit {
+namespace {
+
+/// Smallest and largest coordinates. Pre: there is a vertex.
+std::pair<Vec3, Vec3> box_of(const VertexData& data) {
+  Vec3 low = data.positions.front();
+  Vec3 high = low;
+  for (const Vec3& p : data.positions) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {low, high};
+}
+
+}  // namespace
 
 VertexColours colours_of(const VertexData& data) {
   std::vector<float> rgb;
@@ -9,18 +26,26 @@ VertexColours colours_of(const VertexData& data) {
     const Eigen::Array3d colour = data.rgb(data.radiance, v);
     for (const double c : colour) rgb.push_back(static_cast<float>(c));
   }
-  ToneMap tone_map = make_tone_map(rgb, data.tone_map);
-  return {std::move(rgb), tone_map};
+  return {std::move(rgb), data.tone_map};
+}
+
+double back_gap(const VertexData& data) {
+  constexpr double kShareOfDiagonal = 5e-5;
+  if (std::find(data.on_back.begin(), data.on_back.end(), true) == data.on_back.end()) return 0;
+  const auto [low, high] = box_of(data);
+  return kShareOfDiagonal * (high - low).norm();
+}
+
+std::vector<Vec3> positions_for_viewing(const VertexData& data, double gap) {
+  std::vector<Vec3> positions = data.positions;
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (data.on_back[v]) positions[v] += gap * data.normals[v];
+  return positions;
 }
 
 Vec3 single_precision_origin(const VertexData& data) {
   if (data.positions.empty()) return Vec3::Zero();
-  Vec3 low = data.positions.front();
-  Vec3 high = low;
-  for (const Vec3& p : data.positions) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const auto [low, high] = box_of(data);
   const double size = (high - low).norm();
   const double reach = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
   // Half a unit in the last place of a float is 6e-8 of the value.

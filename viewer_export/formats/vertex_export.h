@@ -19,7 +19,7 @@ void append_bytes(std::string& out, T value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Radiance in linear Rec.709 at every vertex, 3 values each [W/(m2 sr)], and the tone map that suits it.
+/// Radiance in linear Rec.709 at every vertex, 3 values each [W/(m2 sr)], and the tone map of the data.
 struct VertexColours {
   std::vector<float> rgb;
   ToneMap tone_map;
@@ -29,6 +29,13 @@ struct VertexColours {
   }
 };
 VertexColours colours_of(const VertexData& data);
+
+/// How far the backs of two-sided surfaces are moved off their fronts in files made for viewing [m]: 1/20,000
+/// of the room's diagonal; 0 if there are no backs. Front and back would lie in one place, and a program that
+/// draws both sides of every triangle, or traces rays, would show now one and now the other.
+double back_gap(const VertexData& data);
+/// Positions for viewing [m]: fronts as they are, backs moved along their normals by `gap`.
+std::vector<Vec3> positions_for_viewing(const VertexData& data, double gap);
 
 /// Origin for positions in single precision [m]: 0, or the centre of a room so far from 0 that float
 /// coordinates would lose more than a millionth of its size.

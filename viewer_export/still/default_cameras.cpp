@@ -1,233 +1,222 @@
 #include "viewer_export/still/default_cameras.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
-#include <limits>
+#include <map>
 #include <numbers>
+#include <optional>
+#include <tuple>
+#include <unordered_set>
 
 #include <fmt/format.h>
+
+#include "viewer_export/still/lit_space.h"
+#include "viewer_export/still/panorama.h"
+#include "viewer_export/still/up_direction.h"
 
 namespace reemit {
 namespace {
 
 using std::numbers::pi;
 
-constexpr int kSize = 640;                 // [px], width; the height is 3/4 of it
-constexpr double kFovDeg = 60;             // vertical
-constexpr int kGridSteps = 9;              // eyes along each horizontal side of the bounding box
-constexpr int kAzimuths = 24;              // directions of view tried from each eye
-constexpr int kSurroundRays = 96;          // rays that tell whether an eye stands in free space
-constexpr double kLeastClearance = 0.04;   // of the box diagonal: nothing is closer to an eye
-constexpr double kMostWrongSides = 0.005;  // share of surrounding rays that may meet backs of faces
-constexpr double kLeastEnclosed = 0.3;     // share of surrounding rays that must meet the room at all
+constexpr int kSize = 640;      // [px], width; the height is 3/4 of it
+constexpr double kFovDeg = 60;  // vertical
 constexpr std::size_t kMostCameras = 3;
-constexpr double kMostlyDown =
-    0.8;  // part of the emission that leaves downwards if luminaires tell which way is up
+constexpr std::size_t kPlaces = 1024;     // on the way of light, looked at for eyes
+constexpr std::size_t kMostEyes = 160;    // that look around
+constexpr int kSurroundRays = 48;         // rays that tell whether an eye stands in free space
+constexpr int kTurn = 2;                  // columns of a panorama between two views tried
+constexpr double kMostWrongSides = 0.03;  // share of surrounding rays that may meet backs of faces
+constexpr float kClearance = 0.12F;       // of the width of the lit space: nothing is closer to an eye
+constexpr float kNear = 0.4F;             // of the width of the lit space: what is closer blocks the view
+constexpr float kCell = 1.0F / 3;         // of the width of the lit space: pieces of surfaces told apart
+constexpr float kApart = 1.0F / 4;        // of the width of the lit space: between eyes
+constexpr float kLeastSpace = 0.1F;       // normalised: lit space that is narrower is the inside of a lamp
+
+/// A place to look from.
+struct Eye {
+  Vec3f place{0, 0, 0};  ///< Normalised.
+  float clearance = 0;   ///< To the nearest surface, normalised.
+  double enclosed = 0;   ///< Share of directions that meet the right side of a surface [0,1].
+};
 
 struct View {
-  Vec3 eye;
-  Vec3 direction;  // unit
-  double depth;    // mean distance seen [m]
+  const Panorama* panorama;
+  int column;
 };
 
-/// Twice the area of a face times its normal.
-Vec3 doubled_area_vector(const Surface& surface, const Face& face) {
-  Vec3 sum(0, 0, 0);
-  const Vec3& origin = surface.positions[face.outer.front()];
-  for (std::size_t i = 1; i + 1 < face.outer.size(); ++i) {
-    sum += (surface.positions[face.outer[i]] - origin).cross(surface.positions[face.outer[i + 1]] - origin);
-  }
-  return sum;
-}
+/// A room as the choice of eyes sees it.
+struct Surroundings {
+  const RayScene& rays;
+  RoomAxes axes;
+  float low, high;  // of the room along up, normalised
 
-/// Mean of the normals of emitting faces, weighted by power: of unit length if all look the same way.
-Vec3 mean_emission_direction(const Scene& scene) {
-  Vec3 sum(0, 0, 0);
-  double total = 0;
-  for (const Surface& surface : scene.surfaces) {
-    const Material& material = scene.material_of(surface);
-    if (!material.emits()) continue;
-    for (const Face& face : surface.faces) {
-      const Vec3 weighted = material.emitted_radiance.sum() * doubled_area_vector(surface, face);
-      total += weighted.norm();
-      if (!material.emits_both_sides) sum += weighted;
-    }
-    for (const CurvedShape& shape : surface.shapes) {  // all but disks emit to all sides alike
-      const double power = material.emitted_radiance.sum() * 2 * shape_area(shape);
-      total += power;
-      const auto* disk = std::get_if<Disk>(&shape);
-      if (disk != nullptr && !material.emits_both_sides) sum += power * disk->normal;
-    }
-  }
-  return total > 0 ? Vec3(sum / total) : Vec3(0, 0, 0);
-}
-
-/// Box and axes of the room; a and b are level, up is up.
-struct Frame {
-  Vec3 min, max;
-  Vec3 up, a, b;
-
-  double diagonal() const { return (max - min).norm(); }
-  Vec3 direction(double azimuth, double elevation) const {
-    return std::cos(elevation) * (std::cos(azimuth) * a + std::sin(azimuth) * b) + std::sin(elevation) * up;
-  }
-};
-
-Frame frame_of(const Scene& scene, const ZoneMesh& mesh) {
-  Frame frame;
-  frame.up = up_direction(scene);
-  frame.a = frame.up.y() > 0.5 ? Vec3(0, 0, -1) : Vec3(0, 1, 0);
-  frame.b = frame.a.cross(frame.up);
-  frame.min.setConstant(std::numeric_limits<double>::infinity());
-  frame.max = -frame.min;
-  for (const BaseTriangle& triangle : mesh.base().triangles) {
-    for (const std::uint32_t v : triangle.vertex) {
-      frame.min = frame.min.cwiseMin(mesh.base().vertices[v]);
-      frame.max = frame.max.cwiseMax(mesh.base().vertices[v]);
-    }
-  }
-  return frame;
-}
-
-enum class Seen { kNothing, kFront, kBack };
-
-struct Sight {
-  Seen seen;
-  double distance;  // [m]
-};
-
-Sight look(const RayScene& rays, const Vec3& eye, const Vec3& direction) {
-  Hit hit;
-  if (!rays.closest(rays.normalised(eye), direction.cast<float>().normalized(), hit))
-    return {Seen::kNothing, 0};
-  const bool right_side = hit.front || rays.mesh().triangle(hit.triangle).two_sided;
-  return {right_side ? Seen::kFront : Seen::kBack, hit.distance * rays.metres_per_unit()};
-}
-
-bool stands_free(const RayScene& rays, const Frame& frame, const Vec3& eye) {
-  int enclosed = 0;
-  int wrong_sides = 0;
-  for (int i = 0; i < kSurroundRays; ++i) {
-    // Directions on a spherical Fibonacci lattice: even cover with any number of them.
-    const double elevation = std::asin(1 - (2.0 * i + 1) / kSurroundRays);
-    const double azimuth = 2 * pi * std::fmod(i * (std::numbers::phi - 1), 1.0);
-    const Sight sight = look(rays, eye, frame.direction(azimuth, elevation));
-    if (sight.seen == Seen::kNothing) continue;
-    if (sight.distance < kLeastClearance * frame.diagonal()) return false;
-    ++enclosed;
-    if (sight.seen == Seen::kBack) ++wrong_sides;
-  }
-  return enclosed >= kLeastEnclosed * kSurroundRays && wrong_sides <= kMostWrongSides * kSurroundRays;
-}
-
-/// Mean distance over the field of view; what is not there, or turns its back, counts as no distance.
-double depth_of_view(const RayScene& rays, const Frame& frame, const Vec3& eye, double azimuth) {
-  constexpr int kColumns = 8;
-  constexpr int kRows = 6;
-  const double half_height = kFovDeg / 2 * pi / 180;
-  double sum = 0;
-  for (int y = 0; y < kRows; ++y) {
-    for (int x = 0; x < kColumns; ++x) {
-      const double across = ((x + 0.5) / kColumns * 2 - 1) * half_height * 4 / 3;
-      const double upwards = ((y + 0.5) / kRows * 2 - 1) * half_height;
-      const Sight sight = look(rays, eye, frame.direction(azimuth + across, upwards));
-      if (sight.seen == Seen::kFront) sum += sight.distance;
-    }
-  }
-  return sum / (kColumns * kRows);
-}
-
-/// Heights of eyes as shares of the height of the room: a standing person where the room is made for one.
-std::vector<double> eye_heights(const Frame& frame) {
-  constexpr double kStanding = 1.6;  // [m]
-  const double height = (frame.max - frame.min).dot(frame.up);
-  if (height >= 2 && height <= 5) return {kStanding / height};
-  return {0.35, 0.5, 0.65};
-}
-
-std::vector<View> candidate_views(const RayScene& rays, const Frame& frame) {
-  std::vector<View> views;
-  const Vec3 size = frame.max - frame.min;
-  for (const double height : eye_heights(frame)) {
-    for (int i = 0; i < kGridSteps; ++i) {
-      for (int j = 0; j < kGridSteps; ++j) {
-        const Vec3 share = height * frame.up + ((i + 0.5) / kGridSteps) * frame.a.cwiseAbs() +
-                           ((j + 0.5) / kGridSteps) * frame.b.cwiseAbs();
-        const Vec3 eye = frame.min + share.cwiseProduct(size);
-        if (!stands_free(rays, frame, eye)) continue;
-        for (int k = 0; k < kAzimuths; ++k) {
-          const double azimuth = 2 * pi * k / kAzimuths;
-          views.push_back({eye, frame.direction(azimuth, 0), depth_of_view(rays, frame, eye, azimuth)});
-        }
+  Surroundings(const RayScene& rays_of_room, const Vec3& up) : rays(rays_of_room), axes(up) {
+    low = high = axes.up.dot(rays.corner(TriangleId(0), 0));
+    for (std::size_t t = 0; t < rays.mesh().triangle_count(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const float height = axes.up.dot(rays.corner(TriangleId(t), k));
+        low = std::min(low, height);
+        high = std::max(high, height);
       }
-    }
   }
-  return views;
+
+  /// How far it is to the next surface, else the room's end, straight up or down.
+  float free_way(const Vec3f& place, bool upwards) const {
+    Hit hit;
+    if (rays.closest(place, upwards ? axes.up : Vec3f(-axes.up), hit)) return hit.distance;
+    const float height = axes.up.dot(place);
+    return std::max(0.0F, upwards ? high - height : height - low);
+  }
+
+  /// The place moved straight up or down to where a person's eyes would be, as far as there is room.
+  Vec3f at_eye_height(const Vec3f& place) const {
+    constexpr double kStanding = 1.6;  // [m]
+    const float below = free_way(place, false);
+    const float height = below + free_way(place, true);
+    const auto standing = static_cast<float>(kStanding / rays.metres_per_unit());
+    return place + (std::clamp(standing, 0.35F * height, 0.65F * height) - below) * axes.up;
+  }
+
+  /// Nothing where backs of one-sided faces surround the place: it lies behind the walls.
+  std::optional<Eye> eye_at(const Vec3f& place) const {
+    Eye eye{place, 4, 0};
+    int right_sides = 0;
+    int wrong_sides = 0;
+    for (int i = 0; i < kSurroundRays; ++i) {
+      // Directions on a spherical Fibonacci lattice: even cover with any number of them.
+      const auto elevation = static_cast<float>(std::asin(1 - (2.0 * i + 1) / kSurroundRays));
+      const auto azimuth = static_cast<float>(2 * pi * std::fmod(i * (std::numbers::phi - 1), 1.0));
+      Hit hit;
+      if (!rays.closest(place, axes.direction(azimuth, elevation).normalized(), hit)) continue;
+      eye.clearance = std::min(eye.clearance, hit.distance);
+      ++(hit.front || rays.mesh().triangle(hit.triangle).two_sided ? right_sides : wrong_sides);
+    }
+    if (wrong_sides > kMostWrongSides * kSurroundRays) return std::nullopt;
+    eye.enclosed = static_cast<double>(right_sides) / kSurroundRays;
+    return eye;
+  }
+};
+
+using EyesByPlace = std::map<std::tuple<int, int, int>, Eye>;
+
+/// The eye above or below a place on the way of light, if it is freer than the others near it.
+void keep_freest(const Surroundings& room, const Vec3f& place, float width, EyesByPlace& freest) {
+  const std::optional<Eye> eye = room.eye_at(room.at_eye_height(place));
+  if (!eye || eye->clearance < kClearance * width) return;
+  const Vec3f cell = (eye->place / (kApart * width)).array().floor();
+  Eye& best = freest[{static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())}];
+  if (eye->clearance > best.clearance) best = *eye;
 }
 
-/// Views by falling depth; each further one turns away from all before it and stands elsewhere.
-std::vector<View> choose_views(const std::vector<View>& candidates, const Frame& frame) {
-  const double most_alike = std::cos(70 * pi / 180);
-  std::vector<View> chosen;
-  while (chosen.size() < kMostCameras) {
-    const View* best = nullptr;
-    for (const View& view : candidates) {
-      const bool differs = std::all_of(chosen.begin(), chosen.end(), [&](const View& other) {
-        return view.direction.dot(other.direction) < most_alike &&
-               (view.eye - other.eye).norm() > 0.15 * frame.diagonal();
-      });
-      if (differs && view.depth > 0 && (best == nullptr || view.depth > best->depth)) best = &view;
+/// Eyes evenly along the way of light, the freest of each neighbourhood.
+std::vector<Eye> find_eyes(const Surroundings& room, const LitSpace& space) {
+  EyesByPlace freest;
+  double way = 0;
+  for (const LightLeg& leg : space.legs) way += static_cast<double>(leg.length);
+  double passed = 0;
+  double next = 0.5 * way / kPlaces;
+  for (const LightLeg& leg : space.legs) {
+    for (; next < passed + leg.length; next += way / kPlaces) {
+      // Not at the very ends of a leg, which lie on surfaces.
+      const float along =
+          std::clamp(static_cast<float>(next - passed), 0.05F * leg.length, 0.95F * leg.length);
+      keep_freest(room, leg.origin + along * leg.direction, space.width, freest);
     }
-    if (best == nullptr) break;
+    passed += leg.length;
+  }
+  std::vector<Eye> eyes;
+  for (const auto& [where, eye] : freest) eyes.push_back(eye);
+  const std::size_t kept = std::min(kMostEyes, eyes.size());
+  for (std::size_t i = 0; i < kept; ++i) eyes[i] = eyes[i * eyes.size() / kept];
+  eyes.resize(kept);
+  return eyes;
+}
+
+/// How good a picture is: full of lit surfaces of many kinds, wide, nothing in the way, the eye in the room.
+double score(const ViewContent& content, double enclosed) {
+  return content.seen * content.seen * (0.4 + 0.6 * enclosed) * (0.05 + 0.95 * content.lit) * content.open *
+         content.open * content.extent * std::sqrt(content.variety);
+}
+
+/// Best views in turn; each further one by how much it shows that those before it do not.
+std::vector<View> choose_views(const std::vector<Panorama>& panoramas, const std::vector<Eye>& eyes,
+                               float width) {
+  std::vector<View> chosen;
+  std::unordered_set<std::uint64_t> known;
+  while (chosen.size() < kMostCameras) {
+    std::optional<View> best;
+    double highest = 0;
+    for (std::size_t i = 0; i < panoramas.size(); ++i)
+      for (int column = 0; column < Panorama::kColumns; column += kTurn) {
+        const ViewContent content = content_of(panoramas[i], column, kNear * width, known);
+        const double value = score(content, eyes[i].enclosed) * content.novelty;
+        if (value <= highest) continue;
+        highest = value;
+        best = View{&panoramas[i], column};
+      }
+    if (!best) break;
+    add_areas(*best->panorama, best->column, known);
     chosen.push_back(*best);
   }
   return chosen;
 }
 
-/// The whole room from outside, from the side its largest triangle faces.
-View outside_view(const ZoneMesh& mesh, const Frame& frame) {
-  TriangleId largest(0);
-  for (std::size_t t = 1; t < mesh.triangle_count(); ++t) {
-    if (mesh.triangle_area(TriangleId(t)) > mesh.triangle_area(largest)) largest = TriangleId(t);
-  }
-  const Vec3 normal = mesh.triangle_normal(largest);
-  const double distance = frame.diagonal();
-  return {0.5 * (frame.min + frame.max) + distance * normal, -normal, distance};
-}
-
-Camera camera_of(const View& view, const Vec3& up, std::size_t number) {
+Camera camera_towards(const Vec3& eye, const Vec3& look_at, const Vec3& up, std::size_t number) {
   Camera camera;
   camera.name = fmt::format("auto-{}", number);
-  camera.eye = view.eye;
-  camera.look_at = view.eye + view.depth * view.direction;
-  camera.up = std::abs(view.direction.dot(up)) < 0.99 ? up : Vec3(up.z(), up.x(), up.y());
+  camera.eye = eye;
+  camera.look_at = look_at;
+  camera.up = up;
   camera.vertical_fov_deg = kFovDeg;
   camera.width = kSize;
   camera.height = kSize * 3 / 4;
   return camera;
 }
 
-}  // namespace
-
-Vec3 up_direction(const Scene& scene) {
-  std::string extension = std::filesystem::path(scene.source).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension == ".mgf" || extension == ".obj") {
-    const Vec3 flow = mean_emission_direction(scene);
-    if (flow.y() < -kMostlyDown) return Vec3::UnitY();
-    if (flow.z() < -kMostlyDown) return Vec3::UnitZ();
-  }
-  return extension == ".mgf" ? Vec3::UnitZ() : Vec3::UnitY();
+Camera camera_of(const View& view, const Surroundings& room, double distance, std::size_t number) {
+  const double azimuth = 2 * pi * (view.column + 0.5) / Panorama::kColumns;
+  const Vec3 eye = room.rays.in_room(view.panorama->eye);
+  const Vec3 forward = room.axes.direction(static_cast<float>(azimuth), 0).cast<double>();
+  return camera_towards(eye, eye + distance * forward, room.axes.up.cast<double>(), number);
 }
 
-std::vector<Camera> default_cameras(const Scene& scene, const RayScene& rays) {
-  const Frame frame = frame_of(scene, rays.mesh());
-  std::vector<View> views = choose_views(candidate_views(rays, frame), frame);
-  if (views.empty()) views.push_back(outside_view(rays.mesh(), frame));
+/// The whole room from outside, from the side its largest triangle faces.
+Camera outside_camera(const RayScene& rays, const Vec3& up) {
+  const ZoneMesh& mesh = rays.mesh();
+  TriangleId largest(0);
+  for (std::size_t t = 1; t < mesh.triangle_count(); ++t) {
+    if (mesh.triangle_area(TriangleId(t)) > mesh.triangle_area(largest)) largest = TriangleId(t);
+  }
+  const Vec3 normal = mesh.triangle_normal(largest);
+  const Vec3 middle = rays.in_room(Vec3f::Zero());
+  const double distance = 3 * rays.metres_per_unit();
+  const Vec3 level = std::abs(normal.dot(up)) < 0.99 ? up : Vec3(up.z(), up.x(), up.y());
+  return camera_towards(middle + distance * normal, middle, level, 1);
+}
+
+std::vector<Camera> cameras_in(const Scene& scene, const Surroundings& room, const LitSpace& space) {
   std::vector<Camera> cameras;
-  for (const View& view : views) cameras.push_back(camera_of(view, frame.up, cameras.size() + 1));
+  if (!(space.width > kLeastSpace)) return cameras;
+  const std::vector<Eye> eyes = find_eyes(room, space);
+  const LitCells lit(scene, space);
+  std::vector<Panorama> panoramas;
+  for (const Eye& eye : eyes)
+    panoramas.push_back(look_around(room.rays, room.axes, lit, kCell * space.width, eye.place));
+  const double distance = space.width * room.rays.metres_per_unit();
+  for (const View& view : choose_views(panoramas, eyes, space.width))
+    cameras.push_back(camera_of(view, room, distance, cameras.size() + 1));
+  return cameras;
+}
+
+}  // namespace
+
+std::vector<Camera> default_cameras(const Scene& scene, const RayScene& rays) {
+  const Vec3 up = up_direction(scene);
+  const Surroundings room(rays, up);
+  std::vector<Camera> cameras = cameras_in(scene, room, trace_light(scene, rays));
+  if (cameras.empty()) cameras = cameras_in(scene, room, trace_from_all_surfaces(scene, rays));
+  if (cameras.empty()) cameras.push_back(outside_camera(rays, up));
   return cameras;
 }
 

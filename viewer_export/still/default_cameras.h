@@ -7,14 +7,12 @@
 
 namespace reemit {
 
-/// The way that is up: +y or +z, unit. Where the format leaves it open (MGF, OBJ), the luminaires tell if
-/// nearly all of them shine down along one of the two; else +z for MGF and +y for all others.
-Vec3 up_direction(const Scene& scene);
-
-/// One to three cameras for a room that has none, named auto-1, auto-2, ... Eyes stand in the free space at
-/// eye height, away from surfaces, and look level where the view is deepest; each further camera looks
-/// another way. A room without free space (a lone polygon) is shown from outside. Deterministic. Pre: `rays`
-/// has triangles.
+/// One to three cameras for a room that has none, named auto-1, auto-2, ..., upright and level. Eyes stand
+/// where light goes, so never in solids or voids nor, unless the room is open, outside of it; at the height
+/// of a standing person as far as there is room, and clear of surfaces. Of all views those are taken that
+/// show most: lit surfaces of many kinds, far away, with nothing before the eye; each further one by what it
+/// shows that those before it do not. A room without free space (a lone polygon) is shown from outside. Some
+/// 150,000 rays; deterministic. Pre: `rays` has triangles.
 std::vector<Camera> default_cameras(const Scene& scene, const RayScene& rays);
 
 }  // namespace reemit

@@ -21,6 +21,7 @@ void check_consistent(const VertexData& data) {
   require(data.normals.size() == vertices, "one normal per vertex expected");
   require(data.surfaces.size() == vertices, "one surface per vertex expected");
   require(data.materials.size() == vertices, "one material per vertex expected");
+  require(data.on_back.size() == vertices, "one side per vertex expected");
   for (const auto* array : {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance})
     require(array->size() == values, "one value per vertex and band expected");
   for (const SurfaceId s : data.surfaces)

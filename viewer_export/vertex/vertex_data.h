@@ -19,8 +19,9 @@ struct VertexData {
   /// True if an error target was missed because of the noise of the zone solution.
   bool limited_by_zones = false;
   BandSet bands = BandSet::grey();
-  ToneMapSettings
-      tone_map;  ///< Of the displayable colours in PLY and glTF; the radiances are never tone-mapped.
+  /// Of the displayable colours in PLY and glTF (tone_map_of_room); the radiances are never tone-mapped.
+  ToneMap tone_map{1.0, ToneMapSettings::kFixedWhite};
+  Vec3 up{0, 1, 0};  ///< +y or +z (up_direction): glTF files are turned so that it becomes +y.
   std::vector<std::string> surface_names;   ///< By SurfaceId.
   std::vector<std::string> material_names;  ///< By MaterialId.
 
@@ -29,6 +30,7 @@ struct VertexData {
   std::vector<Vec3> normals;    ///< Unit, towards the side the light was computed on.
   std::vector<SurfaceId> surfaces;
   std::vector<MaterialId> materials;
+  std::vector<bool> on_back;  ///< Of its surface: the front lies in the same place.
 
   // bands.count() entries per vertex: index vertex * bands + band.
   std::vector<float> radiance;         ///< Leaving the vertex in all, emission included [W/(m2 sr)].

@@ -12,6 +12,7 @@
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
 #include "solver/tally/replicates.h"
+#include "viewer_export/still/up_direction.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_refinement.h"
 #include "viewer_export/vertex/vertex_ring.h"
@@ -80,14 +81,17 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
 VertexData make_vertices(const Scene& scene, const Solution& solution, const VertexRings& rings) {
   VertexData data;
   data.bands = scene.bands;
+  data.up = up_direction(scene);
   for (const Surface& s : scene.surfaces) data.surface_names.push_back(s.name);
   for (const Material& m : scene.materials) data.material_names.push_back(m.name);
   data.positions = rings.positions();
   data.normals = rings.normals();
   data.triangles = rings.triangles();
   for (std::size_t v = 0; v < rings.size(); ++v) {
-    const SurfaceId s = solution.mesh.zone_surface(rings.begin(v)->zone);
+    const ZoneId zone = rings.begin(v)->zone;
+    const SurfaceId s = solution.mesh.zone_surface(zone);
     data.surfaces.push_back(s);
+    data.on_back.push_back(!solution.mesh.zone_is_front(zone));
     data.materials.push_back(scene.surfaces[s.index()].material);
   }
   for (auto* values : {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance})

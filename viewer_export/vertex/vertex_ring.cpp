@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer_export/vertex/kept_zones.h"
+
 namespace reemit {
 namespace {
 
@@ -10,50 +12,6 @@ constexpr std::uint32_t kLeftOut = 0xffffffff;
 
 Vec3 to_vec3(const OpenMesh::Vec3d& v) {
   return {v[0], v[1], v[2]};
-}
-
-/// Irradiance of a surface's backs over the mean of the room from which on they count as lit. A single packet
-/// of millions that found its way through a crack is no light.
-constexpr double kLitShare = 1e-6;
-
-/// By surface, whether its backs get light.
-std::vector<bool> lit_backs(const Scene& scene, const Solution& solution) {
-  const ZoneMesh& mesh = solution.mesh;
-  const std::size_t bands = scene.bands.count();
-  const ZoneSums& sums = solution.sums;
-  std::vector<double> power(scene.surfaces.size());
-  std::vector<double> area(scene.surfaces.size());
-  double total_power = 0;
-  double total_area = 0;
-  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
-    const double zone_area = mesh.zone_area(ZoneId(z));
-    double irradiance = 0;
-    for (std::size_t k = z * bands; k < (z + 1) * bands; ++k) irradiance += sums.direct[k] + sums.indirect[k];
-    total_power += zone_area * irradiance;
-    total_area += zone_area;
-    if (mesh.zone_is_front(ZoneId(z))) continue;
-    power[mesh.zone_surface(ZoneId(z)).index()] += zone_area * irradiance;
-    area[mesh.zone_surface(ZoneId(z)).index()] += zone_area;
-  }
-  std::vector<bool> lit(scene.surfaces.size());
-  for (std::size_t s = 0; s < lit.size(); ++s)
-    lit[s] = power[s] * total_area > kLitShare * total_power * area[s];
-  return lit;
-}
-
-/// Which zones are exported. A surface's backs stay or go together: a lit back shows no holes where packets
-/// happened to miss a zone.
-std::vector<bool> kept_zones(const Scene& scene, const Solution& solution, bool all_zones) {
-  const ZoneMesh& mesh = solution.mesh;
-  std::vector<bool> back_matters = lit_backs(scene, solution);
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-    const Material& material = scene.material_of(scene.surfaces[s]);
-    if (all_zones || (material.emits() && material.emits_both_sides)) back_matters[s] = true;
-  }
-  std::vector<bool> kept(mesh.zone_count());
-  for (std::size_t z = 0; z < kept.size(); ++z)
-    kept[z] = mesh.zone_is_front(ZoneId(z)) || back_matters[mesh.zone_surface(ZoneId(z)).index()];
-  return kept;
 }
 
 /// Incident power that a packet brought on average [W]; 0 where zones are known exactly.

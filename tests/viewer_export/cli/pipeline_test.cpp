@@ -156,6 +156,40 @@ TEST_F(Pipeline, ExportsAllFormats) {
   }
 }
 
+TEST_F(Pipeline, SeveralExportsHoldTheValuesOfOneGathering) {
+  solve_small_room(folder_, "room.h5");
+  const json report =
+      json::parse(output_of({"export", path("room.h5"), "-o", path("a.glb"), "-o", path("a.csv"), "--output",
+                             path("a.ply"), "--samples", "8", "--json"}));
+  EXPECT_EQ(report["files"], json::array({path("a.glb"), path("a.csv"), path("a.ply")}));
+  output_of({"export", path("room.h5"), "-o", path("b.csv"), "--samples", "8"});
+  EXPECT_EQ(read_bytes(folder_ / "a.csv"), read_bytes(folder_ / "b.csv"));
+  for (const char* file : {"a.glb", "a.ply"})
+    EXPECT_GT(std::filesystem::file_size(path(file)), 1000U) << file;
+}
+
+TEST_F(Pipeline, OneExportTwiceIsRefused) {
+  solve_small_room(folder_, "room.h5");
+  const ProgramRun run =
+      run_reemit({"export", path("room.h5"), "-o", path("a.csv"), "-o", path("./a.csv"), "--samples", "8"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("given twice"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.csv")));
+  const ProgramRun factors =
+      run_reemit({"export", path("room.h5"), "-o", path("a.csv"), "-o", path("a.h5"), "--form-factors"});
+  EXPECT_EQ(factors.exit_code, 2);
+  EXPECT_THAT(factors.err, HasSubstr("--form-factors"));
+}
+
+TEST_F(Pipeline, AnEyeOutsideOfTheRoomIsToldButRendered) {
+  solve_small_room(folder_, "room.h5");
+  const ProgramRun run = run_reemit({"render", path("room.h5"), "--eye", "0.5,0.5,5", "--look-at",
+                                     "0.5,0.5,0", "--size", "9x7", "--spp", "1", "-o", path("eye.png")});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.err, HasSubstr("warning: camera 'view': the eye is outside of the room"));
+  EXPECT_TRUE(std::filesystem::exists(path("eye.png")));
+}
+
 TEST_F(Pipeline, ExportedIrradianceIsPhysical) {
   // No more light can arrive anywhere than the lamp's radiance all around: E <= pi L_e / (1 - rho), and the
   // walls see some of it.

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <limits>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -104,7 +105,7 @@ TEST(GlbWriter, IsReadBackByTinyGltf) {
 TEST(GlbWriter, StatesUnitsSeedAndExposure) {
   const TempFolder folder;
   VertexData data = sample_vertices(BandSet::rgb());
-  data.tone_map.exposure_ev = -1;
+  data.tone_map = ToneMap(std::exp2(-1), ToneMapSettings::kFixedWhite);
   write_vertex_data(data, folder / "a.glb");
   const tinygltf::Model model = read_glb(folder / "a.glb");
   const tinygltf::Value& extras = model.asset.extras;
@@ -138,6 +139,44 @@ TEST(GlbWriter, FarRoomsKeepTheirShape) {
                 data.positions[3][static_cast<Eigen::Index>(i)], 1e-7);
 }
 
+TEST(GlbWriter, RoomsWithZUpAreTurnedByANode) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::rgb());
+  write_vertex_data(data, folder / "y.glb");
+  EXPECT_EQ(read_glb(folder / "y.glb").scenes.at(0).nodes.size(), 2U) << "y is up in glTF: nothing to turn";
+  data.up = Vec3(0, 0, 1);
+  write_vertex_data(data, folder / "z.glb");
+  const tinygltf::Model model = read_glb(folder / "z.glb");
+  ASSERT_EQ(model.scenes.at(0).nodes.size(), 1U);
+  const tinygltf::Node& root = model.nodes.at(static_cast<std::size_t>(model.scenes[0].nodes[0]));
+  EXPECT_EQ(root.children.size(), 2U);
+  ASSERT_EQ(root.rotation.size(), 4U);
+  const Eigen::Quaterniond turn(root.rotation[3], root.rotation[0], root.rotation[1], root.rotation[2]);
+  EXPECT_LT((turn * data.up - Vec3(0, 1, 0)).norm(), 1e-12);
+  EXPECT_LT((turn * Vec3(1, 0, 0) - Vec3(1, 0, 0)).norm(), 1e-12);
+}
+
+TEST(GlbWriter, BacksDoNotLieInTheirFronts) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::rgb());
+  for (const std::size_t v : {1U, 3U, 5U}) data.on_back[v] = true;
+  write_vertex_data(data, folder / "a.glb");
+  const tinygltf::Model model = read_glb(folder / "a.glb");
+  const auto front = attribute(model, 0, "POSITION");
+  const auto back = attribute(model, 1, "POSITION");
+  const double gap = back_gap(data);
+  EXPECT_GT(gap, 1e-5 * 2.7);  // of the diagonal: what a depth buffer tells apart across a room
+  EXPECT_LT(gap, 1e-4 * 2.7);
+  for (std::size_t v = 0; v < 3; ++v)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      EXPECT_EQ(front[3 * v + k], static_cast<float>(data.positions[2 * v][axis]));
+      EXPECT_FLOAT_EQ(back[3 * v + k], static_cast<float>(data.positions[2 * v + 1][axis] +
+                                                          gap * data.normals[2 * v + 1][axis]));
+    }
+  for (const tinygltf::Material& material : model.materials) EXPECT_FALSE(material.doubleSided);
+}
+
 TEST(GlbWriter, NothingToDrawIsAnError) {
   const TempFolder folder;
   VertexData data = sample_vertices(BandSet::rgb());
@@ -149,6 +188,14 @@ TEST(GlbWriter, NothingToDrawIsAnError) {
 TEST(GlbWriter, SatisfiesTheKhronosValidatorInRgb) {
   const TempFolder folder;
   write_vertex_data(sample_vertices(BandSet::rgb()), folder / "a.glb");
+  expect_valid(folder / "a.glb");
+}
+
+TEST(GlbWriter, SatisfiesTheKhronosValidatorWithZUp) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::rgb());
+  data.up = Vec3(0, 0, 1);
+  write_vertex_data(data, folder / "a.glb");
   expect_valid(folder / "a.glb");
 }
 

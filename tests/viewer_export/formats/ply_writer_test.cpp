@@ -109,7 +109,7 @@ TEST(PlyWriter, GreyRoomsHaveEqualColours) {
 TEST(PlyWriter, StatesUnitsSeedErrorAndExposure) {
   const TempFolder folder;
   VertexData data = sample_vertices(BandSet::rgb());
-  data.tone_map.exposure_ev = 2;
+  data.tone_map = ToneMap(std::exp2(2), ToneMapSettings::kFixedWhite);
   write_vertex_data(data, folder / "a.ply");
   const std::string text = test::read_bytes(folder / "a.ply");
   const std::string header = text.substr(0, text.find("end_header"));
@@ -128,6 +128,23 @@ TEST(PlyWriter, FarRoomsKeepTheirShape) {
   EXPECT_THAT(test::read_bytes(folder / "a.ply"), HasSubstr("property double x\n"));
   write_vertex_data(sample_vertices(BandSet::grey()), folder / "b.ply");
   EXPECT_THAT(test::read_bytes(folder / "b.ply"), HasSubstr("property float x\n"));
+}
+
+TEST(PlyWriter, StatesWhichWayIsUpAndMovesBacksOffTheirFronts) {
+  const TempFolder folder;
+  VertexData data = sample_vertices(BandSet::rgb());
+  data.up = Vec3(0, 0, 1);
+  data.on_back[1] = true;
+  write_vertex_data(data, folder / "a.ply");
+  EXPECT_THAT(test::read_bytes(folder / "a.ply"), HasSubstr("comment up: +z, axes as in the room file\n"));
+  EXPECT_THAT(test::read_bytes(folder / "a.ply"), HasSubstr("comment backs: moved"));
+  const PlyMesh mesh = read_ply(folder / "a.ply");
+  const Vec3 moved = data.positions[1] + back_gap(data) * data.normals[1];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    EXPECT_FLOAT_EQ(mesh.point(PlyMesh::VertexHandle(1))[k], static_cast<float>(moved[axis]));
+    EXPECT_FLOAT_EQ(mesh.point(PlyMesh::VertexHandle(3))[k], static_cast<float>(data.positions[3][axis]));
+  }
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ inline VertexData sample_vertices(const BandSet& bands, const Vec3& shift = Vec3
     data.normals.push_back(wall ? Vec3(0, 0.6, 0.8) : Vec3(0, 0, 1));
     data.surfaces.emplace_back(wall ? 2 : 0);
     data.materials.emplace_back(wall ? 2 : 1);
+    data.on_back.push_back(false);
     for (std::size_t b = 0; b < bands.count(); ++b) {
       const auto n = static_cast<float>(v * bands.count() + b + 1);
       data.radiance.push_back(n / 3);

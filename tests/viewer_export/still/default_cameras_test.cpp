@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/test_rooms.h"
+#include "viewer_export/still/up_direction.h"
 
 namespace reemit::test {
 namespace {
@@ -27,7 +28,7 @@ TEST(DefaultCameras, StandInsideAClosedRoomAndLookDifferentWays) {
   ASSERT_GE(cameras.size(), 2U);
   for (const Camera& camera : cameras) {
     EXPECT_GT(depth_inside(camera.eye, low, high), 0.2) << camera.name;
-    EXPECT_NEAR(camera.eye.y(), 1.6, 1e-9) << "a standing person";
+    EXPECT_NEAR(camera.eye.y(), 1.6, 1e-5) << "a standing person";
     EXPECT_NEAR(camera.look_at.y(), camera.eye.y(), 1e-9) << "level";
   }
   const Vec3 first = (cameras[0].look_at - cameras[0].eye).normalized();
@@ -99,6 +100,86 @@ TEST(DefaultCameras, LampsThatShineDownTellWhichWayIsUp) {
   room.quad(room.material("window", 0, 10),
             {Vec3(0.1, 1, 1), Vec3(0.1, 2, 1), Vec3(0.1, 2, 2), Vec3(0.1, 1, 2)}, 1);
   EXPECT_EQ(up_direction(room.scene()), Vec3(0, 0, 1));
+}
+
+TEST(DefaultCameras, ALampInAWallDoesNotTellWhichWayIsUp) {
+  // An MGF room has z up; a panel in its far wall shines along -y, where the room is longer than high.
+  RoomBuilder room;
+  room.box(Vec3(0, 0, 0), Vec3(4, 6, 3), all(room.material("wall", 0.5)), 1);
+  room.quad(room.material("lamp", 0, 10),
+            {Vec3(1, 5.9, 1), Vec3(2, 5.9, 1), Vec3(2, 5.9, 2), Vec3(1, 5.9, 2)}, 1);
+  room.scene().source = "room.mgf";
+  EXPECT_EQ(up_direction(room.scene()), Vec3(0, 0, 1));
+}
+
+TEST(DefaultCameras, CamerasOfANativeRoomTellWhichWayIsUp) {
+  Scene scene;
+  scene.source = "room.json";
+  scene.cameras.resize(2);
+  scene.cameras[0].up = Vec3(0, 0, 2);
+  scene.cameras[1].up = Vec3(0, 0.1, 1);
+  EXPECT_EQ(up_direction(scene), Vec3(0, 0, 1));
+  scene.cameras[1].up = Vec3(1, 1, 0);
+  EXPECT_EQ(up_direction(scene), Vec3(0, 1, 0)) << "they disagree: that of the format";
+}
+
+TEST(DefaultCameras, StandWhereLightGoes) {
+  // Behind a wall of the lit room lies a longer dark hall: deeper, and closed as well.
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 0, true);
+  room.box(Vec3(0, 0, 0), Vec3(4, 2.7, 3), all(wall), 2);
+  room.box(Vec3(4, 0, 0), Vec3(20, 2.7, 8), all(wall), 2);
+  room.quad(room.material("lamp", 0, 10),
+            {Vec3(1, 2.6, 1), Vec3(2, 2.6, 1), Vec3(2, 2.6, 2), Vec3(1, 2.6, 2)}, 1);
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  ASSERT_EQ(cameras.size(), 3U);
+  for (const Camera& camera : cameras)
+    EXPECT_GT(depth_inside(camera.eye, Vec3(0, 0, 0), Vec3(4, 2.7, 3)), 0.15) << camera.name;
+}
+
+TEST(DefaultCameras, KeepClearOfAPartition) {
+  // A screen across most of an office; nobody wants a picture of a screen from 10 cm.
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5);
+  const MaterialId screen = room.material("screen", 0.5, 0, true);
+  room.box(Vec3(0, 0, 0), Vec3(8, 2.7, 6), all(wall), 2);
+  for (const double x : {2.0, 4.0, 6.0})
+    room.quad(screen, {Vec3(x, 0, 0.8), Vec3(x, 2, 0.8), Vec3(x, 2, 5.2), Vec3(x, 0, 5.2)}, 2);
+  room.quad(room.material("lamp", 0, 10),
+            {Vec3(1, 2.6, 1), Vec3(7, 2.6, 1), Vec3(7, 2.6, 5), Vec3(1, 2.6, 5)}, 1);
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  ASSERT_EQ(cameras.size(), 3U);
+  for (const Camera& camera : cameras) {
+    const Vec3 forward = (camera.look_at - camera.eye).normalized();
+    Hit hit;
+    ASSERT_TRUE(rays.closest(rays.normalised(camera.eye), forward.cast<float>(), hit));
+    EXPECT_GT(hit.distance * rays.metres_per_unit(), 1.0) << camera.name;
+    for (const double x : {2.0, 4.0, 6.0}) {
+      const double beside = std::max({0.0, 0.8 - camera.eye.z(), camera.eye.z() - 5.2});
+      EXPECT_GT(std::hypot(camera.eye.x() - x, beside), 0.2) << camera.name;
+    }
+  }
+}
+
+TEST(DefaultCameras, AThingWithoutARoomIsInThePicture) {
+  RoomBuilder room;
+  const MaterialId white = room.material("white", 0.5);
+  room.shape(white, Sphere{Vec3(10, 5, -3), 0.5}, 2);
+  room.scene().lights.emplace_back(PointLight{"lamp", Vec3(12, 7, -1), room.flat(100)});
+  const MeshResult meshed = room.mesh();
+  const RayScene rays(meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  ASSERT_FALSE(cameras.empty());
+  for (const Camera& camera : cameras) {
+    const Vec3 forward = (camera.look_at - camera.eye).normalized();
+    const Vec3 to_thing = Vec3(10, 5, -3) - camera.eye;
+    EXPECT_GT(to_thing.norm(), 0.5) << camera.name;
+    EXPECT_GT(forward.dot(to_thing.normalized()), std::cos(0.6)) << camera.name;
+  }
 }
 
 TEST(DefaultCameras, UpFollowsTheFormat) {

@@ -123,6 +123,42 @@ TEST(GatherVertices, unlit_backs_are_left_out_unless_wanted) {
   EXPECT_EQ(gather(room, solution, settings).vertex_count(), 18U);
 }
 
+/// One surface: a closed block and, apart from it, a table top whose underside is lit. The inside of the
+/// block is no side that anyone sees; drawn without culling it would lie black in the block's outside.
+TEST(GatherVertices, the_inside_of_a_solid_is_left_out_although_its_surface_has_lit_backs) {
+  RoomBuilder room;
+  const MaterialId wood = room.material("wood", 0.5, 0, true);
+  const MaterialId wall = room.material("wall", 0.5, 0, true);
+  room.box({-2, -2, -2}, {3, 3, 3}, {wall, wall, wall, wall, wall, wall}, 1);
+  Surface furniture;
+  furniture.name = "furniture";
+  furniture.material = wood;
+  for (int i = 0; i < 8; ++i) furniture.positions.emplace_back(i & 1, (i >> 1) & 1, i >> 2);
+  furniture.faces = {{{0, 4, 6, 2}, {}, {}, 0}, {{1, 3, 7, 5}, {}, {}, 0}, {{0, 1, 5, 4}, {}, {}, 0},
+                     {{2, 6, 7, 3}, {}, {}, 0}, {{0, 2, 3, 1}, {}, {}, 0}, {{4, 5, 7, 6}, {}, {}, 0}};
+  for (const Vec3& p : {Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(1, 1, 2), Vec3(0, 1, 2)})
+    furniture.positions.push_back(p);
+  furniture.faces.push_back({{8, 9, 10, 11}, {}, {}, 0});
+  room.scene().surfaces.push_back(furniture);
+  const SurfaceId id(room.scene().surfaces.size() - 1);
+  room.scene().lights.push_back(PointLight{"bulb", Vec3(-1, -1, 1.5), Spectrum::Constant(1, 10.0)});
+  SolverSettings solver;
+  solver.packets = 20'000;
+  const std::atomic<bool> never{false};
+  const Solution solution = solve(room.scene(), build_mesh(room.scene(), {}), solver, {}, never);
+  VertexSettings settings;
+  settings.average_zones = true;
+  const VertexData data = gather(room, solution, settings);
+  int undersides = 0;
+  for (std::size_t v = 0; v < data.vertex_count(); ++v) {
+    if (data.surfaces[v] != id || !data.on_back[v]) continue;
+    EXPECT_NEAR(data.positions[v].z(), 2, 1e-9) << "the inside of the block";
+    EXPECT_LT(data.normals[v].z(), -0.99);
+    ++undersides;
+  }
+  EXPECT_GE(undersides, 4);
+}
+
 TEST(GatherVertices, zone_averages_are_area_weighted_means) {
   RoomBuilder room;
   const MaterialId m = room.material("sheet", 0.5, pi);

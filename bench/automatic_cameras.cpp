@@ -1,0 +1,135 @@
+// Contact sheet of the automatic cameras of solved rooms, rooms with cameras of their own included:
+// docs/images/automatic_cameras.jpg.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include "solver/solution/room_of_solution.h"
+#include "solver/solution/solution_file.h"
+#include "viewer_export/still/default_cameras.h"
+#include "viewer_export/still/render_still.h"
+#include "viewer_export/still/tone_map.h"
+
+namespace {
+
+using namespace reemit;
+
+constexpr int kWidth = 160;  // [px] of one picture
+constexpr int kHeight = 120;
+constexpr int kPictures = 3;  // of a room, at most
+constexpr int kGap = 4;
+constexpr int kLabel = 18;
+constexpr int kRoomWidth = kPictures * kWidth + 3 * kGap;
+constexpr int kRoomHeight = kLabel + kHeight;
+
+void require(bool done, const OIIO::ImageBuf& image) {
+  if (!done) throw std::runtime_error(image.geterror());
+}
+
+/// As `reemit render` writes it to PNG: encoded sRGB, exposed by itself.
+OIIO::ImageBuf shown(const StillImage& image) {
+  std::vector<float> rgb;
+  const std::size_t bands = image.bands.count();
+  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+    Spectrum value(static_cast<Eigen::Index>(bands));
+    for (std::size_t b = 0; b < bands; ++b)
+      value[static_cast<Eigen::Index>(b)] = image.radiance[p * bands + b];
+    for (const double c : image.bands.to_rgb(value)) rgb.push_back(static_cast<float>(c));
+  }
+  const ToneMap tone_map = make_tone_map(rgb);
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < rgb.size(); i += 3)
+    for (const double c : tone_map({rgb[i], rgb[i + 1], rgb[i + 2]})) bytes.push_back(srgb_byte(c));
+  const OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
+  OIIO::ImageBuf buffer(spec);
+  require(buffer.set_pixels(OIIO::get_roi(spec), OIIO::TypeDesc::UINT8, bytes.data()), buffer);
+  return buffer;
+}
+
+struct Settings {
+  std::vector<std::filesystem::path> solutions;
+  std::filesystem::path output = "automatic_cameras.jpg";
+  std::string font = "DejaVuSans";
+  int columns = 2;  // rooms side by side
+  int spp = 16;
+  int threads = 0;
+};
+
+void add_room(const Settings& settings, std::size_t number, OIIO::ImageBuf& sheet) {
+  const std::filesystem::path& file = settings.solutions[number];
+  const int left = static_cast<int>(number) % settings.columns * kRoomWidth + kGap;
+  const int top = static_cast<int>(number) / settings.columns * kRoomHeight;
+  const Solution solution = load_solution(file);
+  const Scene scene = read_room_of(solution, file);
+  const RayScene rays(solution.mesh);
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<Camera> cameras = default_cameras(scene, rays);
+  fmt::print("{}: {:.3f} s\n", file.stem().string(),
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  constexpr float kBlack[3] = {0, 0, 0};
+  require(OIIO::ImageBufAlgo::render_text(sheet, left, top + kLabel - 5, file.stem().string(), 12,
+                                          settings.font, kBlack),
+          sheet);
+  const std::atomic<bool> no_interrupt{false};
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const Camera& camera = cameras[i];
+    fmt::print("  {}: eye {:.3g},{:.3g},{:.3g} look-at {:.3g},{:.3g},{:.3g} up {:.2g},{:.2g},{:.2g}\n",
+               camera.name, camera.eye.x(), camera.eye.y(), camera.eye.z(), camera.look_at.x(),
+               camera.look_at.y(), camera.look_at.z(), camera.up.x(), camera.up.y(), camera.up.z());
+    StillSettings still;
+    still.width = kWidth;
+    still.height = kHeight;
+    still.spp = settings.spp;
+    still.threads = settings.threads;
+    const StillImage image = render_still(scene, solution, rays, camera, still, {}, no_interrupt);
+    require(OIIO::ImageBufAlgo::paste(sheet, left + static_cast<int>(i) * (kWidth + kGap), top + kLabel, 0, 0,
+                                      shown(image)),
+            sheet);
+  }
+}
+
+void write_sheet(const Settings& settings) {
+  const int rows = (static_cast<int>(settings.solutions.size()) + settings.columns - 1) / settings.columns;
+  const OIIO::ImageSpec spec(settings.columns * kRoomWidth + kGap, rows * kRoomHeight + kGap, 3,
+                             OIIO::TypeDesc::UINT8);
+  OIIO::ImageBuf sheet(spec);
+  constexpr float kWhite[3] = {1, 1, 1};
+  require(OIIO::ImageBufAlgo::fill(sheet, kWhite), sheet);
+  for (std::size_t i = 0; i < settings.solutions.size(); ++i) add_room(settings, i, sheet);
+  sheet.specmod().attribute("Compression", "jpeg:88");
+  require(sheet.write(settings.output.string()), sheet);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App program("Contact sheet of the automatic cameras of solved rooms");
+  program.add_option("solutions", settings.solutions, "Solution files; their names label the pictures")
+      ->required();
+  program.add_option("-o,--output", settings.output, "JPEG or PNG")->capture_default_str();
+  program.add_option("--font", settings.font, "Of the labels, a name or file")->capture_default_str();
+  program.add_option("--columns", settings.columns, "Rooms side by side")
+      ->check(CLI::Range(1, 20))
+      ->capture_default_str();
+  program.add_option("--spp", settings.spp, "Camera rays per pixel")->capture_default_str();
+  program.add_option("--threads", settings.threads, "0 = all cores")->capture_default_str();
+  CLI11_PARSE(program, argc, argv);
+  try {
+    write_sheet(settings);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,117 @@
+#include "viewer_export/still/eye_place.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/hand_made_solution.h"
+
+namespace reemit {
+namespace {
+
+using test::RoomBuilder;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Faces [first, last) of a closed box of 4 x 3 x 5 m, fronts inside, with an opening where it has no face.
+RoomBuilder room_of(MaterialId (*wall)(RoomBuilder&), bool open) {
+  RoomBuilder room;
+  const MaterialId m = wall(room);
+  room.box(Vec3(0, 0, 0), Vec3(4, 3, 5), {m, m, m, m, m, open ? MaterialId() : m}, 2);
+  return room;
+}
+MaterialId one_sided(RoomBuilder& room) {
+  return room.material("wall", 0.5);
+}
+MaterialId two_sided(RoomBuilder& room) {
+  return room.material("wall", 0.5, 0, true);
+}
+
+/// Light on all fronts and on no back.
+Solution lit_inside(const RoomBuilder& room) {
+  Solution solution = test::uniform_solution(room, 1, 1);
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    if (!solution.mesh.zone_is_front(ZoneId(z))) solution.sums.direct[z] = solution.sums.indirect[z] = 0;
+  return solution;
+}
+
+std::string warning(const RoomBuilder& room, const Vec3& eye, const Vec3& look_at) {
+  const Solution solution = lit_inside(room);
+  const RayScene rays(solution.mesh);
+  Camera camera;
+  camera.eye = eye;
+  camera.look_at = look_at;
+  return eye_warning(camera, room.scene(), solution, rays);
+}
+
+TEST(EyePlace, InsideTheRoomNothingIsSaid) {
+  EXPECT_THAT(warning(room_of(one_sided, false), Vec3(2, 1.6, 4), Vec3(2, 1, 0)), IsEmpty());
+  EXPECT_THAT(warning(room_of(two_sided, false), Vec3(2, 1.6, 4), Vec3(2, 1, 0)), IsEmpty());
+}
+
+TEST(EyePlace, BeforeAnOpeningNothingIsSaidNearOrFar) {
+  for (const double z : {5.5, 9.0, 40.0})
+    EXPECT_THAT(warning(room_of(two_sided, true), Vec3(2, 1.6, z), Vec3(2, 1, 0)), IsEmpty()) << z;
+}
+
+TEST(EyePlace, OutsideOfTheRoomIsSaid) {
+  for (const double z : {5.5, 9.0, 40.0}) {
+    EXPECT_THAT(warning(room_of(two_sided, false), Vec3(2, 1.6, z), Vec3(2, 1, 0)),
+                HasSubstr("outside of the room and sees its outer sides"))
+        << z;
+    EXPECT_THAT(warning(room_of(one_sided, false), Vec3(2, 1.6, z), Vec3(2, 1, 0)),
+                HasSubstr("backs of one-sided faces"))
+        << z;
+  }
+}
+
+TEST(EyePlace, InsideOfASolidIsSaid) {
+  RoomBuilder room = room_of(two_sided, false);
+  const MaterialId m = room.material("block", 0.5, 0, true);
+  const Vec3 low(1, 0.5, 1);
+  const Vec3 high(2, 1.5, 2);
+  const auto p = [&](int x, int y, int z) {
+    return Vec3(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z());
+  };
+  room.quad(m, {p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)}, 1);
+  room.quad(m, {p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)}, 1);
+  room.quad(m, {p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)}, 1);
+  room.quad(m, {p(0, 1, 0), p(0, 1, 1), p(1, 1, 1), p(1, 1, 0)}, 1);
+  room.quad(m, {p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)}, 1);
+  room.quad(m, {p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}, 1);
+  EXPECT_THAT(warning(room, Vec3(1.5, 1, 1.5), Vec3(3, 1, 3)), HasSubstr("inside of a wall or a solid"));
+  EXPECT_THAT(warning(room, Vec3(3, 1, 3), Vec3(1.5, 1, 1.5)), IsEmpty());
+}
+
+TEST(EyePlace, ARoomWithoutLightIsNoFaultOfTheCamera) {
+  const RoomBuilder room = room_of(two_sided, false);
+  const Solution solution = test::dark_solution(room);
+  const RayScene rays(solution.mesh);
+  Camera camera;
+  camera.eye = Vec3(2, 1.6, 4);
+  camera.look_at = Vec3(2, 1, 0);
+  EXPECT_THAT(eye_warning(camera, room.scene(), solution, rays), IsEmpty());
+}
+
+TEST(EyePlace, AnUnlitRoomIsNotTakenForASolid) {
+  // Two rooms, fronts inside; light is in the first alone.
+  RoomBuilder room = room_of(two_sided, false);
+  const MaterialId m = room.material("wall", 0.5, 0, true);
+  room.box(Vec3(5, 0, 0), Vec3(9, 3, 5), {m, m, m, m, m, m}, 2);
+  Solution solution = lit_inside(room);
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    if (solution.mesh.zone_centroid(ZoneId(z)).x() > 4.5)
+      solution.sums.direct[z] = solution.sums.indirect[z] = 0;
+  const RayScene rays(solution.mesh);
+  Camera camera;
+  camera.eye = Vec3(7, 1.6, 4);
+  camera.look_at = Vec3(7, 1, 0);
+  EXPECT_THAT(eye_warning(camera, room.scene(), solution, rays), HasSubstr("luminaires do not reach"));
+}
+
+TEST(EyePlace, LookingAwayFromTheRoomIsSaid) {
+  EXPECT_THAT(warning(room_of(one_sided, false), Vec3(2, 1.6, 60), Vec3(2, 1.6, 70)),
+              HasSubstr("nothing of the room"));
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,104 @@
+#include "viewer_export/still/eye_place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "viewer_export/still/camera.h"
+
+namespace reemit {
+namespace {
+
+constexpr int kSurroundRays = 256;
+constexpr int kPictureSide = 16;     // rays across and down the picture
+constexpr double kMostWrong = 0.95;  // share of sights without light from which on a place is wrong
+constexpr double kOutside = 0.1;     // share of directions that meet nothing from which on it is outside
+
+/// What rays from an eye met.
+struct Sights {
+  int all = 0;
+  int nothing = 0;
+  int lit = 0;
+  int backs = 0;        ///< Of one-sided faces: a camera looks through them.
+  int from_behind = 0;  ///< Sides that are not the front, those included.
+
+  void add(const RayScene& rays, const Solution& solution, const Scene& scene, const Vec3f& origin,
+           const Vec3f& direction) {
+    ++all;
+    Hit hit;
+    if (!rays.closest(origin, direction, hit)) {
+      ++nothing;
+      return;
+    }
+    if (!hit.front) ++from_behind;
+    const BaseTriangle& triangle = rays.mesh().triangle(hit.triangle);
+    if (!hit.front && !triangle.two_sided) {
+      ++backs;
+      return;
+    }
+    const Material& material = scene.material_of(scene.surfaces[triangle.surface.index()]);
+    const ZoneId zone = rays.mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+    bool lights = material.emits() && (hit.front || material.emits_both_sides);
+    for (std::size_t b = 0; b < scene.bands.count(); ++b)
+      lights = lights || solution.irradiance(zone, b).mean > 0;
+    if (lights) ++lit;
+  }
+  int met() const { return all - nothing; }
+  bool is_wrong() const { return lit < (1 - kMostWrong) * met(); }
+};
+
+bool is_dark(const Solution& solution) {
+  const auto is_zero = [](double sum) { return sum == 0; };
+  return std::all_of(solution.sums.direct.begin(), solution.sums.direct.end(), is_zero) &&
+         std::all_of(solution.sums.indirect.begin(), solution.sums.indirect.end(), is_zero);
+}
+
+Sights around(const Vec3f& eye, const RayScene& rays, const Solution& solution, const Scene& scene) {
+  Sights sights;
+  for (int i = 0; i < kSurroundRays; ++i) {
+    // Directions on a spherical Fibonacci lattice: even cover with any number of them.
+    const double z = 1 - (2.0 * i + 1) / kSurroundRays;
+    const double azimuth = 2 * std::numbers::pi * std::fmod(i * (std::numbers::phi - 1), 1.0);
+    const double r = std::sqrt(1 - z * z);
+    const Vec3 direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
+    sights.add(rays, solution, scene, eye, direction.cast<float>().normalized());
+  }
+  return sights;
+}
+
+Sights in_picture(const Camera& camera, const RayScene& rays, const Solution& solution, const Scene& scene) {
+  const PinholeCamera pinhole(camera, kPictureSide, kPictureSide, rays);
+  Sights sights;
+  for (int y = 0; y < kPictureSide; ++y)
+    for (int x = 0; x < kPictureSide; ++x) {
+      const PinholeCamera::Ray ray = pinhole.ray(x + 0.5, y + 0.5);
+      sights.add(rays, solution, scene, ray.origin, ray.direction);
+    }
+  return sights;
+}
+
+}  // namespace
+
+std::string eye_warning(const Camera& camera, const Scene& scene, const Solution& solution,
+                        const RayScene& rays) {
+  const Sights picture = in_picture(camera, rays, solution, scene);
+  // From afar too few of the rays to all sides meet the room.
+  const bool near = rays.normalised(camera.eye).norm() < 4;
+  const Sights all = near ? around(rays.normalised(camera.eye), rays, solution, scene) : picture;
+  if (all.met() == 0 && picture.met() == 0)
+    return "nothing of the room is in the picture; check the eye and what it looks at";
+  if (is_dark(solution)) return {};  // light tells nothing
+  if (!all.is_wrong() || (picture.met() > 0 && !picture.is_wrong())) return {};
+  const bool outside = !near || all.nothing > kOutside * all.all;
+  if (outside && picture.backs > 0.5 * picture.met())
+    return "the eye is outside of the room and looks in through the backs of one-sided faces, which are not "
+           "shown; move it inside for a view with all walls";
+  if (outside)
+    return "the eye is outside of the room and sees its outer sides, where no light comes; move it inside";
+  if (all.from_behind > kMostWrong * all.met())
+    return "the eye is inside of a wall or a solid, where no light comes; move it into the room";
+  return "no light comes to anything around the eye; it stands in a void or in a part of the room that the "
+         "luminaires do not reach";
+}
+
+}  // namespace reemit

@@ -1,0 +1,81 @@
+#include "viewer_export/still/up_direction.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <string>
+#include <variant>
+
+namespace reemit {
+namespace {
+
+/// Part of the emission that leaves downwards if luminaires tell which way is up.
+constexpr double kMostlyDown = 0.8;
+/// Share of its length that the `up` of a camera has along an axis it names.
+constexpr double kAlongAxis = 0.9;
+
+std::string extension_of(const Scene& scene) {
+  std::string extension = std::filesystem::path(scene.source).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+/// Twice the area of a face times its normal.
+Vec3 doubled_area_vector(const Surface& surface, const Face& face) {
+  Vec3 sum(0, 0, 0);
+  const Vec3& origin = surface.positions[face.outer.front()];
+  for (std::size_t i = 1; i + 1 < face.outer.size(); ++i) {
+    sum += (surface.positions[face.outer[i]] - origin).cross(surface.positions[face.outer[i + 1]] - origin);
+  }
+  return sum;
+}
+
+/// Mean of the normals of emitting faces, weighted by power: of unit length if all look the same way.
+Vec3 mean_emission_direction(const Scene& scene) {
+  Vec3 sum(0, 0, 0);
+  double total = 0;
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.material_of(surface);
+    if (!material.emits()) continue;
+    for (const Face& face : surface.faces) {
+      const Vec3 weighted = material.emitted_radiance.sum() * doubled_area_vector(surface, face);
+      total += weighted.norm();
+      if (!material.emits_both_sides) sum += weighted;
+    }
+    for (const CurvedShape& shape : surface.shapes) {  // all but disks emit to all sides alike
+      const double power = material.emitted_radiance.sum() * 2 * shape_area(shape);
+      total += power;
+      const auto* disk = std::get_if<Disk>(&shape);
+      if (disk != nullptr && !material.emits_both_sides) sum += power * disk->normal;
+    }
+  }
+  return total > 0 ? Vec3(sum / total) : Vec3(0, 0, 0);
+}
+
+bool all_cameras_say(const Scene& scene, const Vec3& up) {
+  return !scene.cameras.empty() &&
+         std::all_of(scene.cameras.begin(), scene.cameras.end(),
+                     [&](const Camera& camera) { return camera.up.normalized().dot(up) > kAlongAxis; });
+}
+
+}  // namespace
+
+Vec3 up_of_format(const Scene& scene) {
+  return extension_of(scene) == ".mgf" ? Vec3::UnitZ() : Vec3::UnitY();
+}
+
+Vec3 up_direction(const Scene& scene) {
+  const std::string extension = extension_of(scene);
+  const Vec3 custom = up_of_format(scene);
+  const Vec3 other = Vec3::UnitY() + Vec3::UnitZ() - custom;
+  if (extension == ".json" || extension == ".obj") {
+    if (all_cameras_say(scene, custom)) return custom;
+    if (all_cameras_say(scene, other)) return other;
+  }
+  if (extension != ".mgf" && extension != ".obj") return custom;
+  const Vec3 size = bounds(scene).size();
+  const bool lit_from_above = mean_emission_direction(scene).dot(other) < -kMostlyDown;
+  return lit_from_above && size.dot(other) <= size.dot(custom) ? other : custom;
+}
+
+}  // namespace reemit

@@ -1,0 +1,96 @@
+#include "viewer_export/vertex/kept_zones.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <tuple>
+
+#include "mesh/disjoint_sets.h"
+
+namespace reemit {
+namespace {
+
+/// Irradiance of backs over the mean of the room from which on they count as lit. A single packet of millions
+/// that found its way through a crack is no light.
+constexpr double kLitShare = 1e-6;
+
+struct EdgeUse {
+  std::uint32_t surface, low, high;  // ends of the edge by vertex
+  std::uint32_t triangle;
+  bool forward;  // from low to high
+  auto edge() const { return std::tie(surface, low, high); }
+};
+
+/// The first triangle of the sheet of each triangle: triangles of one surface that lie on one side of it.
+/// Where three or more meet at an edge, sheets end.
+std::vector<std::size_t> sheets(const BaseMesh& base) {
+  DisjointSets sets(base.triangles.size());
+  std::vector<EdgeUse> uses;
+  for (std::size_t t = 0; t < base.triangles.size(); ++t) {
+    const BaseTriangle& triangle = base.triangles[t];
+    if (triangle.is_curved() && t > 0 && base.triangles[t - 1].shape == triangle.shape) sets.join(t - 1, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle.vertex[k];
+      const std::uint32_t b = triangle.vertex[(k + 1) % 3];
+      uses.push_back({static_cast<std::uint32_t>(triangle.surface.index()), std::min(a, b), std::max(a, b),
+                      static_cast<std::uint32_t>(t), a < b});
+    }
+  }
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
+    return std::tuple_cat(x.edge(), std::tie(x.triangle)) < std::tuple_cat(y.edge(), std::tie(y.triangle));
+  });
+  for (std::size_t i = 0; i < uses.size();) {
+    std::size_t end = i + 1;
+    while (end < uses.size() && uses[end].edge() == uses[i].edge()) ++end;
+    if (end - i == 2 && uses[i].forward != uses[i + 1].forward)
+      sets.join(uses[i].triangle, uses[i + 1].triangle);
+    i = end;
+  }
+  std::vector<std::size_t> sheet(base.triangles.size());
+  for (std::size_t t = 0; t < sheet.size(); ++t) sheet[t] = sets.find(t);
+  return sheet;
+}
+
+/// By sheet, whether its backs get light.
+std::vector<bool> lit_backs(const Solution& solution, const std::vector<std::size_t>& sheet) {
+  const ZoneMesh& mesh = solution.mesh;
+  const std::size_t bands = solution.bands.count();
+  const ZoneSums& sums = solution.sums;
+  std::vector<double> power(sheet.size());
+  std::vector<double> area(sheet.size());
+  double total_power = 0;
+  double total_area = 0;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    const double zone_area = mesh.zone_area(ZoneId(z));
+    double irradiance = 0;
+    for (std::size_t k = z * bands; k < (z + 1) * bands; ++k) irradiance += sums.direct[k] + sums.indirect[k];
+    total_power += zone_area * irradiance;
+    total_area += zone_area;
+    if (mesh.zone_is_front(ZoneId(z))) continue;
+    const std::size_t s = sheet[mesh.zone_triangle(ZoneId(z)).index()];
+    power[s] += zone_area * irradiance;
+    area[s] += zone_area;
+  }
+  std::vector<bool> lit(sheet.size());
+  for (std::size_t s = 0; s < lit.size(); ++s)
+    lit[s] = power[s] * total_area > kLitShare * total_power * area[s];
+  return lit;
+}
+
+}  // namespace
+
+std::vector<bool> kept_zones(const Scene& scene, const Solution& solution, bool all_zones) {
+  const ZoneMesh& mesh = solution.mesh;
+  if (all_zones) return std::vector<bool>(mesh.zone_count(), true);
+  const std::vector<std::size_t> sheet = sheets(mesh.base());
+  const std::vector<bool> lit = lit_backs(solution, sheet);
+  std::vector<bool> kept(mesh.zone_count());
+  for (std::size_t z = 0; z < kept.size(); ++z) {
+    const ZoneId zone(z);
+    const Material& material = scene.material_of(scene.surfaces[mesh.zone_surface(zone).index()]);
+    kept[z] = mesh.zone_is_front(zone) || lit[sheet[mesh.zone_triangle(zone).index()]] ||
+              (material.emits() && material.emits_both_sides);
+  }
+  return kept;
+}
+
+}  // namespace reemit
