@@ -5,8 +5,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mesh/box_pairs.h"
+#include "mesh/box_tree.h"
 #include "mesh/contact_segments.h"
+#include "mesh/convex_region.h"
 #include "mesh/edge_points.h"
 #include "mesh/shape_contacts.h"
 
@@ -34,13 +35,22 @@ class CutArrangement {
         }
       }
     }
+    std::vector<IndexedBox> boxes;
+    boxes.reserve(edges_.size());
+    for (const Segment& e : edges_) {
+      const Vec3 a = in_plane(group.plane.project(vertices[e[0]]));
+      const Vec3 b = in_plane(group.plane.project(vertices[e[1]]));
+      boxes.push_back({a.cwiseMin(b), a.cwiseMax(b), static_cast<std::uint32_t>(boxes.size())});
+    }
+    edge_tree_ = BoxTree(std::move(boxes));
   }
 
   std::vector<Segment> arrange(std::vector<PlanarSegment> raw, bool& ignored,
                                std::vector<std::uint32_t>& on_boundary);
 
  private:
-  std::uint32_t node_at(const Vec2& p) { return nodes_.weld({p.x(), p.y(), 0}); }
+  static Vec3 in_plane(const Vec2& p) { return {p.x(), p.y(), 0}; }
+  std::uint32_t node_at(const Vec2& p) { return nodes_.weld(in_plane(p)); }
   Vec2 position(std::uint32_t node) const { return nodes_[node].head<2>(); }
   std::vector<Segment> split_at_nodes(const std::vector<Segment>& segments) const;
   std::uint32_t vertex_at(std::uint32_t node, std::vector<std::uint32_t>& on_boundary);
@@ -50,6 +60,7 @@ class CutArrangement {
   VertexTable& vertices_;
   VertexTable nodes_;
   std::vector<Segment> edges_;  // of the pieces, as vertices
+  BoxTree edge_tree_;           // around them, in the plane
   std::unordered_map<std::uint32_t, std::uint32_t> vertex_of_;
 };
 
@@ -70,11 +81,11 @@ std::vector<Segment> CutArrangement::split_at_nodes(const std::vector<Segment>& 
   for (const auto& [node, vertex] : vertex_of_) used.push_back(node);
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  const auto between = vertices_on_edges(nodes_, edges, used, snap_);
+  const EdgePoints between = vertices_on_edges(nodes_, edges, used, snap_);
   std::vector<Segment> out;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     std::uint32_t from = segments[i][0];
-    for (const std::uint32_t node : between[i]) {
+    for (const std::uint32_t node : between.on(i)) {
       out.push_back({from, node});
       from = node;
     }
@@ -89,18 +100,24 @@ std::uint32_t CutArrangement::vertex_at(std::uint32_t node, std::vector<std::uin
   if (known != vertex_of_.end()) return known->second;
   const Vec2 p = position(node);
   double best = snap_ * snap_;
-  const Segment* nearest = nullptr;
-  for (const Segment& e : edges_) {
+  constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint32_t nearest = kNone;
+  const Vec3 low = in_plane(p).array() - snap_;
+  const Vec3 high = in_plane(p).array() + snap_;
+  const auto near = [&](const Vec3& min, const Vec3& max) {
+    return (min.array() <= high.array()).all() && (max.array() >= low.array()).all();
+  };
+  edge_tree_.visit(near, [&](std::uint32_t i) {
+    const Segment& e = edges_[i];
     const double d = squared_distance_to_segment(p, group_.plane.project(vertices_[e[0]]),
                                                  group_.plane.project(vertices_[e[1]]));
-    if (d <= best) {
-      best = d;
-      nearest = &e;
-    }
-  }
+    if (d > best || (d == best && nearest != kNone && nearest > i)) return;
+    best = d;
+    nearest = i;
+  });
   std::uint32_t vertex = 0;
-  if (nearest != nullptr) {
-    const auto [first, last] = std::minmax((*nearest)[0], (*nearest)[1]);
+  if (nearest != kNone) {
+    const auto [first, last] = std::minmax(edges_[nearest][0], edges_[nearest][1]);
     const Vec3 a = vertices_[first];
     const Vec3 along = vertices_[last] - a;
     const double t = std::clamp((group_.plane.lift(p) - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
@@ -139,27 +156,65 @@ std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, boo
   return out;
 }
 
-// Pairs (group, piece) whose boxes touch. Shapes are numbered after the pieces.
-std::vector<std::pair<std::size_t, std::size_t>> candidates(const std::vector<FacePiece>& pieces,
-                                                            const PieceGroups& groups, double contact,
-                                                            const VertexTable& vertices,
-                                                            std::span<const CurvedShape> shapes) {
-  std::vector<IndexedBox> boxes;
-  boxes.reserve(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, contact));
-  std::vector<std::pair<std::size_t, std::size_t>> out;
-  for_each_box_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
-    if (groups.group_of[i] == groups.group_of[j]) return;
-    out.emplace_back(groups.group_of[i], j);
-    out.emplace_back(groups.group_of[j], i);
-  });
-  for_each_box_pair(boxes, boxes_of(shapes, contact), [&](std::uint32_t piece, std::uint32_t shape) {
-    out.emplace_back(groups.group_of[piece], pieces.size() + shape);
-  });
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
+// Answers which pieces and shapes may be in contact with a group; shapes are numbered after the pieces.
+class ContactSearch {
+ public:
+  ContactSearch(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
+                const MeshTolerances& tolerances, const VertexTable& vertices,
+                std::span<const CurvedShape> shapes)
+      : pieces_(pieces), groups_(groups), tolerances_(tolerances), vertices_(vertices), shapes_(shapes) {
+    std::vector<IndexedBox> boxes;
+    boxes.reserve(pieces.size() + shapes.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, 0));
+    for (IndexedBox box : boxes_of(shapes, 0)) {
+      box.index += static_cast<std::uint32_t>(pieces.size());
+      boxes.push_back(box);
+    }
+    tree_ = BoxTree(std::move(boxes));
+  }
+
+  /// Small faces touch only from nearer: the tolerance must stay a small part of their own size [m].
+  double reach(double diameter, double other) const {
+    constexpr double kShareOfSize = 0.02;
+    return std::max(tolerances_.weld,
+                    std::min(tolerances_.contact, kShareOfSize * std::min(diameter, other)));
+  }
+  double size(std::size_t other) const {
+    return other < pieces_.size() ? pieces_[other].diameter
+                                  : std::sqrt(shape_area(shapes_[other - pieces_.size()]));
+  }
+
+  /// In ascending order.
+  void candidates(std::size_t g, double diameter, std::vector<std::size_t>& out) const {
+    out.clear();
+    const PieceGroup& group = groups_.groups[g];
+    // One weld distance more than needed, so that rounding loses nothing.
+    const double widest = reach(diameter, diameter) + tolerances_.weld;
+    for (const std::size_t p : group.pieces) {
+      // Cuts nearer to the boundary than the snapping distance are none. So the neighbours that share an edge
+      // or a corner, most of what is near, are not looked at.
+      const auto region =
+          ConvexRegion::of_piece(vertices_, pieces_[p], group.plane, widest, 0.5 * tolerances_.snap);
+      tree_.visit(
+          [&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
+          [&](std::uint32_t i) {
+            if (i < pieces_.size() && (groups_.group_of[i] == g || !region.touches(vertices_, pieces_[i])))
+              return;
+            out.push_back(i);
+          });
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+  }
+
+ private:
+  const std::vector<FacePiece>& pieces_;
+  const PieceGroups& groups_;
+  const MeshTolerances& tolerances_;
+  const VertexTable& vertices_;
+  std::span<const CurvedShape> shapes_;
+  BoxTree tree_;
+};
 
 }  // namespace
 
@@ -168,32 +223,26 @@ ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceG
                               std::span<const CurvedShape> shapes) {
   ContactCuts out;
   out.segments.resize(groups.groups.size());
-  const auto pairs = candidates(pieces, groups, tolerances.contact, vertices, shapes);
+  const ContactSearch search(pieces, groups, tolerances, vertices, shapes);
+  std::vector<std::size_t> others;
   std::vector<PlanarSegment> sections;
   std::vector<PlanarSegment> raw;
-  for (auto it = pairs.begin(); it != pairs.end();) {
-    const std::size_t g = it->first;
+  for (std::size_t g = 0; g < groups.groups.size(); ++g) {
     const PieceGroup& group = groups.groups[g];
-    std::vector<PlanarLoops> loops;
     double diameter = 0;
-    for (const std::size_t p : group.pieces) {
-      loops.emplace_back(vertices, pieces[p], group.plane);
-      diameter = std::max(diameter, pieces[p].diameter);
-    }
+    for (const std::size_t p : group.pieces) diameter = std::max(diameter, pieces[p].diameter);
+    search.candidates(g, diameter, others);
+    if (others.empty()) continue;
+    std::vector<PlanarLoops> loops;
+    for (const std::size_t p : group.pieces) loops.emplace_back(vertices, pieces[p], group.plane);
     raw.clear();
-    for (; it != pairs.end() && it->first == g; ++it) {
-      const bool is_piece = it->second < pieces.size();
-      const std::size_t other = is_piece ? it->second : it->second - pieces.size();
-      const double size = is_piece ? pieces[other].diameter : std::sqrt(shape_area(shapes[other]));
-      // Small faces touch only from nearer: the tolerance must stay a small part of their own size.
-      constexpr double kShareOfSize = 0.02;
-      const double contact =
-          std::max(tolerances.weld, std::min(tolerances.contact, kShareOfSize * std::min(diameter, size)));
+    for (const std::size_t other : others) {
+      const double contact = search.reach(diameter, search.size(other));
       sections.clear();
-      if (is_piece)
+      if (other < pieces.size())
         section_with_plane(vertices, pieces[other], group.plane, contact, sections);
       else
-        section_with_plane(shapes[other], group.plane, contact, sections);
+        section_with_plane(shapes[other - pieces.size()], group.plane, contact, sections);
       for (const PlanarSegment& s : sections)
         for (const PlanarLoops& l : loops) clip_to_loops(s, l, tolerances.snap, raw);
     }

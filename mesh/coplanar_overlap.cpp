@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
+#include <utility>
 
+#include "mesh/convex_region.h"
 #include "mesh/disjoint_sets.h"
 #include "mesh/planar_triangulation.h"
 
@@ -48,6 +49,7 @@ class OverlapSearch {
   PieceGroups run();
 
  private:
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_pairs();
   bool coplanar(const FacePiece& large, const FacePiece& small) const;
   bool overlap(std::size_t i, std::size_t j, const PlaneFrame& plane);
   bool pokes_into(const PlanarLoops& inner, const PlanarLoops& outer) const;
@@ -144,20 +146,39 @@ void OverlapSearch::add_crossings(const FacePiece& a, const FacePiece& b, const 
   }
 }
 
-PieceGroups OverlapSearch::run() {
+// Every overlapping pair is found from its larger piece, whose plane counts; in ascending order.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_pairs() {
   std::vector<IndexedBox> boxes;
   boxes.reserve(pieces_.size());
-  for (std::size_t i = 0; i < pieces_.size(); ++i)
-    boxes.push_back(box_of(vertices_, pieces_[i], i, tolerances_.weld));
+  for (std::size_t i = 0; i < pieces_.size(); ++i) boxes.push_back(box_of(vertices_, pieces_[i], i, 0));
+  const BoxTree tree(std::move(boxes));
+  // Neighbours that share an edge or a corner reach inside by the rounding of a product, no more.
+  constexpr double kRounding = 1e-3;  // of the weld distance
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t large = 0; large < pieces_.size(); ++large) {
+    const FacePiece& piece = pieces_[large];
+    const auto region = ConvexRegion::of_piece(vertices_, piece, piece.plane, 2 * tolerances_.weld,
+                                               kRounding * tolerances_.weld);
+    tree.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
+               [&](std::uint32_t small) {
+                 const FacePiece& other = pieces_[small];
+                 if (piece.area < other.area || (piece.area == other.area && large >= small)) return;
+                 if (!coplanar(piece, other) || !region.touches(vertices_, other)) return;
+                 if (overlap(large, small, piece.plane)) pairs.push_back(std::minmax(large, small));
+               });
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+PieceGroups OverlapSearch::run() {
   PieceGroups out;
   DisjointSets sets(pieces_.size());
-  for_each_box_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
-    const bool i_is_larger = pieces_[i].area >= pieces_[j].area;
-    const FacePiece& large = pieces_[i_is_larger ? i : j];
-    if (!coplanar(large, pieces_[i_is_larger ? j : i]) || !overlap(i, j, large.plane)) return;
+  for (const auto& [i, j] : overlapping_pairs()) {
     sets.join(i, j);
+    const FacePiece& large = pieces_[pieces_[i].area >= pieces_[j].area ? i : j];
     add_crossings(pieces_[i], pieces_[j], large.plane, out.crossings);
-  });
+  }
   out.group_of.resize(pieces_.size());
   std::vector<std::size_t> group_of_root(pieces_.size());
   std::vector<std::size_t> largest;

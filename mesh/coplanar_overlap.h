@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/box_pairs.h"
+#include "mesh/box_tree.h"
 #include "mesh/face_piece.h"
 #include "mesh/mesh_tolerances.h"
 #include "mesh/vertex_table.h"
