@@ -9,6 +9,7 @@
 #include "mesh/contact_segments.h"
 #include "mesh/convex_region.h"
 #include "mesh/edge_points.h"
+#include "mesh/group_outlines.h"
 #include "mesh/shape_contacts.h"
 
 namespace reemit {
@@ -38,9 +39,9 @@ class CutArrangement {
     std::vector<IndexedBox> boxes;
     boxes.reserve(edges_.size());
     for (const Segment& e : edges_) {
-      const Vec3 a = in_plane(group.plane.project(vertices[e[0]]));
-      const Vec3 b = in_plane(group.plane.project(vertices[e[1]]));
-      boxes.push_back({a.cwiseMin(b), a.cwiseMax(b), static_cast<std::uint32_t>(boxes.size())});
+      const Vec2 a = group.plane.project(vertices[e[0]]);
+      const Vec2 b = group.plane.project(vertices[e[1]]);
+      boxes.push_back(box_in_plane(a.cwiseMin(b), a.cwiseMax(b), boxes.size()));
     }
     edge_tree_ = BoxTree(std::move(boxes));
   }
@@ -49,8 +50,7 @@ class CutArrangement {
                                std::vector<std::uint32_t>& on_boundary);
 
  private:
-  static Vec3 in_plane(const Vec2& p) { return {p.x(), p.y(), 0}; }
-  std::uint32_t node_at(const Vec2& p) { return nodes_.weld(in_plane(p)); }
+  std::uint32_t node_at(const Vec2& p) { return nodes_.weld({p.x(), p.y(), 0}); }
   Vec2 position(std::uint32_t node) const { return nodes_[node].head<2>(); }
   std::vector<Segment> split_at_nodes(const std::vector<Segment>& segments) const;
   std::uint32_t vertex_at(std::uint32_t node, std::vector<std::uint32_t>& on_boundary);
@@ -102,12 +102,8 @@ std::uint32_t CutArrangement::vertex_at(std::uint32_t node, std::vector<std::uin
   double best = snap_ * snap_;
   constexpr std::uint32_t kNone = 0xffffffff;
   std::uint32_t nearest = kNone;
-  const Vec3 low = in_plane(p).array() - snap_;
-  const Vec3 high = in_plane(p).array() + snap_;
-  const auto near = [&](const Vec3& min, const Vec3& max) {
-    return (min.array() <= high.array()).all() && (max.array() >= low.array()).all();
-  };
-  edge_tree_.visit(near, [&](std::uint32_t i) {
+  const Vec2 reach = Vec2::Constant(snap_);
+  edge_tree_.visit(NearRectangle(p - reach, p + reach), [&](std::uint32_t i) {
     const Segment& e = edges_[i];
     const double d = squared_distance_to_segment(p, group_.plane.project(vertices_[e[0]]),
                                                  group_.plane.project(vertices_[e[1]]));
@@ -225,6 +221,7 @@ ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceG
   out.segments.resize(groups.groups.size());
   const ContactSearch search(pieces, groups, tolerances, vertices, shapes);
   std::vector<std::size_t> others;
+  std::vector<std::size_t> near;
   std::vector<PlanarSegment> sections;
   std::vector<PlanarSegment> raw;
   for (std::size_t g = 0; g < groups.groups.size(); ++g) {
@@ -233,8 +230,7 @@ ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceG
     for (const std::size_t p : group.pieces) diameter = std::max(diameter, pieces[p].diameter);
     search.candidates(g, diameter, others);
     if (others.empty()) continue;
-    std::vector<PlanarLoops> loops;
-    for (const std::size_t p : group.pieces) loops.emplace_back(vertices, pieces[p], group.plane);
+    const GroupOutlines outlines(vertices, pieces, group);
     raw.clear();
     for (const std::size_t other : others) {
       const double contact = search.reach(diameter, search.size(other));
@@ -243,8 +239,10 @@ ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceG
         section_with_plane(vertices, pieces[other], group.plane, contact, sections);
       else
         section_with_plane(shapes[other - pieces.size()], group.plane, contact, sections);
-      for (const PlanarSegment& s : sections)
-        for (const PlanarLoops& l : loops) clip_to_loops(s, l, tolerances.snap, raw);
+      for (const PlanarSegment& s : sections) {
+        outlines.near(s.from.cwiseMin(s.to), s.from.cwiseMax(s.to), near);
+        for (const std::size_t k : near) clip_to_loops(s, outlines[k], tolerances.snap, raw);
+      }
     }
     if (raw.empty()) continue;
     bool ignored = false;
