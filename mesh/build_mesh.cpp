@@ -126,7 +126,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
   const double zone_area = wanted_zone_area(settings, zoned_area);
   const double zone_edge = std::sqrt(zone_area);
 
-  PieceGroups groups = group_overlapping_pieces(pieces, tolerances, vertices);
+  PieceGroups groups = group_overlapping_pieces(scene, pieces, tolerances, vertices);
   const ContactCuts cuts = find_contact_cuts(pieces, groups, tolerances, vertices, shapes.exact);
   if (cuts.ignored > 0)
     report.warnings.push_back(fmt::format(

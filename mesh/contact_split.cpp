@@ -10,13 +10,11 @@
 #include "mesh/convex_region.h"
 #include "mesh/edge_points.h"
 #include "mesh/group_outlines.h"
+#include "mesh/segment_crossings.h"
 #include "mesh/shape_contacts.h"
 
 namespace reemit {
 namespace {
-
-// More cuts than this in one face are the contact of a thicket (grass, hair); its shortest lines are ignored.
-constexpr std::size_t kMostCuts = 20000;
 
 using Segment = std::array<std::uint32_t, 2>;
 
@@ -128,12 +126,14 @@ std::uint32_t CutArrangement::vertex_at(std::uint32_t node, std::vector<std::uin
 
 std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, bool& ignored,
                                              std::vector<std::uint32_t>& on_boundary) {
-  if (raw.size() > kMostCuts) {
+  // Lines that cross this often are the contact of a thicket; its shortest are ignored.
+  while (count_crossings(raw, kMostPlaneCrossings) > kMostPlaneCrossings) {
+    if (!ignored)
+      std::stable_sort(raw.begin(), raw.end(), [](const PlanarSegment& x, const PlanarSegment& y) {
+        return (x.to - x.from).squaredNorm() > (y.to - y.from).squaredNorm();
+      });
     ignored = true;
-    std::stable_sort(raw.begin(), raw.end(), [](const PlanarSegment& a, const PlanarSegment& b) {
-      return (a.to - a.from).squaredNorm() > (b.to - b.from).squaredNorm();
-    });
-    raw.resize(kMostCuts);
+    raw.resize(raw.size() / 2);
   }
   std::vector<Segment> segments;
   for (const PlanarSegment& s : raw) {

@@ -6,6 +6,7 @@
 #include "mesh/face_piece.h"
 #include "mesh/mesh_tolerances.h"
 #include "mesh/vertex_table.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 
@@ -25,9 +26,10 @@ struct PieceGroups {
 IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size_t index, double margin);
 
 /// Finds the pieces that overlap within the weld distance of one plane. Overlap narrower than a few weld
-/// distances is not seen. Adds the crossings of outlines to `vertices`.
-PieceGroups group_overlapping_pieces(const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances,
-                                     VertexTable& vertices);
+/// distances is not seen. Adds the crossings of outlines to `vertices`. Throws InputError, naming a face, if
+/// there are more than a million crossings or ten million pairs.
+PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
+                                     const MeshTolerances& tolerances, VertexTable& vertices);
 
 /// Which of the pieces that cover a spot of their common plane keeps it: `covering` in ascending order.
 /// - Facing the same way, a luminaire wins, else the earlier piece.

@@ -43,13 +43,6 @@ Vec3 vector_area(const VertexTable& vertices, const Loop& loop) {
   return 0.5 * sum;
 }
 
-int winding_of_edge(const Vec2& a, const Vec2& b, const Vec2& p) {
-  if ((a.y() <= p.y()) == (b.y() <= p.y())) return 0;
-  const double side = (b.x() - a.x()) * (p.y() - a.y()) - (p.x() - a.x()) * (b.y() - a.y());
-  if (b.y() > a.y()) return side > 0 ? 1 : 0;
-  return side < 0 ? -1 : 0;
-}
-
 int winding_number(const std::vector<Vec2>& loop, const Vec2& p) {
   int winding = 0;
   for (std::size_t i = 0; i < loop.size(); ++i)
