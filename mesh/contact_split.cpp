@@ -10,6 +10,7 @@
 #include "mesh/convex_region.h"
 #include "mesh/edge_points.h"
 #include "mesh/group_outlines.h"
+#include "mesh/near_pieces.h"
 #include "mesh/segment_crossings.h"
 #include "mesh/shape_contacts.h"
 
@@ -155,19 +156,16 @@ std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, boo
 // Answers which pieces and shapes may be in contact with a group; shapes are numbered after the pieces.
 class ContactSearch {
  public:
-  ContactSearch(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
+  ContactSearch(const Scene& scene, const std::vector<FacePiece>& pieces, const PieceGroups& groups,
                 const MeshTolerances& tolerances, const VertexTable& vertices,
                 std::span<const CurvedShape> shapes)
-      : pieces_(pieces), groups_(groups), tolerances_(tolerances), vertices_(vertices), shapes_(shapes) {
-    std::vector<IndexedBox> boxes;
-    boxes.reserve(pieces.size() + shapes.size());
-    for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, 0));
-    for (IndexedBox box : boxes_of(shapes, 0)) {
-      box.index += static_cast<std::uint32_t>(pieces.size());
-      boxes.push_back(box);
-    }
-    tree_ = BoxTree(std::move(boxes));
-  }
+      : pieces_(pieces),
+        groups_(groups),
+        tolerances_(tolerances),
+        vertices_(vertices),
+        shapes_(shapes),
+        near_pieces_(scene, vertices, pieces),
+        shape_tree_(boxes_of(shapes, 0)) {}
 
   /// Small faces touch only from nearer: the tolerance must stay a small part of their own size [m].
   double reach(double diameter, double other) const {
@@ -181,7 +179,7 @@ class ContactSearch {
   }
 
   /// In ascending order.
-  void candidates(std::size_t g, double diameter, std::vector<std::size_t>& out) const {
+  void candidates(std::size_t g, double diameter, std::vector<std::size_t>& out) {
     out.clear();
     const PieceGroup& group = groups_.groups[g];
     // One weld distance more than needed, so that rounding loses nothing.
@@ -191,13 +189,11 @@ class ContactSearch {
       // or a corner, most of what is near, are not looked at.
       const auto region =
           ConvexRegion::of_piece(vertices_, pieces_[p], group.plane, widest, 0.5 * tolerances_.snap);
-      tree_.visit(
-          [&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
-          [&](std::uint32_t i) {
-            if (i < pieces_.size() && (groups_.group_of[i] == g || !region.touches(vertices_, pieces_[i])))
-              return;
-            out.push_back(i);
-          });
+      near_pieces_.visit(region, p, [&](std::uint32_t i) {
+        if (groups_.group_of[i] != g) out.push_back(i);
+      });
+      shape_tree_.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
+                        [&](std::uint32_t shape) { out.push_back(pieces_.size() + shape); });
     }
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -209,22 +205,25 @@ class ContactSearch {
   const MeshTolerances& tolerances_;
   const VertexTable& vertices_;
   std::span<const CurvedShape> shapes_;
-  BoxTree tree_;
+  NearPieces near_pieces_;
+  BoxTree shape_tree_;
 };
 
 }  // namespace
 
-ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
-                              const MeshTolerances& tolerances, VertexTable& vertices,
+ContactCuts find_contact_cuts(const Scene& scene, const std::vector<FacePiece>& pieces,
+                              const PieceGroups& groups, const MeshTolerances& tolerances,
+                              const WorkStep& step, VertexTable& vertices,
                               std::span<const CurvedShape> shapes) {
   ContactCuts out;
   out.segments.resize(groups.groups.size());
-  const ContactSearch search(pieces, groups, tolerances, vertices, shapes);
+  ContactSearch search(scene, pieces, groups, tolerances, vertices, shapes);
   std::vector<std::size_t> others;
   std::vector<std::size_t> near;
   std::vector<PlanarSegment> sections;
   std::vector<PlanarSegment> raw;
   for (std::size_t g = 0; g < groups.groups.size(); ++g) {
+    step.at(g, groups.groups.size());
     const PieceGroup& group = groups.groups[g];
     double diameter = 0;
     for (const std::size_t p : group.pieces) diameter = std::max(diameter, pieces[p].diameter);

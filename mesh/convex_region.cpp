@@ -57,15 +57,12 @@ ConvexRegion ConvexRegion::of_piece(const VertexTable& vertices, const FacePiece
   return region;
 }
 
-bool ConvexRegion::touches(const VertexTable& vertices, const FacePiece& piece) const {
-  const Loop& outline = piece.loops[0];
+bool ConvexRegion::touches(const Vec3* begin, const Vec3* end) const {
   for (std::size_t i = 0; i < count_; ++i) {
     const Slab& s = slabs_[i];
-    const auto above = [&](std::uint32_t v) { return s.normal.dot(vertices[v]) > s.high; };
-    const auto below = [&](std::uint32_t v) { return s.normal.dot(vertices[v]) < s.low; };
-    // A slab with one bound only is far from its other one: no piece lies beyond that.
-    if (above(outline[0]) ? std::all_of(outline.begin(), outline.end(), above)
-                          : below(outline[0]) && std::all_of(outline.begin(), outline.end(), below))
+    const auto above = [&](const Vec3& p) { return s.normal.dot(p) > s.high; };
+    const auto below = [&](const Vec3& p) { return s.normal.dot(p) < s.low; };
+    if (above(*begin) ? std::all_of(begin, end, above) : below(*begin) && std::all_of(begin, end, below))
       return false;
   }
   return true;

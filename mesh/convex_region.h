@@ -32,8 +32,8 @@ class ConvexRegion {
     }
     return true;
   }
-  /// A piece may reach into the region.
-  bool touches(const VertexTable& vertices, const FacePiece& piece) const;
+  /// The polygon with the corners [begin, end) may reach into the region; the box has been asked before.
+  bool touches(const Vec3* begin, const Vec3* end) const;
 
  private:
   struct Slab {

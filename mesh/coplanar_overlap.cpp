@@ -10,6 +10,7 @@
 #include "mesh/convex_region.h"
 #include "mesh/disjoint_sets.h"
 #include "mesh/face_notes.h"
+#include "mesh/near_pieces.h"
 #include "mesh/planar_triangulation.h"
 #include "mesh/segment_crossings.h"
 #include "scenes/model/error.h"
@@ -56,10 +57,10 @@ class OverlapSearch {
         vertices_(vertices),
         inner_point_(pieces.size()) {}
 
-  PieceGroups run();
+  PieceGroups run(const WorkStep& step);
 
  private:
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_pairs();
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_pairs(const WorkStep& step);
   [[noreturn]] void refuse(std::size_t piece, std::size_t most, const char* what) const;
   bool coplanar(const FacePiece& large, const FacePiece& small) const;
   bool overlap(std::size_t i, std::size_t j, const PlaneFrame& plane);
@@ -165,36 +166,32 @@ void OverlapSearch::add_crossings(const FacePiece& a, const FacePiece& b, const 
 }
 
 // Every overlapping pair is found from its larger piece, whose plane counts; in ascending order.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_pairs() {
-  std::vector<IndexedBox> boxes;
-  boxes.reserve(pieces_.size());
-  for (std::size_t i = 0; i < pieces_.size(); ++i) boxes.push_back(box_of(vertices_, pieces_[i], i, 0));
-  const BoxTree tree(std::move(boxes));
+std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_pairs(const WorkStep& step) {
+  NearPieces near(scene_, vertices_, pieces_);
   // Neighbours that share an edge or a corner reach inside by the rounding of a product, no more.
   constexpr double kRounding = 1e-3;  // of the weld distance
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t large = 0; large < pieces_.size(); ++large) {
+    step.at(large, pieces_.size());
     const FacePiece& piece = pieces_[large];
     const auto region = ConvexRegion::of_piece(vertices_, piece, piece.plane, 2 * tolerances_.weld,
                                                kRounding * tolerances_.weld);
-    tree.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
-               [&](std::uint32_t small) {
-                 const FacePiece& other = pieces_[small];
-                 if (piece.area < other.area || (piece.area == other.area && large >= small)) return;
-                 if (!coplanar(piece, other) || !region.touches(vertices_, other)) return;
-                 if (!overlap(large, small, piece.plane)) return;
-                 pairs.push_back(std::minmax(large, small));
-                 if (pairs.size() > kMostOverlaps) refuse(large, kMostOverlaps, "pairs of faces overlap");
-               });
+    near.visit(region, large, [&](std::uint32_t small) {
+      const FacePiece& other = pieces_[small];
+      if (piece.area < other.area || (piece.area == other.area && large >= small)) return;
+      if (!coplanar(piece, other) || !overlap(large, small, piece.plane)) return;
+      pairs.push_back(std::minmax(large, small));
+      if (pairs.size() > kMostOverlaps) refuse(large, kMostOverlaps, "pairs of faces overlap");
+    });
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
-PieceGroups OverlapSearch::run() {
+PieceGroups OverlapSearch::run(const WorkStep& step) {
   PieceGroups out;
   DisjointSets sets(pieces_.size());
-  for (const auto& [i, j] : overlapping_pairs()) {
+  for (const auto& [i, j] : overlapping_pairs(step)) {
     sets.join(i, j);
     const FacePiece& large = pieces_[pieces_[i].area >= pieces_[j].area ? i : j];
     add_crossings(pieces_[i], pieces_[j], large.plane, out.crossings);
@@ -234,8 +231,9 @@ IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size
 }
 
 PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
-                                     const MeshTolerances& tolerances, VertexTable& vertices) {
-  return OverlapSearch(scene, pieces, tolerances, vertices).run();
+                                     const MeshTolerances& tolerances, const WorkStep& step,
+                                     VertexTable& vertices) {
+  return OverlapSearch(scene, pieces, tolerances, vertices).run(step);
 }
 
 std::size_t winner_of(const std::vector<FacePiece>& pieces, const std::vector<std::size_t>& covering,

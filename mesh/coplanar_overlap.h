@@ -7,6 +7,7 @@
 #include "mesh/mesh_tolerances.h"
 #include "mesh/vertex_table.h"
 #include "scenes/model/scene.h"
+#include "scenes/model/work_watch.h"
 
 namespace reemit {
 
@@ -27,9 +28,10 @@ IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size
 
 /// Finds the pieces that overlap within the weld distance of one plane. Overlap narrower than a few weld
 /// distances is not seen. Adds the crossings of outlines to `vertices`. Throws InputError, naming a face, if
-/// there are more than a million crossings or ten million pairs.
+/// there are more than a million crossings or ten million pairs, and what NearPieces throws.
 PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
-                                     const MeshTolerances& tolerances, VertexTable& vertices);
+                                     const MeshTolerances& tolerances, const WorkStep& step,
+                                     VertexTable& vertices);
 
 /// Which of the pieces that cover a spot of their common plane keeps it: `covering` in ascending order.
 /// - Facing the same way, a luminaire wins, else the earlier piece.

@@ -35,7 +35,7 @@ class GroupTriangulation {
         covered_(pieces.size(), 0.0),
         room_centre_(bounds(scene).centre()) {}
 
-  GroupTriangles run();
+  GroupTriangles run(const WorkStep& step);
 
  private:
   void triangulate(std::size_t g);
@@ -234,8 +234,9 @@ void GroupTriangulation::report_overlaps() {
                   lost.size(), total, names));
 }
 
-GroupTriangles GroupTriangulation::run() {
+GroupTriangles GroupTriangulation::run(const WorkStep& step) {
   for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
+    step.at(g, groups_.groups.size());
     triangulate(g);
     count_cut_pieces(g);
   }
@@ -248,8 +249,8 @@ GroupTriangles GroupTriangulation::run() {
 GroupTriangles triangulate_groups(const Scene& scene, const std::vector<FacePiece>& pieces,
                                   const PieceGroups& groups, const ContactCuts& cuts,
                                   const MeshTolerances& tolerances, const TriangleQuality& quality,
-                                  VertexTable& vertices, MeshReport& report) {
-  return GroupTriangulation(scene, pieces, groups, cuts, tolerances, quality, vertices, report).run();
+                                  const WorkStep& step, VertexTable& vertices, MeshReport& report) {
+  return GroupTriangulation(scene, pieces, groups, cuts, tolerances, quality, vertices, report).run(step);
 }
 
 }  // namespace reemit
