@@ -14,8 +14,8 @@ NearPieces::NearPieces(const Scene& scene, const VertexTable& vertices, const st
     : scene_(scene), pieces_(pieces) {
   // Furnished rooms need some tens of looks per face; this bounds the time to some tenths of a millisecond
   // each.
-  constexpr std::size_t kMostLooks = 20'000'000;
-  constexpr std::size_t kMostLooksPerPiece = 2000;
+  constexpr std::size_t kMostLooks = 10'000'000;
+  constexpr std::size_t kMostLooksPerPiece = 1000;
   most_looks_ = kMostLooks + kMostLooksPerPiece * pieces.size();
   std::vector<IndexedBox> boxes;
   boxes.reserve(pieces.size());

@@ -2,11 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "mesh/box_tree.h"
+#include "mesh/box_pairs.h"
 #include "mesh/coplanar_overlap.h"
 #include "mesh/polygon_repair.h"
 #include "mesh/shape_contacts.h"
@@ -28,19 +27,11 @@ std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes,
   std::vector<IndexedBox> boxes;
   boxes.reserve(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, 0));
-  const BoxTree tree(std::move(boxes));
-  const std::vector<IndexedBox> around = boxes_of(shapes.exact, 0);
-  for (std::size_t s = 0; s < around.size(); ++s) {
-    if (room.material_of(room.surfaces[shapes.surface[s].index()]).emits()) continue;
-    const auto touches = [&](const Vec3& low, const Vec3& high) {
-      return !pierced[s] && (low.array() <= around[s].max.array()).all() &&
-             (high.array() >= around[s].min.array()).all();
-    };
-    tree.visit(touches, [&](std::uint32_t piece) {
-      // Not within the contact distance: what sticks out by less than that is a leak all the same.
-      pierced[s] = pierced[s] || is_pierced(shapes.exact[s], vertices, pieces[piece], tolerances.weld);
-    });
-  }
+  for_each_box_pair(boxes_of(shapes.exact, 0), boxes, [&](std::uint32_t s, std::uint32_t piece) {
+    if (pierced[s] || room.material_of(room.surfaces[shapes.surface[s].index()]).emits()) return;
+    // Not within the contact distance: what sticks out by less than that is a leak all the same.
+    pierced[s] = is_pierced(shapes.exact[s], vertices, pieces[piece], tolerances.weld);
+  });
   return pierced;
 }
 
