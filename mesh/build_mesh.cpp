@@ -98,7 +98,8 @@ class BaseMeshBuilder {
 
 }  // namespace
 
-MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
+MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const WorkWatch& watch) {
+  watch.at(0);
   check_faces(room);
   if (!(settings.smallest_angle_deg >= 0 && settings.smallest_angle_deg <= 30))
     throw InputError("smallest angle", fmt::format("{} degrees is out of range", settings.smallest_angle_deg),
@@ -111,6 +112,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
   VertexTable vertices(tolerances.weld);
 
   std::vector<FacePiece> pieces = repair_polygons(scene, tolerances, vertices, report);
+  watch.at(0.1);
   drop_duplicate_faces(scene, pieces, report);
   orient_faces(scene, vertices, pieces, report);
   double total_area = 0;
@@ -126,20 +128,25 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings) {
   const double zone_area = wanted_zone_area(settings, zoned_area);
   const double zone_edge = std::sqrt(zone_area);
 
-  PieceGroups groups = group_overlapping_pieces(pieces, tolerances, vertices);
-  const ContactCuts cuts = find_contact_cuts(pieces, groups, tolerances, vertices, shapes.exact);
+  PieceGroups groups =
+      group_overlapping_pieces(scene, pieces, tolerances, WorkStep(watch, 0.2, 0.4), vertices);
+  const ContactCuts cuts =
+      find_contact_cuts(scene, pieces, groups, tolerances, WorkStep(watch, 0.4, 0.6), vertices, shapes.exact);
   if (cuts.ignored > 0)
     report.warnings.push_back(fmt::format(
         "{} faces touch so many others that they were cut along the longest contacts only", cuts.ignored));
   std::vector<std::uint32_t> on_edges = std::move(groups.crossings);
   on_edges.insert(on_edges.end(), cuts.on_boundary.begin(), cuts.on_boundary.end());
+  watch.at(0.6);
   insert_vertices_on_edges(vertices, on_edges, tolerances.weld, pieces);
 
   const TriangleQuality quality{.smallest_angle_deg = kToleratedAngle * settings.smallest_angle_deg,
                                 .free_length = kFreeLength * zone_edge,
                                 .free_area = kFreeArea * zone_area,
                                 .most_new_points = 1'000'000};
-  GroupTriangles cut = triangulate_groups(scene, pieces, groups, cuts, tolerances, quality, vertices, report);
+  GroupTriangles cut = triangulate_groups(scene, pieces, groups, cuts, tolerances, quality,
+                                          WorkStep(watch, 0.7, 0.85), vertices, report);
+  watch.at(0.85);
   conform_triangles(vertices, tolerances.weld, cut.triangles);
   const double smallest_area = kSmallestArea * tolerances.diagonal * tolerances.diagonal;
   std::erase_if(cut.triangles, [&](const RawTriangle& t) { return area_of(vertices, t) <= smallest_area; });

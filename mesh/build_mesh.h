@@ -5,6 +5,7 @@
 #include "mesh/mesh_settings.h"
 #include "mesh/zone_mesh.h"
 #include "scenes/model/scene.h"
+#include "scenes/model/work_watch.h"
 
 namespace reemit {
 
@@ -37,7 +38,7 @@ struct MeshResult {
 
 /// Repairs, cuts and triangulates the room and sizes its zones. Deterministic.
 /// Throws InputError when nothing is left to trace, a face cannot be repaired (it is named), or all
-/// luminaires are too small or thin to be meshed.
-MeshResult build_mesh(const Scene& scene, const MeshSettings& settings = {});
+/// luminaires are too small or thin to be meshed; Interrupted when `watch` ends it.
+MeshResult build_mesh(const Scene& scene, const MeshSettings& settings = {}, const WorkWatch& watch = {});
 
 }  // namespace reemit

@@ -58,7 +58,7 @@ void conform_triangles(const VertexTable& vertices, double weld, std::vector<Raw
   }
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  const auto between = vertices_on_edges(vertices, edges, ends, weld);
+  const EdgePoints between = vertices_on_edges(vertices, edges, ends, weld);
 
   std::vector<RawTriangle> out;
   out.reserve(triangles.size());
@@ -67,7 +67,8 @@ void conform_triangles(const VertexTable& vertices, double weld, std::vector<Raw
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t.vertex[k];
       const std::uint32_t b = t.vertex[(k + 1) % 3];
-      studded.on_side[k] = between[edge_index.at(edge_key(a, b))];
+      const auto on_side = between.on(edge_index.at(edge_key(a, b)));
+      studded.on_side[k].assign(on_side.begin(), on_side.end());
       if (a > b) std::reverse(studded.on_side[k].begin(), studded.on_side[k].end());
       std::erase(studded.on_side[k], t.vertex[(k + 2) % 3]);  // of a needle lower than the weld distance
     }

@@ -5,16 +5,17 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mesh/box_pairs.h"
+#include "mesh/box_tree.h"
 #include "mesh/contact_segments.h"
+#include "mesh/convex_region.h"
 #include "mesh/edge_points.h"
+#include "mesh/group_outlines.h"
+#include "mesh/near_pieces.h"
+#include "mesh/segment_crossings.h"
 #include "mesh/shape_contacts.h"
 
 namespace reemit {
 namespace {
-
-// More cuts than this in one face are the contact of a thicket (grass, hair); its shortest lines are ignored.
-constexpr std::size_t kMostCuts = 20000;
 
 using Segment = std::array<std::uint32_t, 2>;
 
@@ -34,6 +35,14 @@ class CutArrangement {
         }
       }
     }
+    std::vector<IndexedBox> boxes;
+    boxes.reserve(edges_.size());
+    for (const Segment& e : edges_) {
+      const Vec2 a = group.plane.project(vertices[e[0]]);
+      const Vec2 b = group.plane.project(vertices[e[1]]);
+      boxes.push_back(box_in_plane(a.cwiseMin(b), a.cwiseMax(b), boxes.size()));
+    }
+    edge_tree_ = BoxTree(std::move(boxes));
   }
 
   std::vector<Segment> arrange(std::vector<PlanarSegment> raw, bool& ignored,
@@ -50,6 +59,7 @@ class CutArrangement {
   VertexTable& vertices_;
   VertexTable nodes_;
   std::vector<Segment> edges_;  // of the pieces, as vertices
+  BoxTree edge_tree_;           // around them, in the plane
   std::unordered_map<std::uint32_t, std::uint32_t> vertex_of_;
 };
 
@@ -70,11 +80,11 @@ std::vector<Segment> CutArrangement::split_at_nodes(const std::vector<Segment>& 
   for (const auto& [node, vertex] : vertex_of_) used.push_back(node);
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  const auto between = vertices_on_edges(nodes_, edges, used, snap_);
+  const EdgePoints between = vertices_on_edges(nodes_, edges, used, snap_);
   std::vector<Segment> out;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     std::uint32_t from = segments[i][0];
-    for (const std::uint32_t node : between[i]) {
+    for (const std::uint32_t node : between.on(i)) {
       out.push_back({from, node});
       from = node;
     }
@@ -89,18 +99,20 @@ std::uint32_t CutArrangement::vertex_at(std::uint32_t node, std::vector<std::uin
   if (known != vertex_of_.end()) return known->second;
   const Vec2 p = position(node);
   double best = snap_ * snap_;
-  const Segment* nearest = nullptr;
-  for (const Segment& e : edges_) {
+  constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint32_t nearest = kNone;
+  const Vec2 reach = Vec2::Constant(snap_);
+  edge_tree_.visit(NearRectangle(p - reach, p + reach), [&](std::uint32_t i) {
+    const Segment& e = edges_[i];
     const double d = squared_distance_to_segment(p, group_.plane.project(vertices_[e[0]]),
                                                  group_.plane.project(vertices_[e[1]]));
-    if (d <= best) {
-      best = d;
-      nearest = &e;
-    }
-  }
+    if (d > best || (d == best && nearest != kNone && nearest > i)) return;
+    best = d;
+    nearest = i;
+  });
   std::uint32_t vertex = 0;
-  if (nearest != nullptr) {
-    const auto [first, last] = std::minmax((*nearest)[0], (*nearest)[1]);
+  if (nearest != kNone) {
+    const auto [first, last] = std::minmax(edges_[nearest][0], edges_[nearest][1]);
     const Vec3 a = vertices_[first];
     const Vec3 along = vertices_[last] - a;
     const double t = std::clamp((group_.plane.lift(p) - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
@@ -115,12 +127,14 @@ std::uint32_t CutArrangement::vertex_at(std::uint32_t node, std::vector<std::uin
 
 std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, bool& ignored,
                                              std::vector<std::uint32_t>& on_boundary) {
-  if (raw.size() > kMostCuts) {
+  // Lines that cross this often are the contact of a thicket; its shortest are ignored.
+  while (count_crossings(raw, kMostPlaneCrossings) > kMostPlaneCrossings) {
+    if (!ignored)
+      std::stable_sort(raw.begin(), raw.end(), [](const PlanarSegment& x, const PlanarSegment& y) {
+        return (x.to - x.from).squaredNorm() > (y.to - y.from).squaredNorm();
+      });
     ignored = true;
-    std::stable_sort(raw.begin(), raw.end(), [](const PlanarSegment& a, const PlanarSegment& b) {
-      return (a.to - a.from).squaredNorm() > (b.to - b.from).squaredNorm();
-    });
-    raw.resize(kMostCuts);
+    raw.resize(raw.size() / 2);
   }
   std::vector<Segment> segments;
   for (const PlanarSegment& s : raw) {
@@ -139,63 +153,95 @@ std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, boo
   return out;
 }
 
-// Pairs (group, piece) whose boxes touch. Shapes are numbered after the pieces.
-std::vector<std::pair<std::size_t, std::size_t>> candidates(const std::vector<FacePiece>& pieces,
-                                                            const PieceGroups& groups, double contact,
-                                                            const VertexTable& vertices,
-                                                            std::span<const CurvedShape> shapes) {
-  std::vector<IndexedBox> boxes;
-  boxes.reserve(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, contact));
-  std::vector<std::pair<std::size_t, std::size_t>> out;
-  for_each_box_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
-    if (groups.group_of[i] == groups.group_of[j]) return;
-    out.emplace_back(groups.group_of[i], j);
-    out.emplace_back(groups.group_of[j], i);
-  });
-  for_each_box_pair(boxes, boxes_of(shapes, contact), [&](std::uint32_t piece, std::uint32_t shape) {
-    out.emplace_back(groups.group_of[piece], pieces.size() + shape);
-  });
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
+// Answers which pieces and shapes may be in contact with a group; shapes are numbered after the pieces.
+class ContactSearch {
+ public:
+  ContactSearch(const Scene& scene, const std::vector<FacePiece>& pieces, const PieceGroups& groups,
+                const MeshTolerances& tolerances, const VertexTable& vertices,
+                std::span<const CurvedShape> shapes)
+      : pieces_(pieces),
+        groups_(groups),
+        tolerances_(tolerances),
+        vertices_(vertices),
+        shapes_(shapes),
+        near_pieces_(scene, vertices, pieces),
+        shape_tree_(boxes_of(shapes, 0)) {}
+
+  /// Small faces touch only from nearer: the tolerance must stay a small part of their own size [m].
+  double reach(double diameter, double other) const {
+    constexpr double kShareOfSize = 0.02;
+    return std::max(tolerances_.weld,
+                    std::min(tolerances_.contact, kShareOfSize * std::min(diameter, other)));
+  }
+  double size(std::size_t other) const {
+    return other < pieces_.size() ? pieces_[other].diameter
+                                  : std::sqrt(shape_area(shapes_[other - pieces_.size()]));
+  }
+
+  /// In ascending order.
+  void candidates(std::size_t g, double diameter, std::vector<std::size_t>& out) {
+    out.clear();
+    const PieceGroup& group = groups_.groups[g];
+    // One weld distance more than needed, so that rounding loses nothing.
+    const double widest = reach(diameter, diameter) + tolerances_.weld;
+    for (const std::size_t p : group.pieces) {
+      // Cuts nearer to the boundary than the snapping distance are none. So the neighbours that share an edge
+      // or a corner, most of what is near, are not looked at.
+      const auto region =
+          ConvexRegion::of_piece(vertices_, pieces_[p], group.plane, widest, 0.5 * tolerances_.snap);
+      near_pieces_.visit(region, p, [&](std::uint32_t i) {
+        if (groups_.group_of[i] != g) out.push_back(i);
+      });
+      shape_tree_.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
+                        [&](std::uint32_t shape) { out.push_back(pieces_.size() + shape); });
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+  }
+
+ private:
+  const std::vector<FacePiece>& pieces_;
+  const PieceGroups& groups_;
+  const MeshTolerances& tolerances_;
+  const VertexTable& vertices_;
+  std::span<const CurvedShape> shapes_;
+  NearPieces near_pieces_;
+  BoxTree shape_tree_;
+};
 
 }  // namespace
 
-ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
-                              const MeshTolerances& tolerances, VertexTable& vertices,
+ContactCuts find_contact_cuts(const Scene& scene, const std::vector<FacePiece>& pieces,
+                              const PieceGroups& groups, const MeshTolerances& tolerances,
+                              const WorkStep& step, VertexTable& vertices,
                               std::span<const CurvedShape> shapes) {
   ContactCuts out;
   out.segments.resize(groups.groups.size());
-  const auto pairs = candidates(pieces, groups, tolerances.contact, vertices, shapes);
+  ContactSearch search(scene, pieces, groups, tolerances, vertices, shapes);
+  std::vector<std::size_t> others;
+  std::vector<std::size_t> near;
   std::vector<PlanarSegment> sections;
   std::vector<PlanarSegment> raw;
-  for (auto it = pairs.begin(); it != pairs.end();) {
-    const std::size_t g = it->first;
+  for (std::size_t g = 0; g < groups.groups.size(); ++g) {
+    step.at(g, groups.groups.size());
     const PieceGroup& group = groups.groups[g];
-    std::vector<PlanarLoops> loops;
     double diameter = 0;
-    for (const std::size_t p : group.pieces) {
-      loops.emplace_back(vertices, pieces[p], group.plane);
-      diameter = std::max(diameter, pieces[p].diameter);
-    }
+    for (const std::size_t p : group.pieces) diameter = std::max(diameter, pieces[p].diameter);
+    search.candidates(g, diameter, others);
+    if (others.empty()) continue;
+    const GroupOutlines outlines(vertices, pieces, group);
     raw.clear();
-    for (; it != pairs.end() && it->first == g; ++it) {
-      const bool is_piece = it->second < pieces.size();
-      const std::size_t other = is_piece ? it->second : it->second - pieces.size();
-      const double size = is_piece ? pieces[other].diameter : std::sqrt(shape_area(shapes[other]));
-      // Small faces touch only from nearer: the tolerance must stay a small part of their own size.
-      constexpr double kShareOfSize = 0.02;
-      const double contact =
-          std::max(tolerances.weld, std::min(tolerances.contact, kShareOfSize * std::min(diameter, size)));
+    for (const std::size_t other : others) {
+      const double contact = search.reach(diameter, search.size(other));
       sections.clear();
-      if (is_piece)
+      if (other < pieces.size())
         section_with_plane(vertices, pieces[other], group.plane, contact, sections);
       else
-        section_with_plane(shapes[other], group.plane, contact, sections);
-      for (const PlanarSegment& s : sections)
-        for (const PlanarLoops& l : loops) clip_to_loops(s, l, tolerances.snap, raw);
+        section_with_plane(shapes[other - pieces.size()], group.plane, contact, sections);
+      for (const PlanarSegment& s : sections) {
+        outlines.near(s.from.cwiseMin(s.to), s.from.cwiseMax(s.to), near);
+        for (const std::size_t k : near) clip_to_loops(s, outlines[k], tolerances.snap, raw);
+      }
     }
     if (raw.empty()) continue;
     bool ignored = false;

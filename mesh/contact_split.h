@@ -8,7 +8,9 @@
 #include "mesh/face_piece.h"
 #include "mesh/mesh_tolerances.h"
 #include "mesh/vertex_table.h"
+#include "scenes/model/scene.h"
 #include "scenes/model/shape.h"
+#include "scenes/model/work_watch.h"
 
 namespace reemit {
 
@@ -23,8 +25,9 @@ struct ContactCuts {
 /// Finds the lines along which other pieces and curved shapes stand on a group (edges within the contact
 /// distance of its plane) or pierce it. However small a contact is beside a zone, it is cut: what pierces a
 /// wall may be thin and long.
-ContactCuts find_contact_cuts(const std::vector<FacePiece>& pieces, const PieceGroups& groups,
-                              const MeshTolerances& tolerances, VertexTable& vertices,
+ContactCuts find_contact_cuts(const Scene& scene, const std::vector<FacePiece>& pieces,
+                              const PieceGroups& groups, const MeshTolerances& tolerances,
+                              const WorkStep& step, VertexTable& vertices,
                               std::span<const CurvedShape> shapes = {});
 
 }  // namespace reemit

@@ -2,14 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "mesh/convex_region.h"
 #include "mesh/disjoint_sets.h"
+#include "mesh/face_notes.h"
+#include "mesh/near_pieces.h"
 #include "mesh/planar_triangulation.h"
+#include "mesh/segment_crossings.h"
+#include "scenes/model/error.h"
 
 namespace reemit {
 namespace {
+
+// Pairs of faces that overlap, of which all are kept until the groups are known.
+constexpr std::size_t kMostOverlaps = 10'000'000;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -38,16 +48,20 @@ std::optional<Crossing> proper_crossing(const Vec2& a0, const Vec2& a1, const Ve
 
 class OverlapSearch {
  public:
-  OverlapSearch(const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances, VertexTable& vertices)
-      : pieces_(pieces),
+  OverlapSearch(const Scene& scene, const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances,
+                VertexTable& vertices)
+      : scene_(scene),
+        pieces_(pieces),
         tolerances_(tolerances),
         margin_(4 * tolerances.weld),
         vertices_(vertices),
         inner_point_(pieces.size()) {}
 
-  PieceGroups run();
+  PieceGroups run(const WorkStep& step);
 
  private:
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_pairs(const WorkStep& step);
+  [[noreturn]] void refuse(std::size_t piece, std::size_t most, const char* what) const;
   bool coplanar(const FacePiece& large, const FacePiece& small) const;
   bool overlap(std::size_t i, std::size_t j, const PlaneFrame& plane);
   bool pokes_into(const PlanarLoops& inner, const PlanarLoops& outer) const;
@@ -55,12 +69,19 @@ class OverlapSearch {
   void add_crossings(const FacePiece& a, const FacePiece& b, const PlaneFrame& plane,
                      std::vector<std::uint32_t>& crossings);
 
+  const Scene& scene_;
   const std::vector<FacePiece>& pieces_;
   const MeshTolerances& tolerances_;
   double margin_;  // overlap less deep than this is touching
   VertexTable& vertices_;
   std::vector<std::optional<Vec3>> inner_point_;
 };
+
+void OverlapSearch::refuse(std::size_t piece, std::size_t most, const char* what) const {
+  throw InputError("face " + face_name(scene_, pieces_[piece].surface, pieces_[piece].face),
+                   fmt::format("more than {} {} in one plane, here and elsewhere in the room", most, what),
+                   "remove the copies that are hidden, or move them apart by a millimetre");
+}
 
 bool OverlapSearch::coplanar(const FacePiece& large, const FacePiece& small) const {
   if (std::abs(large.plane.normal.dot(small.plane.normal)) < 0.99) return false;
@@ -144,20 +165,39 @@ void OverlapSearch::add_crossings(const FacePiece& a, const FacePiece& b, const 
   }
 }
 
-PieceGroups OverlapSearch::run() {
-  std::vector<IndexedBox> boxes;
-  boxes.reserve(pieces_.size());
-  for (std::size_t i = 0; i < pieces_.size(); ++i)
-    boxes.push_back(box_of(vertices_, pieces_[i], i, tolerances_.weld));
+// Every overlapping pair is found from its larger piece, whose plane counts; in ascending order.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_pairs(const WorkStep& step) {
+  NearPieces near(scene_, vertices_, pieces_);
+  // Neighbours that share an edge or a corner reach inside by the rounding of a product, no more.
+  constexpr double kRounding = 1e-3;  // of the weld distance
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t large = 0; large < pieces_.size(); ++large) {
+    step.at(large, pieces_.size());
+    const FacePiece& piece = pieces_[large];
+    const auto region = ConvexRegion::of_piece(vertices_, piece, piece.plane, 2 * tolerances_.weld,
+                                               kRounding * tolerances_.weld);
+    near.visit(region, large, [&](std::uint32_t small) {
+      const FacePiece& other = pieces_[small];
+      if (piece.area < other.area || (piece.area == other.area && large >= small)) return;
+      if (!coplanar(piece, other) || !overlap(large, small, piece.plane)) return;
+      pairs.push_back(std::minmax(large, small));
+      if (pairs.size() > kMostOverlaps) refuse(large, kMostOverlaps, "pairs of faces overlap");
+    });
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+PieceGroups OverlapSearch::run(const WorkStep& step) {
   PieceGroups out;
   DisjointSets sets(pieces_.size());
-  for_each_box_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
-    const bool i_is_larger = pieces_[i].area >= pieces_[j].area;
-    const FacePiece& large = pieces_[i_is_larger ? i : j];
-    if (!coplanar(large, pieces_[i_is_larger ? j : i]) || !overlap(i, j, large.plane)) return;
+  for (const auto& [i, j] : overlapping_pairs(step)) {
     sets.join(i, j);
+    const FacePiece& large = pieces_[pieces_[i].area >= pieces_[j].area ? i : j];
     add_crossings(pieces_[i], pieces_[j], large.plane, out.crossings);
-  });
+    if (out.crossings.size() > kMostPlaneCrossings)
+      refuse(i, kMostPlaneCrossings, "crossings of outlines of overlapping faces lie");
+  }
   out.group_of.resize(pieces_.size());
   std::vector<std::size_t> group_of_root(pieces_.size());
   std::vector<std::size_t> largest;
@@ -190,9 +230,10 @@ IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size
   return box;
 }
 
-PieceGroups group_overlapping_pieces(const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances,
+PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
+                                     const MeshTolerances& tolerances, const WorkStep& step,
                                      VertexTable& vertices) {
-  return OverlapSearch(pieces, tolerances, vertices).run();
+  return OverlapSearch(scene, pieces, tolerances, vertices).run(step);
 }
 
 std::size_t winner_of(const std::vector<FacePiece>& pieces, const std::vector<std::size_t>& covering,

@@ -2,10 +2,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/box_pairs.h"
+#include "mesh/box_tree.h"
 #include "mesh/face_piece.h"
 #include "mesh/mesh_tolerances.h"
 #include "mesh/vertex_table.h"
+#include "scenes/model/scene.h"
+#include "scenes/model/work_watch.h"
 
 namespace reemit {
 
@@ -25,8 +27,10 @@ struct PieceGroups {
 IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size_t index, double margin);
 
 /// Finds the pieces that overlap within the weld distance of one plane. Overlap narrower than a few weld
-/// distances is not seen. Adds the crossings of outlines to `vertices`.
-PieceGroups group_overlapping_pieces(const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances,
+/// distances is not seen. Adds the crossings of outlines to `vertices`. Throws InputError, naming a face, if
+/// there are more than a million crossings or ten million pairs, and what NearPieces throws.
+PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
+                                     const MeshTolerances& tolerances, const WorkStep& step,
                                      VertexTable& vertices);
 
 /// Which of the pieces that cover a spot of their common plane keeps it: `covering` in ascending order.

@@ -4,45 +4,43 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mesh/box_pairs.h"
+#include "mesh/box_tree.h"
+#include "mesh/convex_region.h"
 
 namespace reemit {
 
-std::vector<std::vector<std::uint32_t>> vertices_on_edges(const VertexTable& vertices,
-                                                          const std::vector<VertexEdge>& edges,
-                                                          const std::vector<std::uint32_t>& candidates,
-                                                          double weld) {
-  std::vector<IndexedBox> edge_boxes;
-  edge_boxes.reserve(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Vec3& a = vertices[edges[i].from];
-    const Vec3& b = vertices[edges[i].to];
-    const Vec3 margin = Vec3::Constant(weld);
-    edge_boxes.push_back({a.cwiseMin(b) - margin, a.cwiseMax(b) + margin, static_cast<std::uint32_t>(i)});
-  }
-  std::vector<IndexedBox> point_boxes;
-  point_boxes.reserve(candidates.size());
-  for (const std::uint32_t v : candidates) point_boxes.push_back({vertices[v], vertices[v], v});
+EdgePoints vertices_on_edges(const VertexTable& vertices, const std::vector<VertexEdge>& edges,
+                             const std::vector<std::uint32_t>& candidates, double weld) {
+  std::vector<IndexedBox> points;
+  points.reserve(candidates.size());
+  for (const std::uint32_t v : candidates) points.push_back({vertices[v], vertices[v], v});
+  const BoxTree tree(std::move(points));
 
-  std::vector<std::vector<std::pair<double, std::uint32_t>>> found(edges.size());
-  for_each_box_pair(edge_boxes, point_boxes, [&](std::uint32_t e, std::uint32_t v) {
-    const VertexEdge& edge = edges[e];
-    if (v == edge.from || v == edge.to) return;
-    const Vec3 along = vertices[edge.to] - vertices[edge.from];
-    const Vec3 offset = vertices[v] - vertices[edge.from];
+  EdgePoints out;
+  out.first.reserve(edges.size() + 1);
+  out.first.push_back(0);
+  std::vector<std::pair<double, std::uint32_t>> found;
+  for (const VertexEdge& edge : edges) {
+    const Vec3& from = vertices[edge.from];
+    const Vec3 along = vertices[edge.to] - from;
     const double length = along.norm();
-    const double t = offset.dot(along) / (length * length);
-    if (t * length <= weld || (1 - t) * length <= weld) return;
-    // Short edges would be bent visibly by the weld distance, and the area of their face changed.
-    constexpr double kMostBend = 1e-4;
-    if ((offset - t * along).norm() > std::min(weld, kMostBend * length)) return;
-    found[e].emplace_back(t, v);
-  });
-  std::vector<std::vector<std::uint32_t>> out(edges.size());
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    std::sort(found[e].begin(), found[e].end());
-    for (const auto& [t, v] : found[e])
-      if (out[e].empty() || out[e].back() != v) out[e].push_back(v);
+    const auto region = ConvexRegion::of_edge(from, vertices[edge.to], weld);
+    found.clear();
+    tree.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
+               [&](std::uint32_t v) {
+                 if (v == edge.from || v == edge.to) return;
+                 const Vec3 offset = vertices[v] - from;
+                 const double t = offset.dot(along) / (length * length);
+                 if (t * length <= weld || (1 - t) * length <= weld) return;
+                 // Short edges would be bent visibly by the weld distance, and the area of their face
+                 // changed.
+                 constexpr double kMostBend = 1e-4;
+                 if ((offset - t * along).norm() > std::min(weld, kMostBend * length)) return;
+                 found.emplace_back(t, v);
+               });
+    std::sort(found.begin(), found.end());
+    for (const auto& [t, v] : found) out.vertices.push_back(v);
+    out.first.push_back(out.vertices.size());
   }
   return out;
 }
@@ -66,7 +64,7 @@ void insert_vertices_on_edges(const VertexTable& vertices, const std::vector<std
   }
   std::sort(candidates.begin(), candidates.end());
   candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-  const auto inserted = vertices_on_edges(vertices, edges, candidates, weld);
+  const EdgePoints inserted = vertices_on_edges(vertices, edges, candidates, weld);
 
   for (FacePiece& piece : pieces) {
     for (Loop& loop : piece.loops) {
@@ -74,7 +72,7 @@ void insert_vertices_on_edges(const VertexTable& vertices, const std::vector<std
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const std::uint32_t a = loop[i];
         const std::uint32_t b = loop[(i + 1) % loop.size()];
-        const auto& between = inserted[edge_index.at(key(a, b))];
+        const auto between = inserted.on(edge_index.at(key(a, b)));
         longer.push_back(a);
         if (a < b)
           longer.insert(longer.end(), between.begin(), between.end());

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/face_piece.h"
@@ -19,12 +21,19 @@ struct VertexEdge {
   std::uint32_t to;
 };
 
-/// For each edge the candidate vertices that lie on it within `weld` metres (less on short
-/// edges) and clear of its ends, in order
-/// from `from` to `to`.
-std::vector<std::vector<std::uint32_t>> vertices_on_edges(const VertexTable& vertices,
-                                                          const std::vector<VertexEdge>& edges,
-                                                          const std::vector<std::uint32_t>& candidates,
-                                                          double weld);
+/// Vertices on edges, edge by edge.
+struct EdgePoints {
+  std::vector<std::size_t> first;       ///< By edge, and one past the last: where its vertices begin.
+  std::vector<std::uint32_t> vertices;  ///< Of each edge in order from `from` to `to`.
+
+  std::span<const std::uint32_t> on(std::size_t edge) const {
+    return std::span(vertices).subspan(first[edge], first[edge + 1] - first[edge]);
+  }
+};
+
+/// For each edge the candidate vertices, each given once, that lie on it within `weld` metres (less on short
+/// edges) and clear of its ends.
+EdgePoints vertices_on_edges(const VertexTable& vertices, const std::vector<VertexEdge>& edges,
+                             const std::vector<std::uint32_t>& candidates, double weld);
 
 }  // namespace reemit

@@ -45,14 +45,8 @@ Vec3 vector_area(const VertexTable& vertices, const Loop& loop) {
 
 int winding_number(const std::vector<Vec2>& loop, const Vec2& p) {
   int winding = 0;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec2& a = loop[i];
-    const Vec2& b = loop[(i + 1) % loop.size()];
-    if ((a.y() <= p.y()) == (b.y() <= p.y())) continue;
-    const double side = (b.x() - a.x()) * (p.y() - a.y()) - (p.x() - a.x()) * (b.y() - a.y());
-    if (b.y() > a.y() && side > 0) ++winding;
-    if (b.y() < a.y() && side < 0) --winding;
-  }
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    winding += winding_of_edge(loop[i], loop[(i + 1) % loop.size()], p);
   return winding;
 }
 

@@ -57,6 +57,14 @@ struct FacePiece {
 /// Half the sum of cross products around a loop: its length is the area, its direction the normal (Newell).
 Vec3 vector_area(const VertexTable& vertices, const Loop& loop);
 
+/// What the edge from a to b contributes to the winding number around p: +1 upwards left of p, -1 downwards.
+inline int winding_of_edge(const Vec2& a, const Vec2& b, const Vec2& p) {
+  if ((a.y() <= p.y()) == (b.y() <= p.y())) return 0;
+  const double side = (b.x() - a.x()) * (p.y() - a.y()) - (p.x() - a.x()) * (b.y() - a.y());
+  if (b.y() > a.y()) return side > 0 ? 1 : 0;
+  return side < 0 ? -1 : 0;
+}
+
 /// Winding number of the loop around p: 0 outside, +1 inside of a counter-clockwise simple loop.
 int winding_number(const std::vector<Vec2>& loop, const Vec2& p);
 

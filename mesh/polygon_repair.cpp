@@ -8,6 +8,7 @@
 
 #include "mesh/face_notes.h"
 #include "mesh/planar_triangulation.h"
+#include "mesh/segment_crossings.h"
 #include "scenes/io/polygon_loops.h"
 #include "scenes/model/error.h"
 
@@ -195,6 +196,14 @@ PlanarTriangulation PolygonRepair::triangulate(const FacePiece& piece, const Fac
       segments.push_back({first + i, first + (i + 1) % count});
     }
   }
+  std::vector<PlanarSegment> lines;
+  lines.reserve(segments.size());
+  for (const auto& [a, b] : segments) lines.push_back({points[a], points[b]});
+  if (count_crossings(lines, kMostOutlineCrossings) > kMostOutlineCrossings)
+    throw bad_face(piece,
+                   fmt::format("its outline of {} corners crosses itself or its holes more than {} times",
+                               points.size(), kMostOutlineCrossings),
+                   "check the order of its corners, or split it into simple polygons");
   const PlanarLoops loops(vertices_, piece, piece.plane);
   return triangulate_planar(points, segments, [&](const Vec2& p) { return loops.contains(p); }, {});
 }

@@ -2,12 +2,11 @@
 
 #include <array>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
 
+#include "mesh/box_pairs.h"
 #include "mesh/coplanar_overlap.h"
-#include "mesh/edge_points.h"
 #include "mesh/polygon_repair.h"
 #include "mesh/shape_contacts.h"
 #include "mesh/tessellate.h"

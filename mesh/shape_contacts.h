@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/box_pairs.h"
+#include "mesh/box_tree.h"
 #include "mesh/contact_segments.h"
 #include "scenes/model/shape.h"
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "mesh/face_notes.h"
+#include "mesh/group_outlines.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -34,7 +35,7 @@ class GroupTriangulation {
         covered_(pieces.size(), 0.0),
         room_centre_(bounds(scene).centre()) {}
 
-  GroupTriangles run();
+  GroupTriangles run(const WorkStep& step);
 
  private:
   void triangulate(std::size_t g);
@@ -102,18 +103,15 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
     }
     return it->second;
   };
-  std::vector<PlanarLoops> outlines;
+  const GroupOutlines outlines(vertices_, pieces_, group);
   for (const std::size_t p : group.pieces) {
-    outlines.emplace_back(vertices_, pieces_[p], group.plane);
     for (const Loop& loop : pieces_[p].loops)
       for (std::size_t i = 0; i < loop.size(); ++i)
         segments.push_back({local_of(loop[i]), local_of(loop[(i + 1) % loop.size()])});
   }
   for (const Segment& s : cuts) segments.push_back({local_of(s[0]), local_of(s[1])});
 
-  const auto inside = [&](const Vec2& p) {
-    return std::any_of(outlines.begin(), outlines.end(), [&](const PlanarLoops& l) { return l.contains(p); });
-  };
+  const auto inside = [&](const Vec2& p) { return outlines.cover(p); };
   TriangleQuality limited = quality;
   limited.most_new_points = std::min(quality.most_new_points, 1000 + 10 * points.size());
   const PlanarTriangulation cut = triangulate_planar(points, segments, inside, limited);
@@ -122,13 +120,16 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
   std::vector<std::vector<std::size_t>> covering(cut.region_point.size());
   std::vector<std::size_t> winner(cut.region_point.size());
   for (std::size_t r = 0; r < covering.size(); ++r) {
-    for (std::size_t k = 0; k < group.pieces.size(); ++k)
-      if (group.pieces.size() == 1 || outlines[k].contains(cut.region_point[r]))
-        covering[r].push_back(group.pieces[k]);
+    if (group.pieces.size() == 1)
+      covering[r] = group.pieces;
+    else
+      outlines.covering(cut.region_point[r], covering[r]);
+    if (group.pieces.size() > 1)
+      for (std::size_t& k : covering[r]) k = group.pieces[k];
     if (!covering[r].empty()) winner[r] = winner_of(pieces_, covering[r], room_centre_);
   }
   const std::size_t before = out_.size();
-  std::map<std::pair<std::size_t, std::size_t>, double> overlap;
+  std::unordered_map<std::uint64_t, double> overlap;  // area by winner and loser
   for (const std::size_t p : group.pieces) meshed_[p] = covered_[p] = 0;
   for (std::size_t i = 0; i < cut.triangles.size(); ++i) {
     const std::size_t r = cut.region[i];
@@ -139,7 +140,7 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
     for (const std::size_t p : covering[r]) {
       if (p == winner[r]) continue;
       covered_[p] += area;
-      overlap[{winner[r], p}] += area;
+      overlap[(std::uint64_t{winner[r]} << 32) | p] += area;
     }
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     if (pieces_[winner[r]].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
@@ -151,7 +152,7 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
     out_.resize(before);
     return false;
   }
-  overlap_.merge(overlap);
+  for (const auto& [pair, area] : overlap) overlap_[{pair >> 32, pair & 0xffffffff}] = area;
   return true;
 }
 
@@ -189,12 +190,20 @@ void GroupTriangulation::triangulate(std::size_t g) {
 void GroupTriangulation::count_cut_pieces(std::size_t g) {
   const PieceGroup& group = groups_.groups[g];
   if (cuts_.segments[g].empty()) return;
-  for (const std::size_t p : group.pieces) {
-    const PlanarLoops outline(vertices_, pieces_[p], group.plane);
-    const auto runs_inside = [&](const Segment& s) {
-      return outline.contains(group.plane.project(0.5 * (vertices_[s[0]] + vertices_[s[1]])));
-    };
-    if (std::any_of(cuts_.segments[g].begin(), cuts_.segments[g].end(), runs_inside)) ++report_.cut_faces;
+  std::vector<Vec2> middles;
+  std::vector<IndexedBox> boxes;
+  for (const Segment& s : cuts_.segments[g]) {
+    middles.push_back(group.plane.project(0.5 * (vertices_[s[0]] + vertices_[s[1]])));
+    boxes.push_back(box_in_plane(middles.back(), middles.back(), boxes.size()));
+  }
+  const BoxTree tree(std::move(boxes));
+  const GroupOutlines outlines(vertices_, pieces_, group);
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    bool cut = false;
+    const NearRectangle in_box(outlines[k].min, outlines[k].max);
+    tree.visit([&](const Vec3& min, const Vec3& max) { return !cut && in_box(min, max); },
+               [&](std::uint32_t i) { cut = cut || outlines[k].contains(middles[i]); });
+    if (cut) ++report_.cut_faces;
   }
 }
 
@@ -225,8 +234,9 @@ void GroupTriangulation::report_overlaps() {
                   lost.size(), total, names));
 }
 
-GroupTriangles GroupTriangulation::run() {
+GroupTriangles GroupTriangulation::run(const WorkStep& step) {
   for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
+    step.at(g, groups_.groups.size());
     triangulate(g);
     count_cut_pieces(g);
   }
@@ -239,8 +249,8 @@ GroupTriangles GroupTriangulation::run() {
 GroupTriangles triangulate_groups(const Scene& scene, const std::vector<FacePiece>& pieces,
                                   const PieceGroups& groups, const ContactCuts& cuts,
                                   const MeshTolerances& tolerances, const TriangleQuality& quality,
-                                  VertexTable& vertices, MeshReport& report) {
-  return GroupTriangulation(scene, pieces, groups, cuts, tolerances, quality, vertices, report).run();
+                                  const WorkStep& step, VertexTable& vertices, MeshReport& report) {
+  return GroupTriangulation(scene, pieces, groups, cuts, tolerances, quality, vertices, report).run(step);
 }
 
 }  // namespace reemit

@@ -9,6 +9,7 @@
 #include "mesh/mesh_tolerances.h"
 #include "mesh/planar_triangulation.h"
 #include "mesh/vertex_table.h"
+#include "scenes/model/work_watch.h"
 
 namespace reemit {
 
@@ -28,6 +29,6 @@ struct GroupTriangles {
 GroupTriangles triangulate_groups(const Scene& scene, const std::vector<FacePiece>& pieces,
                                   const PieceGroups& groups, const ContactCuts& cuts,
                                   const MeshTolerances& tolerances, const TriangleQuality& quality,
-                                  VertexTable& vertices, MeshReport& report);
+                                  const WorkStep& step, VertexTable& vertices, MeshReport& report);
 
 }  // namespace reemit

@@ -16,6 +16,7 @@
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/messages.h"
+#include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/room_report.h"
 #include "viewer_export/cli/solution_report.h"
 
@@ -60,7 +61,9 @@ ExitCode show_solution(const InfoOptions& options) {
 
 ExitCode show_room(const InfoOptions& options) {
   const Scene scene = read_scene(options.files, options.read);
-  const MeshResult meshed = build_mesh(scene);
+  Progress meshing("meshing", progress_style(options.style.quiet, options.style.verbose));
+  const MeshResult meshed = build_mesh(scene, {}, WorkWatch([&](double done) { meshing.update(done); }));
+  meshing.finish();
   const std::vector<std::string> light_warnings = luminaire_warnings(scene, meshed.mesh);
   if (options.style.json) {
     print_json(room_json(scene, meshed, light_warnings));

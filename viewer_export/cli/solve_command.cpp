@@ -96,7 +96,9 @@ ExitCode run_solve(const SolveOptions& options) {
     mesh_settings.default_zone_count = kMatrixZoneCount;
     mesh_settings.exact_shapes = false;  // form factors are those of flat zones
   }
-  MeshResult meshed = build_mesh(scene, mesh_settings);
+  Progress meshing("meshing", progress_style(options.style.quiet, options.style.verbose));
+  MeshResult meshed = build_mesh(scene, mesh_settings, WorkWatch([&](double done) { meshing.update(done); }));
+  meshing.finish();
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
 
   SolverSettings settings = options.solver;

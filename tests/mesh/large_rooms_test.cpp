@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mesh/build_mesh.h"
+#include "mesh/convex_region.h"
+#include "mesh/loop_bins.h"
+#include "scenes/model/error.h"
+#include "tests/mesh/test_room.h"
+
+namespace reemit {
+namespace {
+
+using test::floor_rectangle;
+using test::TestRoom;
+using testing::HasSubstr;
+
+std::string refusal_of(const Scene& scene) {
+  try {
+    build_mesh(scene);
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+  return "";
+}
+
+std::vector<Vec3> on_a_circle(int corners) {
+  std::vector<Vec3> out;
+  for (int i = 0; i < corners; ++i) {
+    const double azimuth = 2 * std::numbers::pi * i / corners;
+    out.emplace_back(std::cos(azimuth), std::sin(azimuth), 1);
+  }
+  return out;
+}
+
+TEST(LargeRooms, FloorIsCutUnderTensOfThousandsOfFeet) {
+  TestRoom room;
+  const MaterialId grey = room.material();
+  room.polygon("floor", grey, floor_rectangle(0, 0, 80, 80));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> jitter(0, 0.5);
+  constexpr int kRow = 71;
+  constexpr int kFeet = kRow * kRow;  // 20164 lines in the floor
+  for (int i = 0; i < kFeet; ++i) {
+    const Vec3 at(0.5 + i % kRow + jitter(random), 0.5 + i / kRow + jitter(random), 1e-4);
+    room.box("foot", grey, at, at + Vec3(0.05, 0.05, 0.4));
+  }
+  MeshSettings coarse;
+  coarse.zone_area = 1;
+  const MeshResult r = build_mesh(room.scene(), coarse);
+  EXPECT_THAT(r.report.warnings, testing::IsEmpty());
+  std::size_t under_feet = 0;
+  for (std::size_t i = 0; i < r.mesh.triangle_count(); ++i)
+    if (r.mesh.triangle(TriangleId(i)).surface.index() == 0 &&
+        std::abs(r.mesh.triangle_area(TriangleId(i)) - 0.5 * 0.05 * 0.05) < 1e-9)
+      ++under_feet;
+  EXPECT_EQ(under_feet, 2U * kFeet);
+}
+
+TEST(LargeRooms, OutlineWithTooManyCrossingsIsRefusedByName) {
+  TestRoom room;
+  const SurfaceId id = room.surface("scribble", room.material());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 3000; ++i) corners.emplace_back(anywhere(random), anywhere(random), 0);
+  room.add(id, corners);
+  const std::string message = refusal_of(room.scene());
+  EXPECT_THAT(message, HasSubstr("scribble"));
+  EXPECT_THAT(message,
+              HasSubstr("outline of 3000 corners crosses itself or its holes more than 100000 times"));
+}
+
+TEST(LargeRooms, LongOutlineThatCrossesItselfSeldomIsFilled) {
+  TestRoom room;
+  const SurfaceId id = room.surface("star", room.material());
+  std::vector<Vec3> star;
+  const std::vector<Vec3> circle = on_a_circle(3001);
+  for (std::size_t i = 0; i < circle.size(); ++i) star.push_back(circle[7 * i % circle.size()]);
+  room.add(id, star);
+  EXPECT_EQ(refusal_of(room.scene()), "");
+}
+
+TEST(LargeRooms, FanOfTooManyTrianglesIsRefusedByName) {
+  TestRoom room;
+  const SurfaceId id = room.surface("fan", room.material());
+  Surface& fan = room.scene().surfaces[id.index()];
+  fan.positions = on_a_circle(10000);
+  const auto count = static_cast<std::uint32_t>(fan.positions.size());
+  fan.positions.emplace_back(0, 0, 1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Face face;
+    face.outer = {count, i, (i + 1) % count};
+    fan.faces.push_back(face);
+  }
+  const std::string message = refusal_of(room.scene());
+  EXPECT_THAT(message, HasSubstr("'fan'"));
+  EXPECT_THAT(message, HasSubstr("comparisons for 10000 faces"));
+  EXPECT_THAT(message, HasSubstr("join thin triangles"));
+}
+
+TEST(LargeRooms, NeighboursAlongEdgesAreNotCandidatesForContact) {
+  VertexTable vertices(1e-7);
+  const auto triangle = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    FacePiece piece;
+    piece.loops = {{vertices.weld(a), vertices.weld(b), vertices.weld(c)}};
+    return piece;
+  };
+  const FacePiece piece = triangle({0, 0, 0}, {1, 0, 0}, {0.3, 1, 0});
+  const ConvexRegion region = ConvexRegion::of_piece(vertices, piece, PlaneFrame{}, 5e-4, 5e-6);
+  const auto touches = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const std::array corners{a, b, c};
+    return region.touches(corners.data(), corners.data() + 3);
+  };
+  EXPECT_FALSE(touches({0, 0, 0}, {1, 0, 0}, {0.5, -1, 0.2}));    // shares an edge
+  EXPECT_FALSE(touches({0, 0, 0}, {-1, 0.1, 0}, {-1, -1, 0.2}));  // shares a corner
+  EXPECT_FALSE(touches({0.3, 0.3, 6e-4}, {0.5, 0.3, 6e-4}, {0.4, 0.3, 1}));
+  EXPECT_TRUE(touches({0.3, 0.3, 4e-4}, {0.5, 0.3, 4e-4}, {0.4, 0.3, 1}));  // stands on it
+  EXPECT_TRUE(touches({0.3, 0.3, -1}, {0.5, 0.3, -1}, {0.4, 0.3, 1}));      // pierces it
+  EXPECT_TRUE(touches({-1, 0.5, 1e-4}, {2, 0.5, 1e-4}, {0.5, 0.5, 1}));     // runs across it
+}
+
+TEST(LargeRooms, StripsOfALongLoopAnswerLikeTheLoop) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  std::vector<Vec2> loop;
+  for (int i = 0; i < 200; ++i) loop.emplace_back(anywhere(random), std::round(8 * anywhere(random)) / 8);
+  const LoopBins bins(loop);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec2 p(1.2 * anywhere(random),
+                 i % 2 == 0 ? loop[static_cast<std::size_t>(i % 200)].y() : 1.2 * anywhere(random));
+    ASSERT_EQ(bins.winding(p), winding_number(loop, p)) << p.transpose();
+  }
+}
+
+TEST(LargeRooms, MeshingTellsHowFarItIsAndStopsWhenAsked) {
+  TestRoom room;
+  room.box("room", room.material(), {0, 0, 0}, {4, 3, 5}, true);
+  std::vector<double> told;
+  build_mesh(room.scene(), {}, WorkWatch([&](double done) { told.push_back(done); }));
+  EXPECT_GE(told.size(), 5U);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GE(told.front(), 0);
+  EXPECT_LE(told.back(), 1);
+
+  std::atomic<bool> interrupt{false};
+  const auto stop_half_way = [&](double done) { interrupt = done > 0.5; };
+  EXPECT_THROW(build_mesh(room.scene(), {}, WorkWatch(stop_half_way, StopToken(interrupt))), Interrupted);
+}
+
+}  // namespace
+}  // namespace reemit
