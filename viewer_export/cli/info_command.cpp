@@ -15,6 +15,8 @@
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/light_report.h"
+#include "viewer_export/cli/luminaire_list.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/room_report.h"
 #include "viewer_export/cli/solution_report.h"
@@ -33,27 +35,38 @@ bool is_solution(const std::filesystem::path& path) {
   return is_solution_file(path) || path.extension() == ".h5" || path.extension() == ".hdf5";
 }
 
-/// Whether the room of a solution can still be read and is the one that was solved.
-std::string room_status(const Solution& solution, const std::filesystem::path& file) {
+/// What is left of the room of a solution.
+struct RoomOfSolution {
+  std::string status = "unchanged";  ///< Or why it cannot be read or is not the one that was solved.
+  std::vector<LuminaireRow> luminaires;
+};
+
+RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& file) {
+  RoomOfSolution room;
   try {
-    read_room_of(solution, file);
-    return "unchanged";
+    room.luminaires = list_luminaires(read_room_of(solution, file), solution.mesh_report);
   } catch (const InputError& problem) {
     const std::string message = problem.what();
-    return message.substr(0, message.find('\n'));
+    room.status = message.substr(0, message.find('\n'));
+    room.luminaires = list_luminous_surfaces(solution);
   }
+  return room;
 }
 
 ExitCode show_solution(const InfoOptions& options) {
   const Solution solution = load_solution(options.file);
-  const std::string status = room_status(solution, options.file);
+  const RoomOfSolution room = find_room(solution, options.file);
   if (options.style.json) {
-    fmt::print("{}\n", solution_json(solution, options.file, status).dump(2));
-  } else {
-    fmt::print("{}", solution_text(solution, options.file, status));
-    print_warnings(solution.mesh_report.warnings);
-    print_warnings(solution.light_warnings);
+    nlohmann::ordered_json json = solution_json(solution, options.file, room.status);
+    add_light(json, solution, room.luminaires);
+    fmt::print("{}\n", json.dump(2));
+    return ExitCode::kDone;
   }
+  fmt::print("{}\n{}", solution_text(solution, options.file, room.status),
+             light_text(solution, room.luminaires));
+  std::fflush(stdout);
+  print_warnings(solution.mesh_report.warnings);
+  print_warnings(solution.light_warnings);
   return ExitCode::kDone;
 }
 

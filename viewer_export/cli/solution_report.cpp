@@ -165,7 +165,6 @@ Json solution_json(const Solution& solution, const std::filesystem::path& file,
             {"room_status", room_status}};
   json.update(record_json(solution));
   json["base_triangles"] = solution.mesh.triangle_count();
-  json["surfaces"] = solution.surface_names;
   json["warnings"] = solution.mesh_report.warnings;
   for (const std::string& warning : solution.light_warnings) json["warnings"].push_back(warning);
   return json;

@@ -197,6 +197,38 @@ TEST_F(Pipeline, InfoOfASolution) {
   EXPECT_THAT(output_of({"info", path("room.h5")}), HasSubstr("seed 77"));
 }
 
+TEST_F(Pipeline, InfoGivesTheLightOfEverySurfaceAndMaterialWithItsError) {
+  solve_small_room(folder_, "room.h5");
+  const json info = json::parse(output_of({"info", path("room.h5"), "--json"}));
+  ASSERT_EQ(info["surfaces"].size(), 14U) << "both sides of six walls and the lamp";
+  ASSERT_EQ(info["materials"].size(), 3U);
+  double leaving = 0;
+  double received = 0;
+  for (const json& surface : info["surfaces"]) {
+    const bool outside = surface["side"] == "back" && surface["name"] != "lamp";
+    EXPECT_EQ(surface["counts"], !outside) << surface["name"];
+    if (outside) continue;
+    EXPECT_GT(surface["illuminance_lx"].get<double>(), 0);
+    EXPECT_GT(surface["illuminance_stderr_lx"].get<double>(), 0);
+    EXPECT_NEAR(surface["received_flux_lm"].get<double>(),
+                surface["area_m2"].get<double>() * surface["illuminance_lx"].get<double>(), 1e-9);
+    leaving += surface["leaving_flux_lm"].get<double>();
+    received += surface["received_flux_lm"].get<double>();
+  }
+  // The room is closed: what leaves its surfaces arrives on them, but for the quanta on their way at the end.
+  EXPECT_NEAR(received / leaving, 1, 1e-4);
+  const json& lamp = info["surfaces"][12];
+  EXPECT_EQ(lamp["name"], "lamp");
+  EXPECT_NEAR(lamp["exitance_W_m2"][0].get<double>(), 30, 1e-9);
+  EXPECT_NEAR(lamp["leaving_flux_lm"].get<double>(), info["luminaires"][0]["flux_lm"].get<double>(), 1e-6);
+  EXPECT_THAT(output_of({"info", path("room.h5")}), HasSubstr("E [lx]"));
+
+  std::filesystem::remove(folder_ / "room.json");
+  const json without = json::parse(output_of({"info", path("room.h5"), "--json"}));
+  EXPECT_NE(without["room_status"], "unchanged");
+  EXPECT_EQ(without["luminaires"], info["luminaires"]) << "luminous surfaces are in the solution";
+}
+
 TEST_F(Pipeline, WarningsGoToStandardErrorAndQuietSilencesThem) {
   folder_.write("dark.json", replaced(small_json_room(), R"(, "exitance": [30, 25, 20])", ""));
   const std::vector<std::string> solve{"solve",         path("dark.json"), "-o",
