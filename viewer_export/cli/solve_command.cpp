@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/run_log.h"
 #include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/text_table.h"
 
@@ -36,6 +38,7 @@ struct SolveOptions {
   ReadOptions read;
   MeshSettings mesh;
   SolverSettings solver;
+  std::filesystem::path log;  ///< Empty: none.
   OutputStyle style;
 };
 
@@ -70,6 +73,7 @@ ExitCode run_solve(const SolveOptions& options) {
   const bool matrix = options.solver.method == SolveMethod::kMatrix;
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
   check_output_file(options.output, options.room);
+  if (!options.log.empty()) RunLog::check(options.log, options.room, options.output);
   const Scene scene = read_scene(options.room, options.read);
   if (!options.style.quiet) {
     print_warnings(scene.warnings);
@@ -90,11 +94,20 @@ ExitCode run_solve(const SolveOptions& options) {
       print_note(fmt::format("no stopping rule given; solving to --error {:g}%", 100 * kDefaultErrorTarget));
     }
   }
+  std::optional<RunLog> log;
+  if (!options.log.empty())
+    log.emplace(options.log,
+                RunLog::Run{options.room, options.output, settings, meshed.mesh.zone_count(), scene.bands});
   const InterruptGuard interrupt;
   Progress progress("solving", progress_style(options.style.quiet, options.style.verbose));
-  Solution solution = solve(scene, std::move(meshed), settings, progress_callback(progress, settings.method),
-                            interrupt.requested());
+  const ProgressCallback show = progress_callback(progress, settings.method);
+  const ProgressCallback report = [&](const SolveProgress& now) {
+    show(now);
+    if (log) log->add(now);
+  };
+  Solution solution = solve(scene, std::move(meshed), settings, report, interrupt.requested());
   progress.finish();
+  if (log) log->finish(solution);
   solution.room_path = std::filesystem::absolute(options.room).lexically_normal().string();
   solution.read_options = options.read;
   solution.mesh_settings = mesh_settings;
@@ -167,6 +180,10 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_gltf_unit_options(solve, options->read);
 
   solve.option_defaults()->group("Output");
+  solve
+      .add_option("--log", options->log,
+                  "Log of error over time: one JSON object per line and batch, written as the run goes")
+      ->type_name("FILE");
   add_json_option(solve, options->style);
   add_progress_options(solve, options->style);
   solve.callback([options, &action] { action = [options] { return run_solve(*options); }; });
