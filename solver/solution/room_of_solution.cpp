@@ -12,10 +12,7 @@ namespace {
 fs::path find_room(const Solution& solution, const fs::path& solution_file,
                    const std::optional<fs::path>& override) {
   std::error_code code;
-  if (override) {
-    if (fs::exists(*override, code)) return *override;
-    throw InputError(override->string(), "no such room file", "Check the spelling of the name.");
-  }
+  if (override) return *override;
   const fs::path stored = solution.room_path;
   if (fs::exists(stored, code)) return stored;
   const fs::path beside = solution_file.parent_path() / stored.filename();

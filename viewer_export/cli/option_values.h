@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "scenes/model/vec.h"
@@ -23,6 +24,9 @@ double parse_positive(const std::string& text);
 double parse_number(const std::string& text);
 /// Three finite numbers "X,Y,Z".
 Vec3 parse_point(const std::string& text);
+
+/// "1,2,3" where the three numbers are the first of `words`, with or without commas behind them; else empty.
+std::string joined_point(std::span<const std::string> words);
 
 struct PixelSize {
   int width = 0;   ///< [px]
