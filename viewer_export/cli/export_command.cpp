@@ -31,6 +31,7 @@ struct ExportOptions {
   std::filesystem::path output;
   VertexSettings vertex;
   bool form_factors = false;
+  bool photometric = false;  ///< Write lx and cd/m2 instead of W/m2 and W/(m2 sr).
   ToneMapSettings tone_map;
   OutputStyle style;
 };
@@ -55,6 +56,7 @@ ExitCode run_export(const ExportOptions& options) {
     return export_form_factors(
         {options.solution, options.output, options.vertex.seed, options.vertex.threads, options.style});
   export_format_of(options.output);  // refuses an unknown one before the work
+  if (options.photometric) check_photometric(options.output);
   check_output_file(options.output, options.solution);
   const Solution solution = load_solution(options.solution);
   const Scene scene = read_room_of(solution, options.solution, options.room);
@@ -68,7 +70,12 @@ ExitCode run_export(const ExportOptions& options) {
       interrupt.requested());
   progress.finish();
   data.tone_map = options.tone_map;
-  write_output([&] { write_vertex_data(data, options.output); });
+  write_output([&] {
+    if (options.photometric)
+      write_photometric_data(data, options.output);
+    else
+      write_vertex_data(data, options.output);
+  });
 
   if (data.limited_by_zones && !options.style.quiet) {
     print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
@@ -101,8 +108,10 @@ void add_export_command(CLI::App& program, Action& action) {
       "Examples:\n"
       "  reemit export room.h5 -o room.ply\n"
       "  reemit export room.h5 -o room.csv --samples 1024\n"
+      "  reemit export room.h5 -o lux.csv --units lx\n"
       "  reemit export room.h5 -o quick.glb --values zones\n"
-      "  reemit export room.h5 -o factors.csv --form-factors");
+      "  reemit export room.h5 -o factors.csv --form-factors\n"
+      "What is in each file: docs/export_formats.md");
   command.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
   command.add_option("-o,--output", options->output, output_help())->required()->type_name("FILE");
   add_room_option(command, options->room);
@@ -116,6 +125,10 @@ void add_export_command(CLI::App& program, Action& action) {
       command, "--values", options->vertex.average_zones, {{"gather", false}, {"zones", true}},
       "gather: direct light and final gather at each vertex; zones: the mean of the\n"
       "zones around it, quick and as coarse as the zones"));
+  form_factors->excludes(add_choice_option<bool>(
+      command, "--units", options->photometric, {{"W", false}, {"lx", true}},
+      "W: radiance [W/(m2 sr)] and irradiance [W/m2] per band; lx: luminance [cd/m2] and\n"
+      "illuminance [lx], .csv only"));
   auto* error =
       add_parsed_option(command, "--error", options->vertex.error_target, parse_share, "SHARE",
                         "Refine until the relative error (area-weighted rms over vertices, worst band) is\n"

@@ -93,8 +93,9 @@ void add_info_command(CLI::App& program, Action& action) {
   CLI::App& info = *program.add_subcommand("info", "Say what a room or a solution holds");
   info.footer(
       "Warnings about the geometry go to stderr, and into the document with --json.\n"
-      "Example:\n"
-      "  reemit info room.json");
+      "Examples:\n"
+      "  reemit info room.json    units, size, materials, luminaires, cameras\n"
+      "  reemit info room.h5      lux, exitance and flux of every surface and material, with errors");
   info.add_option("file", options->file, "Room (.json .obj .gltf .glb .mgf) or solution file")
       ->required()
       ->type_name("ROOM|SOLUTION");

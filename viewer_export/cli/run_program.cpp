@@ -32,6 +32,11 @@ constexpr const char* kFooter =
     "  reemit export room.h5 -o room.ply\n"
     "  reemit audit room.h5\n"
     "'reemit COMMAND --help' explains a command.\n"
+    "Lux: 'reemit info room.h5' for every surface, 'reemit export room.h5 -o lux.csv --units lx' for\n"
+    "every vertex. Noise: a lower --error, of solve first, then of render or export; a smaller\n"
+    "--zone-area where the last line of a command says that zones are what is off.\n"
+    "Documentation in docs/: examples.md, room_format.md, command_line.md, export_formats.md,\n"
+    "solution_file.md.\n"
     "Exit codes: 0 done, 1 a check failed, 2 bad usage, input or output, 3 out of memory,\n"
     "130 interrupted before there was a result.";
 

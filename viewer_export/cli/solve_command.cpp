@@ -142,7 +142,8 @@ void add_solve_command(CLI::App& program, Action& action) {
       "at once.\n"
       "Examples:\n"
       "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
-      "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7");
+      "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7\n"
+      "How to write a room: docs/room_format.md; what the solution holds: docs/solution_file.md");
   solve.add_option("room", options->room, "Room file: .json .obj .gltf .glb .mgf")
       ->required()
       ->type_name("ROOM");

@@ -1,7 +1,11 @@
 // The whole way of the data through the built program: solve, render, export, audit, info.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -138,6 +142,62 @@ TEST_F(Pipeline, ExportsAllFormats) {
     output_of({"export", path("room.h5"), "-o", path(std::string("room") + extension), "--samples", "8"});
     EXPECT_GT(std::filesystem::file_size(path(std::string("room") + extension)), 1000U) << extension;
   }
+}
+
+TEST_F(Pipeline, PhotometricUnitsAreTheBandsTimesTheirEfficacy) {
+  solve_small_room(folder_, "room.h5");
+  output_of({"export", path("room.h5"), "-o", path("watts.csv"), "--values", "zones"});
+  output_of({"export", path("room.h5"), "-o", path("lux.csv"), "--values", "zones", "--units", "lx"});
+  const std::vector<CsvRow> watts = csv_rows(folder_ / "watts.csv");
+  const std::vector<CsvRow> lux = csv_rows(folder_ / "lux.csv");
+  ASSERT_EQ(watts.size(), lux.size());
+  const auto photometric = [](const CsvRow& row, const std::string& name) {
+    return 179 * (0.2126 * std::stod(row.at(name + "_r")) + 0.7152 * std::stod(row.at(name + "_g")) +
+                  0.0722 * std::stod(row.at(name + "_b")));
+  };
+  for (std::size_t i = 0; i < lux.size(); ++i) {
+    const double expected = photometric(watts[i], "irradiance");
+    EXPECT_NEAR(std::stod(lux[i].at("illuminance")), expected, 1e-5 * expected);
+    EXPECT_NEAR(std::stod(lux[i].at("luminance")), photometric(watts[i], "radiance"), 1e-4 * expected);
+  }
+  const ProgramRun refused = run_reemit({"export", path("room.h5"), "-o", path("x.ply"), "--units", "lx"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("for .csv"));
+}
+
+TEST_F(Pipeline, TheLogOfAKilledRunCanBeRead) {
+  RunningProgram program(
+      {"solve", path("room.json"), "-o", path("room.h5"), "--time", "60", "--log", path("run.jsonl")});
+  const auto lines = [&] {
+    std::istringstream text(read_bytes(folder_ / "run.jsonl"));
+    std::vector<std::string> all;
+    for (std::string line; std::getline(text, line);) all.push_back(line);
+    return all;
+  };
+  for (int i = 0; i < 600 && lines().size() < 4; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  program.send(SIGKILL);
+  EXPECT_EQ(program.wait().exit_code, -SIGKILL);
+  const std::vector<std::string> all = lines();
+  ASSERT_GE(all.size(), 4U);
+  EXPECT_EQ(json::parse(all[0])["event"], "start");
+  double seconds = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const json batch = json::parse(all[i]);
+    EXPECT_EQ(batch["event"], "batch");
+    EXPECT_EQ(batch["batches"].get<std::size_t>(), i);
+    EXPECT_GT(batch["seconds"].get<double>(), seconds);
+    EXPECT_EQ(batch["error"].is_null(), i < 2) << "known from two batches on";
+    seconds = batch["seconds"].get<double>();
+  }
+
+  output_of(
+      {"solve", path("room.json"), "-o", path("room.h5"), "--packets", "20000", "--log", path("run.jsonl")});
+  EXPECT_EQ(json::parse(lines().back())["event"], "end") << "an old log is replaced";
+  const ProgramRun refused = run_reemit(
+      {"solve", path("room.json"), "-o", path("other.h5"), "--packets", "20000", "--log", path("room.h5")});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("no log of a run"));
 }
 
 TEST_F(Pipeline, ExportedIrradianceIsPhysical) {
