@@ -44,10 +44,12 @@ void book_areas(const VertexTable& vertices, const std::vector<FacePiece>& piece
     SurfaceAreas& areas = report.surfaces[pieces[p].surface.index()];
     areas.meshed += meshed[p];
     areas.removed += cut.covered[p];
-    // What welding and omitted slivers changed; less than that is rounding.
-    const double rest = pieces[p].area - meshed[p] - cut.covered[p];
-    if (std::abs(rest) > 1e-12 * pieces[p].area) areas.removed += rest;
-    if (meshed[p] + cut.covered[p] <= 0) areas.collapsed += pieces[p].area;
+    if (meshed[p] + cut.covered[p] <= 0) {
+      areas.removed += pieces[p].area;
+      areas.collapsed += pieces[p].area;
+    } else {
+      areas.welded += pieces[p].area - meshed[p] - cut.covered[p];
+    }
   }
 }
 

@@ -15,7 +15,8 @@ struct SurfaceAreas {
   double meshed = 0;  ///< Sum over the base triangles.
   /// Duplicates, parts covered by a coplanar face that wins over this one, and what collapsed.
   double removed = 0;
-  double collapsed = 0;  ///< Part of `removed`: faces and slivers too small or thin to be meshed.
+  double collapsed = 0;  ///< Part of `removed`: faces too small or thin to be meshed.
+  double welded = 0;     ///< What moving corners onto each other took away, of either sign, and rounding.
 };
 
 /// What meshing did to the room, for `info` and for the user.

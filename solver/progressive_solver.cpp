@@ -34,6 +34,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
 Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings) {
   Solution solution;
   solution.program_version = kProgramVersion;
@@ -141,8 +143,7 @@ class BatchRun {
     }
     record.error = zone_rms_error(transport_.scene(), solution_.mesh, solution_.sums);
     state_.error = record.error;
-    if (rule_.may_reach_target(state_.batches, record.error))
-      state_.error = zone_error(transport_.scene(), solution_.mesh, solution_.sums).bound;
+    look_at_bound();
     state_.unshot_share = solution_.audit.worst_unshot_share();
     const double before = std::exchange(state_.seconds, seconds_since(schedule_.start));
     state_.batch_seconds = (state_.seconds - before) / static_cast<double>(weight);
@@ -150,14 +151,33 @@ class BatchRun {
     return whole;
   }
 
-  void report(const ProgressCallback& progress) const {
-    const SolveRecord& record = solution_.record;
-    const double fraction = rule_.fraction_done(state_);
-    progress(
-        {fraction, record.error, static_cast<double>(record.rays) / record.seconds, record.seconds,
-         fraction > 0 ? record.seconds * (1 - fraction) / fraction : std::numeric_limits<double>::infinity(),
-         record.rays, record.packets, state_.batches});
+  /// The bound takes a longer look than the error: where it may end the run, and for information whenever the
+  /// work has doubled.
+  void look_at_bound() {
+    const bool decides = rule_.may_reach_target(state_.batches, record().error);
+    if (!decides && state_.weight < 2 * weight_of_bound_) return;
+    bound_ = zone_error(transport_.scene(), solution_.mesh, solution_.sums).bound;
+    weight_of_bound_ = state_.weight;
+    if (decides) state_.error = bound_;
   }
+
+  void report(const ProgressCallback& progress) const {
+    const double fraction = rule_.fraction_done(state_);
+    SolveProgress now;
+    now.fraction = fraction;
+    now.error = record().error;
+    now.error_bound = bound_;
+    now.unshot_share = state_.unshot_share;
+    now.rays_per_second = static_cast<double>(record().rays) / record().seconds;
+    now.seconds = record().seconds;
+    now.seconds_left = fraction > 0 ? now.seconds * (1 - fraction) / fraction : kUnknown;
+    now.rays = record().rays;
+    now.packets = record().packets;
+    now.batches = state_.batches;
+    progress(now);
+  }
+
+  const SolveRecord& record() const { return solution_.record; }
 
   const TransportScene& transport_;
   const Emission& emission_;
@@ -167,20 +187,31 @@ class BatchRun {
   StopRule rule_;
   BatchBooks books_;
   RunState state_;
+  double bound_ = kUnknown;
+  std::int64_t weight_of_bound_ = 0;  // when bound_ was looked at
 };
 
-/// What follows the batches and takes time of its own: light on small zones, and how far points differ from
-/// zones.
-void finish(const Scene& scene, const RayScene& rays, const Schedule& schedule,
-            const std::atomic<bool>& interrupt, Solution& solution) {
+/// Light on small zones, which follows the batches and takes time of its own.
+void gather_what_is_small(const Scene& scene, const RayScene& rays, const Schedule& schedule,
+                          const std::atomic<bool>& interrupt, Solution& solution) {
+  if (!gathers_small_zones(solution)) return;
   SolveRecord& record = solution.record;
-  if (gathers_small_zones(solution)) {
-    SmallZoneLimits limits;
-    limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
-    if (schedule.limit_s > 0) limits.seconds = schedule.gather_s - seconds_since(schedule.start);
-    const bool clock_had_a_say =
-        gather_small_zones(scene, rays, limits, solution, schedule.token(schedule.gather_s, interrupt));
-    if (clock_had_a_say && !interrupt) record.stopped = StopReason::kTimeLimit;
+  SmallZoneLimits limits;
+  limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
+  if (schedule.limit_s > 0) limits.seconds = schedule.gather_s - seconds_since(schedule.start);
+  const bool clock_had_a_say =
+      gather_small_zones(scene, rays, limits, solution, schedule.token(schedule.gather_s, interrupt));
+  if (clock_had_a_say && !interrupt) record.stopped = StopReason::kTimeLimit;
+}
+
+/// How far points differ from the zones they are in.
+void compare_points_with_zones(const Scene& scene, const RayScene& rays, const Schedule& schedule,
+                               const std::atomic<bool>& interrupt, Solution& solution) {
+  SolveRecord& record = solution.record;
+  if (solution.settings.method == SolveMethod::kMatrix) {
+    record.discretisation = discretisation_error(scene, rays, solution, StopToken(interrupt));
+    record.gather_bias = estimate_zone_bias(scene, rays, solution, StopToken(interrupt));
+    return;
   }
   // Short runs may spend a moment more on it.
   constexpr double kMoment = 0.5;
@@ -199,19 +230,20 @@ void run_matrix(const TransportScene& transport, const Emission& emission, Solut
   const auto start = Clock::now();
   const auto report = [&](double fraction) {
     if (!progress) return;
-    constexpr double kUnknown = std::numeric_limits<double>::infinity();
-    const double seconds = seconds_since(start);
-    const double left = fraction > 0 ? seconds * (1 - fraction) / fraction : kUnknown;
-    progress({fraction, kUnknown, 0, seconds, left, 0, 0, 0});
+    SolveProgress now;
+    now.fraction = fraction;
+    now.error = now.error_bound = kUnknown;
+    now.seconds = seconds_since(start);
+    now.seconds_left = fraction > 0 ? now.seconds * (1 - fraction) / fraction : kUnknown;
+    progress(now);
   };
   solve_by_matrix(transport, emission, report, interrupt, solution);
   solution.record.seconds = seconds_since(start);
 }
 
-}  // namespace
-
-Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
-               const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+/// `examine`: find out how good the solution is, beyond its noise, and where light is lost.
+Solution solve_room(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
+                    const ProgressCallback& progress, const std::atomic<bool>& interrupt, bool examine) {
   const auto start = Clock::now();
   Solution solution = empty_solution(scene, std::move(mesh), settings);
   const RayScene rays(solution.mesh);
@@ -232,12 +264,11 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
     const Schedule schedule(start, solution);
     if (settings.method == SolveMethod::kMatrix) {
       run_matrix(transport, emission, solution, progress, interrupt);
-      solution.record.discretisation = discretisation_error(scene, rays, solution, StopToken(interrupt));
-      solution.record.gather_bias = estimate_zone_bias(scene, rays, solution, StopToken(interrupt));
     } else {
       BatchRun(transport, emission, schedule, solution).run(progress, interrupt);
-      finish(scene, rays, schedule, interrupt, solution);
+      gather_what_is_small(scene, rays, schedule, interrupt, solution);
     }
+    if (examine) compare_points_with_zones(scene, rays, schedule, interrupt, solution);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
     solution.record.error = error.rms;
     solution.record.error_bound = error.bound;
@@ -245,10 +276,23 @@ Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settin
     solution.record.unreached_zones = error.unreached;
     solution.record.seconds = seconds_since(start);
   });
+  if (!examine) return solution;
   solution.light_warnings = luminaire_warnings(transport, emission);
   for (std::string& warning : lost_light_warnings(transport, emission, solution))
     solution.light_warnings.push_back(std::move(warning));
   return solution;
+}
+
+}  // namespace
+
+Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
+               const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  return solve_room(scene, std::move(mesh), settings, progress, interrupt, true);
+}
+
+Solution solve_zones(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
+                     const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  return solve_room(scene, std::move(mesh), settings, progress, interrupt, false);
 }
 
 }  // namespace reemit

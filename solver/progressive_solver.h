@@ -12,6 +12,8 @@ namespace reemit {
 struct SolveProgress {
   double fraction = 0;  ///< Of the work until the stopping rule holds, an estimate [0,1].
   double error = 0;     ///< Relative rms standard error so far (ZoneError::rms); infinite before two batches.
+  double error_bound = 0;   ///< ZoneError::bound when it was last looked at, infinite where it was not yet.
+  double unshot_share = 0;  ///< Power on its way when batches ended, over emitted power, worst band.
   double rays_per_second = 0;
   double seconds = 0;
   double seconds_left = 0;  ///< Infinite when not known yet.
@@ -31,5 +33,11 @@ using ProgressCallback = std::function<void(const SolveProgress&)>;
 /// when it is interrupted: it throws Interrupted, and what compute_form_factors throws.
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
                const ProgressCallback& progress, const std::atomic<bool>& interrupt);
+
+/// The same without what `solve` then finds out about the solution: SolveRecord::discretisation and
+/// gather_bias and Solution::light_warnings stay empty. For studies that solve a small room many times, of
+/// which that would be the greater part of the work.
+Solution solve_zones(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
+                     const ProgressCallback& progress, const std::atomic<bool>& interrupt);
 
 }  // namespace reemit

@@ -131,7 +131,7 @@ std::vector<CheckedBlock> render(const Scene& scene, const Camera& camera,
   for (int rendering = 0; rendering < kRenderings; ++rendering) {
     solver.seed = settings.seed * kRenderings + static_cast<std::uint64_t>(rendering);
     still.seed = solver.seed;
-    const Solution solution = solve(scene, mesh, solver, {}, never);
+    const Solution solution = solve_zones(scene, mesh, solver, {}, never);
     const RayScene rays(solution.mesh);
     const StillImage image = render_still(scene, solution, rays, camera, still, {}, never);
     auto next = found.begin();

@@ -107,14 +107,17 @@ void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vec
     const PointGather gather(solved, seed_of(c.name));
     for (const SurfaceId s : solved.all_surfaces()) {
       const Spectrum& rho = room.scene().material_of(room.scene().surfaces[s.index()]).reflectance;
+      const bool gathered = method == SolveMethod::kShooting;
+      const std::vector<Estimates> light =
+          gathered ? gather.means({s}, kOverSurface) : std::vector<Estimates>();
       for (std::size_t b = 0; b < 3; ++b) {
         const double r = rho[static_cast<Eigen::Index>(b)];
         const std::string where = room.scene().surfaces[s.index()].name + ", band " + std::to_string(b);
         rows.push_back(make_row(c, v, to_string(method) + ", " + where,
                                 scaled(solved.mean(s, b), r, (1 - r) * b0), kSolveBound));
-        if (method == SolveMethod::kShooting)
-          rows.push_back(make_row(c, v, "gathered mean, " + where,
-                                  scaled(gather.mean({s}, kOverSurface, b), r, (1 - r) * b0), kPointBound));
+        if (gathered)
+          rows.push_back(
+              make_row(c, v, "gathered mean, " + where, scaled(light[b], r, (1 - r) * b0), kPointBound));
       }
     }
   }

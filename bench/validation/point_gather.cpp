@@ -79,10 +79,10 @@ PointGather::PointGather(const SolvedRoom& room, std::uint64_t seed, double clos
 }
 
 template <class PlaceOf>
-Estimates PointGather::gather(std::uint64_t index, const GatherEffort& effort, std::size_t band,
-                              const PlaceOf& place_of) const {
-  Estimates result(SolvedRoom::kReplicates, 0.0);
+std::vector<Estimates> PointGather::gather(std::uint64_t index, const GatherEffort& effort,
+                                           const PlaceOf& place_of) const {
   const std::size_t bands = room_->scene().bands.count();
+  std::vector<Estimates> result(bands, Estimates(SolvedRoom::kReplicates, 0.0));
   const int points = effort.light_samples;
   const int rays_per_point = std::max(1, effort.gather_rays / points);
   tbb::parallel_for(std::size_t{0}, SolvedRoom::kReplicates, [&](std::size_t r) {
@@ -106,12 +106,15 @@ Estimates PointGather::gather(std::uint64_t index, const GatherEffort& effort, s
       }
     }
     batch.flush();
-    double sum = 0;
-    for (int i = 0; i < points; ++i) {
-      const float* sample = &sums[static_cast<std::size_t>(i) * 2 * bands];
-      sum += static_cast<double>(sample[band]) + std::numbers::pi * static_cast<double>(sample[bands + band]);
+    for (std::size_t band = 0; band < bands; ++band) {
+      double sum = 0;
+      for (int i = 0; i < points; ++i) {
+        const float* sample = &sums[static_cast<std::size_t>(i) * 2 * bands];
+        sum +=
+            static_cast<double>(sample[band]) + std::numbers::pi * static_cast<double>(sample[bands + band]);
+      }
+      result[band][r] = sum / points;
     }
-    result[r] = sum / points;
   });
   return result;
 }
@@ -123,13 +126,18 @@ Estimates PointGather::at(const Vec3& point, const Vec3& normal, const GatherEff
   const auto index = std::uint64_t{std::bit_cast<std::uint32_t>(name.x())} * 0x9E3779B97F4A7C15U ^
                      std::uint64_t{std::bit_cast<std::uint32_t>(name.y())} << 32 ^
                      std::bit_cast<std::uint32_t>(name.z());
-  return gather(index, effort, band, [&](const std::array<float, 2>&) { return x; });
+  return gather(index, effort, [&](const std::array<float, 2>&) { return x; })[band];
 }
 
 Estimates PointGather::mean(const std::vector<SurfaceId>& surfaces, const GatherEffort& effort,
                             std::size_t band) const {
+  return means(surfaces, effort)[band];
+}
+
+std::vector<Estimates> PointGather::means(const std::vector<SurfaceId>& surfaces,
+                                          const GatherEffort& effort) const {
   const AreaSampler area(room_->mesh(), surfaces);
-  return gather(surfaces.front().index(), effort, band,
+  return gather(surfaces.front().index(), effort,
                 [&](const std::array<float, 2>& u) { return area.place(room_->rays(), u); });
 }
 

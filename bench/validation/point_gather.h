@@ -33,11 +33,13 @@ class PointGather {
   /// area.
   Estimates mean(const std::vector<SurfaceId>& surfaces, const GatherEffort& effort,
                  std::size_t band = 0) const;
+  /// The same for all bands at once: every ray carries them all.
+  std::vector<Estimates> means(const std::vector<SurfaceId>& surfaces, const GatherEffort& effort) const;
 
  private:
   template <class PlaceOf>
-  Estimates gather(std::uint64_t index, const GatherEffort& effort, std::size_t band,
-                   const PlaceOf& place_of) const;
+  std::vector<Estimates> gather(std::uint64_t index, const GatherEffort& effort,
+                                const PlaceOf& place_of) const;
 
   const SolvedRoom* room_;
   std::uint64_t seed_;

@@ -21,7 +21,7 @@ SolvedRoom::SolvedRoom(const Scene& scene, const MeshResult& mesh, SolveMethod m
   const std::atomic<bool> interrupt{false};
   for (std::size_t i = 0; i < kSolves; ++i) {
     settings.seed = seed + i;
-    solutions_.push_back(solve(scene, mesh, settings, {}, interrupt));
+    solutions_.push_back(solve_zones(scene, mesh, settings, {}, interrupt));
     if (solutions_.back().sums.batches != static_cast<std::int64_t>(ZoneSums::kGroups))
       throw std::logic_error("a validation solve has not run the batches it was asked for");
   }

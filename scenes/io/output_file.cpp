@@ -27,7 +27,6 @@ std::string advice_for(std::error_code code) {
   if (code == std::errc::no_space_on_device) return "Free some space or write to another disk.";
   if (code == std::errc::permission_denied || code == std::errc::read_only_file_system)
     return "Choose a folder that you may write to.";
-  if (code == std::errc::no_such_file_or_directory) return "Create the folder first, or check the spelling.";
   if (code == std::errc::file_too_large)
     return "Raise the limit on file sizes (ulimit -f) or write elsewhere.";
   return "Check the disk, or write elsewhere.";
@@ -116,6 +115,8 @@ OutputFile::OutputFile(const fs::path& target) : target_(target), resolved_(foll
   for (int attempt = 0; attempt < kAttempts && descriptor_ < 0; ++attempt) {
     partial_ = partial_name(resolved_, attempt);
     descriptor_ = open(partial_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno == ENOENT)
+      throw ResourceError(target_.string(), missing_folder(resolved_), kCreateFolder);
     if (descriptor_ < 0 && errno != EEXIST) raise(target_, "cannot create the file", last_error());
     if (descriptor_ >= 0 && !lock_new_file(descriptor_)) {
       close(descriptor_);
@@ -179,6 +180,10 @@ void OutputFile::commit() {
     fsync(folder_descriptor);  // makes the new name durable; some file systems do not offer it
     close(folder_descriptor);
   }
+}
+
+std::string missing_folder(const fs::path& target) {
+  return fmt::format("there is no folder '{}'", target.parent_path().string());
 }
 
 void check_writable(const fs::path& target) {

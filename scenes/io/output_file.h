@@ -45,6 +45,10 @@ class OutputFile {
   bool committed_ = false;
 };
 
+/// What to say, and what to do, where the folder of an output is not there.
+std::string missing_folder(const std::filesystem::path& target);
+inline constexpr const char* kCreateFolder = "Create it first, or check the spelling.";
+
 /// Throws ResourceError unless a file of this name can be written: to be called before long work starts.
 /// Creates and removes an empty file beside the target; the target itself is not touched.
 void check_writable(const std::filesystem::path& target);

@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 
+#include "scenes/io/text_file.h"
 #include "scenes/model/error.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
@@ -324,12 +325,7 @@ bool is_solution_file(const std::filesystem::path& file) {
 
 Solution load_solution(const std::filesystem::path& file) {
   const std::string name = file.string();
-  std::error_code code;
-  const auto status = std::filesystem::status(file, code);
-  if (!std::filesystem::exists(status))
-    throw InputError(name, "no such file", "Check the spelling of the name.");
-  if (!std::filesystem::is_regular_file(status))
-    throw InputError(name, "is not a regular file", "Give the file that `reemit solve -o` wrote.");
+  check_readable_file(file, std::numeric_limits<std::uintmax_t>::max());
   const Hdf5Quiet quiet;
   const char* damaged = "Restore a copy of the file or solve the room again.";
   try {

@@ -27,7 +27,7 @@ Solution run(const Scene& scene, double zone_area) {
   mesh.zone_area = zone_area;
   SolverSettings settings;
   settings.packets = 400'000;
-  return solve(scene, build_mesh(scene, mesh), settings, {}, kNever);
+  return solve_zones(scene, build_mesh(scene, mesh), settings, {}, kNever);
 }
 
 TEST(Stability, scaling_by_a_power_of_two_changes_no_bit) {
@@ -78,7 +78,7 @@ TEST(Stability, reflectance_near_one_loses_no_power) {
     room.box(Vec3::Zero(), Vec3(3, 2, 1), {all, all, all, all, all, all}, 4);
     SolverSettings settings;
     settings.packets = 32'000;
-    const Solution s = solve(room.scene(), room.mesh(), settings, {}, kNever);
+    const Solution s = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
     const double relative = area_mean(s) * (1 - rho) - 1;
     EXPECT_LE(relative, 1e-9) << rho;
     EXPECT_GE(relative, -1.01 * settings.stop_share) << rho;
@@ -93,7 +93,7 @@ TEST(Stability, very_large_batches_keep_their_power) {
   const test::VariableFurnace furnace(2);
   SolverSettings settings;
   settings.packets = settings.batch_packets = 10'000'000;
-  const Solution s = solve(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
+  const Solution s = solve_zones(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
   EXPECT_EQ(s.sums.batches, 1);
   EXPECT_NEAR(area_mean(s) / test::VariableFurnace::kRadiosity, 1, 5e-4);
   for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)

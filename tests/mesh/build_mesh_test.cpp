@@ -46,6 +46,20 @@ TEST(BuildMesh, EmptyRoomOfRectanglesStaysTwelveTriangles) {
   }
 }
 
+TEST(BuildMesh, WhatWeldingMovesIsNotRemoved) {
+  // The second floor meets the first but for less than the weld distance, and so grows or shrinks by it.
+  for (const double gap : {1e-7, -1e-7}) {
+    TestRoom room;
+    room.polygon("first", room.material(), floor_rectangle(0, 0, 4, 4));
+    room.polygon("second", room.material(), floor_rectangle(4 + gap, 0, 8, 4));
+    const MeshResult r = build_mesh(room.scene());
+    EXPECT_EQ(r.report.surfaces[0].removed, 0);
+    EXPECT_EQ(r.report.surfaces[1].removed, 0);
+    EXPECT_NEAR(r.report.surfaces[1].welded, -4 * gap, 1e-9);
+    EXPECT_LT(worst_book_gap(r), kExact);
+  }
+}
+
 TEST(BuildMesh, ZonesRespectTheWantedArea) {
   TestRoom room;
   add_hull(room);

@@ -107,13 +107,13 @@ inline double meshed_area(const ZoneMesh& mesh, SurfaceId s) {
   return sum;
 }
 
-/// Largest relative gap of input = meshed + removed over all surfaces, and of the report against the mesh.
+/// Largest relative gap of input = meshed + removed + welded over all surfaces, and of the report against the mesh.
 inline double worst_book_gap(const MeshResult& r) {
   double worst = 0;
   for (std::size_t s = 0; s < r.report.surfaces.size(); ++s) {
     const SurfaceAreas& a = r.report.surfaces[s];
     if (a.input == 0) continue;
-    worst = std::max(worst, std::abs(a.input - a.meshed - a.removed) / a.input);
+    worst = std::max(worst, std::abs(a.input - a.meshed - a.removed - a.welded) / a.input);
     worst = std::max(worst, std::abs(a.meshed - meshed_area(r.mesh, SurfaceId(s))) / a.input);
   }
   return worst;

@@ -37,7 +37,7 @@ Solution solve_room(const Scene& scene, SolveMethod method, double zone_area) {
   MeshSettings mesh;
   if (zone_area > 0) mesh.zone_area = zone_area;
   const std::atomic<bool> interrupt = false;
-  return solve(scene, build_mesh(scene, mesh), settings, nullptr, interrupt);
+  return solve_zones(scene, build_mesh(scene, mesh), settings, nullptr, interrupt);
 }
 
 void expect_nothing_lost(const Scene& scene) {

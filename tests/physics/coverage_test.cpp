@@ -47,7 +47,7 @@ Solution solve_furnace(const VariableFurnace& furnace, SolveMethod method, std::
   settings.method = method;
   settings.packets = 100'000;
   settings.seed = seed;
-  return solve(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
+  return solve_zones(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
 }
 
 // Of n trials, correlated among each other by the light they share, 93 % to 97 % must be inside. With n >=

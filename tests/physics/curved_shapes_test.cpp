@@ -27,7 +27,7 @@ Solution run(const Scene& scene, MeshResult mesh, SolveMethod method, std::uint6
   settings.seed = 7;
   settings.threads = 2;
   const std::atomic<bool> interrupt = false;
-  return solve(scene, std::move(mesh), settings, nullptr, interrupt);
+  return solve_zones(scene, std::move(mesh), settings, nullptr, interrupt);
 }
 
 /// Odds that the irradiances of all zones have this value but for their noise.

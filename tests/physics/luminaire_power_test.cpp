@@ -157,7 +157,7 @@ Spectrum absorbed(const Scene& scene, MeshResult mesh) {
   settings.seed = 3;
   settings.threads = 2;
   const std::atomic<bool> interrupt = false;
-  const Solution s = solve(scene, std::move(mesh), settings, nullptr, interrupt);
+  const Solution s = solve_zones(scene, std::move(mesh), settings, nullptr, interrupt);
   Spectrum sum = Spectrum::Zero(3);
   for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)
     if (s.mesh.zone_surface(ZoneId(z)).index() == 0)

@@ -27,7 +27,8 @@ Camera camera_of_options(const CameraOptions& options, const Scene& scene) {
     camera.up =
         Vec3(camera.up.z(), camera.up.x(), camera.up.y());  // straight up or down: any level way will do
   }
-  camera.vertical_fov_deg = options.fov_deg;
+  constexpr double kUsualFov = 45;
+  camera.vertical_fov_deg = options.fov_deg.value_or(kUsualFov);
   camera.width = 640;
   camera.height = 480;
   return camera;
@@ -37,6 +38,15 @@ Camera camera_of_options(const CameraOptions& options, const Scene& scene) {
 
 std::vector<Camera> cameras_of(const Scene& scene, const RayScene& rays) {
   return scene.cameras.empty() ? default_cameras(scene, rays) : scene.cameras;
+}
+
+void check_view(const CameraOptions& options) {
+  if (options.eye || !(options.up || options.fov_deg)) return;
+  throw InputError(
+      options.fov_deg ? "--fov" : "--up",
+      fmt::format("is for a view by --eye; cameras of the room have their own {}",
+                  options.fov_deg ? "field of view" : "up direction"),
+      "leave it out, or say where the camera is and what it looks at: --eye X,Y,Z --look-at X,Y,Z");
 }
 
 std::vector<Camera> choose_cameras(const CameraOptions& options, const Scene& scene, const RayScene& rays,

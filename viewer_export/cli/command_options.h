@@ -33,6 +33,9 @@ inline void add_json_option(CLI::App& command, OutputStyle& style) {
   command.add_flag("--json", style.json, "Print the result as one JSON document");
 }
 
+/// Type of options that take a point, as `--help` shows it.
+inline constexpr const char* kPointType = "X,Y,Z";
+
 /// An option whose text `parse` turns into the value; its std::invalid_argument becomes a usage error.
 template <class Target, class Parse>
 CLI::Option* add_parsed_option(CLI::App& command, const std::string& names, Target& target, Parse parse,

@@ -35,6 +35,7 @@ struct ExportOptions {
   std::vector<std::filesystem::path> outputs;  ///< At least one; all hold the same values.
   VertexSettings vertex;
   bool form_factors = false;
+  bool photometric = false;  ///< Write lx and cd/m2 instead of W/m2 and W/(m2 sr).
   ToneMapSettings tone_map;
   OutputStyle style;
 };
@@ -67,6 +68,7 @@ void check_outputs(const ExportOptions& options) {
   std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& output : options.outputs) {
     export_format_of(output);
+    if (options.photometric) check_photometric(output);
     check_output_file(output, options.solution);
     if (!seen.insert(std::filesystem::weakly_canonical(output)).second)
       throw InputError(output.string(), "the same output is given twice", "give each file once");
@@ -97,7 +99,12 @@ ExitCode run_export(const ExportOptions& options) {
   progress.finish();
   data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map);
   for (const std::filesystem::path& output : options.outputs)
-    write_output([&] { write_vertex_data(data, output); });
+    write_output([&] {
+      if (options.photometric)
+        write_photometric_data(data, output);
+      else
+        write_vertex_data(data, output);
+    });
 
   if (data.limited_by_zones && !options.style.quiet) {
     print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
@@ -133,8 +140,10 @@ void add_export_command(CLI::App& program, Action& action) {
       "  reemit export room.h5 -o room.ply\n"
       "  reemit export room.h5 -o room.glb -o room.csv --error 1%\n"
       "  reemit export room.h5 -o room.csv --samples 1024\n"
+      "  reemit export room.h5 -o lux.csv --units lx\n"
       "  reemit export room.h5 -o quick.glb --values zones\n"
-      "  reemit export room.h5 -o factors.csv --form-factors");
+      "  reemit export room.h5 -o factors.csv --form-factors\n"
+      "What is in each file: docs/export_formats.md");
   command.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
   command.add_option("-o,--output", options->outputs, output_help())
       ->required()
@@ -151,6 +160,10 @@ void add_export_command(CLI::App& program, Action& action) {
       command, "--values", options->vertex.average_zones, {{"gather", false}, {"zones", true}},
       "gather: direct light and final gather at each vertex; zones: the mean of the\n"
       "zones around it, quick and as coarse as the zones"));
+  form_factors->excludes(add_choice_option<bool>(
+      command, "--units", options->photometric, {{"W", false}, {"lx", true}},
+      "W: radiance [W/(m2 sr)] and irradiance [W/m2] per band; lx: luminance [cd/m2] and\n"
+      "illuminance [lx], .csv only"));
   auto* error =
       add_parsed_option(command, "--error", options->vertex.error_target, parse_share, "SHARE",
                         "Refine until the relative error (area-weighted rms over vertices, worst band) is\n"

@@ -15,6 +15,8 @@
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/light_report.h"
+#include "viewer_export/cli/luminaire_list.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/room_report.h"
@@ -34,28 +36,38 @@ bool is_solution(const std::filesystem::path& path) {
   return is_solution_file(path) || path.extension() == ".h5" || path.extension() == ".hdf5";
 }
 
-/// Whether the room of a solution can still be read and is the one that was solved.
-std::string room_status(const Solution& solution, const std::filesystem::path& file) {
+/// What is left of the room of a solution.
+struct RoomOfSolution {
+  std::string status = "unchanged";  ///< Or why it cannot be read or is not the one that was solved.
+  std::vector<LuminaireRow> luminaires;
+};
+
+RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& file) {
+  RoomOfSolution room;
   try {
-    read_room_of(solution, file);
-    return "unchanged";
+    room.luminaires = list_luminaires(read_room_of(solution, file), solution.mesh_report);
   } catch (const InputError& problem) {
     const std::string message = problem.what();
-    return message.substr(0, message.find('\n'));
+    room.status = message.substr(0, message.find('\n'));
+    room.luminaires = list_luminous_surfaces(solution);
   }
+  return room;
 }
 
 ExitCode show_solution(const InfoOptions& options) {
   const std::filesystem::path& file = options.files.front();
   const Solution solution = load_solution(file);
-  const std::string status = room_status(solution, file);
+  const RoomOfSolution room = find_room(solution, file);
   if (options.style.json) {
-    print_json(solution_json(solution, file, status));
-  } else {
-    print_result(solution_text(solution, file, status));
-    print_warnings(solution.mesh_report.warnings);
-    print_warnings(solution.light_warnings);
+    nlohmann::ordered_json json = solution_json(solution, file, room.status);
+    add_light(json, solution, room.luminaires);
+    print_json(json);
+    return ExitCode::kDone;
   }
+  print_result(solution_text(solution, file, room.status) + '\n' + light_text(solution, room.luminaires));
+  std::fflush(stdout);
+  print_warnings(solution.mesh_report.warnings);
+  print_warnings(solution.light_warnings);
   return ExitCode::kDone;
 }
 
@@ -101,8 +113,9 @@ void add_info_command(CLI::App& program, Action& action) {
   info.footer(
       "Warnings about the geometry go to stderr, and into the document with --json, which also counts by\n"
       "kind what of the files was refused and what is not modelled.\n"
-      "Example:\n"
-      "  reemit info room.json");
+      "Examples:\n"
+      "  reemit info room.json    units, size, materials, luminaires, cameras\n"
+      "  reemit info room.h5      lux, exitance and flux of every surface and material, with errors");
   info.add_option("file", options->files,
                   "Room (.json .obj .gltf .glb .mgf; several .mgf files are read in order as one room)\n"
                   "or solution file")

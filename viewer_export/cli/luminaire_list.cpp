@@ -1,14 +1,23 @@
 #include "viewer_export/cli/luminaire_list.h"
 
+#include <algorithm>
 #include <numbers>
+#include <utility>
 #include <variant>
 
+#include <nlohmann/json.hpp>
+
 #include "solver/emit/spot_distribution.h"
+#include "viewer_export/cli/text_table.h"
 
 namespace reemit::cli {
 namespace {
 
 using std::numbers::pi;
+
+std::vector<double> numbers_of(const Spectrum& value) {
+  return {value.begin(), value.end()};
+}
 
 LuminaireRow row_of(const PointLight& light) {
   return {light.name, "point", 0, 4 * pi * light.intensity};
@@ -26,21 +35,83 @@ LuminaireRow row_of(const DirectionalLight& light) {
   return {light.name, "directional", 0, Spectrum(), light.irradiance};
 }
 
+void add_surface(const std::string& name, const Material& material, const SurfaceAreas& areas,
+                 std::vector<LuminaireRow>& rows) {
+  if (!material.emits()) return;
+  const double area = areas.meshed * (material.emits_both_sides ? 2 : 1);
+  const Spectrum exitance = material.exitance();
+  rows.push_back({name, "surface", area, area * exitance, exitance});
+}
+
+Spectrum total_power(const std::vector<LuminaireRow>& rows, const BandSet& bands) {
+  Spectrum total = Spectrum::Zero(static_cast<Eigen::Index>(bands.count()));
+  for (const LuminaireRow& luminaire : rows)
+    if (luminaire.power.size() > 0) total += luminaire.power;
+  return total;
+}
+
 }  // namespace
 
 std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshReport& report) {
   std::vector<LuminaireRow> rows;
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-    const Material& material = scene.material_of(scene.surfaces[s]);
-    if (!material.emits()) continue;
-    const double area = report.surfaces[s].meshed * (material.emits_both_sides ? 2 : 1);
-    const Spectrum exitance = material.exitance();
-    rows.push_back({scene.surfaces[s].name, "surface", area, area * exitance, exitance});
-  }
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+    add_surface(scene.surfaces[s].name, scene.material_of(scene.surfaces[s]), report.surfaces[s], rows);
   for (const PunctualLight& light : scene.lights) {
     rows.push_back(std::visit([](const auto& l) { return row_of(l); }, light));
   }
   return rows;
+}
+
+std::vector<LuminaireRow> list_luminous_surfaces(const Solution& solution) {
+  std::vector<LuminaireRow> rows;
+  for (std::size_t s = 0; s < solution.surface_names.size(); ++s)
+    add_surface(solution.surface_names[s], solution.materials[solution.surface_materials[s].index()],
+                solution.mesh_report.surfaces[s], rows);
+  return rows;
+}
+
+std::string luminaires_text(const std::vector<LuminaireRow>& rows, const BandSet& bands) {
+  if (rows.empty()) return "Luminaires: none\n";
+  TextTable table;
+  std::vector<std::string> head{"luminaire", "kind", "area [m2]"};
+  add_band_heads(head, "W", bands);
+  head.emplace_back("flux [lm]");
+  table.row(std::move(head));
+  for (std::size_t l = 0; l < std::min(kMostRows, rows.size()); ++l) {
+    const LuminaireRow& luminaire = rows[l];
+    std::vector<std::string> cells{"  " + luminaire.name, luminaire.kind,
+                                   luminaire.area > 0 ? number_text(luminaire.area) : "-"};
+    if (luminaire.power.size() > 0) {
+      add_band_cells(cells, luminaire.power);
+      cells.push_back(number_text(lumens(luminaire.power, bands)));
+    }
+    table.row(std::move(cells));
+  }
+  const Spectrum total = total_power(rows, bands);
+  std::vector<std::string> cells{"  total", "", ""};
+  add_band_cells(cells, total);
+  cells.push_back(number_text(lumens(total, bands)));
+  table.row(std::move(cells));
+  return "Luminaires: power [W] per band\n" + table.text() + rest_text(rows.size(), "luminaires");
+}
+
+void add_luminaires(nlohmann::ordered_json& json, const std::vector<LuminaireRow>& rows,
+                    const BandSet& bands) {
+  json["luminaires"] = nlohmann::ordered_json::array();
+  for (const LuminaireRow& luminaire : rows) {
+    nlohmann::ordered_json& row = json["luminaires"].emplace_back();
+    row = {{"name", luminaire.name}, {"kind", luminaire.kind}};
+    if (luminaire.area > 0) row["area_m2"] = luminaire.area;
+    if (luminaire.power.size() > 0) {
+      row["power_W"] = numbers_of(luminaire.power);
+      row["flux_lm"] = lumens(luminaire.power, bands);
+    }
+    if (luminaire.power_per_area.size() > 0)
+      row["power_per_area_W_m2"] = numbers_of(luminaire.power_per_area);
+  }
+  const Spectrum total = total_power(rows, bands);
+  json["total_power_W"] = numbers_of(total);
+  json["total_flux_lm"] = lumens(total, bands);
 }
 
 double lumens(const Spectrum& power, const BandSet& bands) {

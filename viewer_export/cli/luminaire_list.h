@@ -2,8 +2,11 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "mesh/build_mesh.h"
 #include "scenes/model/scene.h"
+#include "solver/solution/solution.h"
 
 namespace reemit::cli {
 
@@ -18,6 +21,15 @@ struct LuminaireRow {
 
 /// Emissive surfaces in the order of the room, then lights without area.
 std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshReport& report);
+
+/// The emissive surfaces of a solution, for when its room cannot be read: lights without area are not in it.
+std::vector<LuminaireRow> list_luminous_surfaces(const Solution& solution);
+
+/// The rows as a table: power [W] per band and luminous flux [lm], with totals.
+std::string luminaires_text(const std::vector<LuminaireRow>& rows, const BandSet& bands);
+/// Sets "luminaires", "total_power_W" and "total_flux_lm" (docs/command_line.md).
+void add_luminaires(nlohmann::ordered_json& json, const std::vector<LuminaireRow>& rows,
+                    const BandSet& bands);
 
 /// Luminous flux [lm] of a power per band.
 double lumens(const Spectrum& power, const BandSet& bands);

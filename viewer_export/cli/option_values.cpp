@@ -128,6 +128,17 @@ Vec3 parse_point(const std::string& text) {
   return point;
 }
 
+std::string joined_point(std::span<const std::string> words) {
+  if (words.size() < 3) return "";
+  std::string point;
+  for (std::string word : words.first(3)) {
+    if (word.ends_with(',')) word.pop_back();
+    if (!finite_number(word)) return "";
+    point += (point.empty() ? "" : ",") + word;
+  }
+  return point;
+}
+
 PixelSize parse_size(const std::string& text) {
   constexpr int kLargestSide = 16384;
   const auto side = [](std::string_view digits) {

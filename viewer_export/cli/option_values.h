@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "scenes/model/vec.h"
@@ -25,6 +26,9 @@ double parse_number(const std::string& text);
 Vec3 parse_direction(const std::string& text);
 /// The same within limits::kFarthest [m].
 Vec3 parse_point(const std::string& text);
+
+/// "1,2,3" where the three numbers are the first of `words`, with or without commas behind them; else empty.
+std::string joined_point(std::span<const std::string> words);
 
 struct PixelSize {
   int width = 0;   ///< [px]

@@ -2,6 +2,8 @@
 
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "scenes/io/output_file.h"
 #include "scenes/model/error.h"
 #include "viewer_export/cli/interrupt.h"
@@ -44,8 +46,12 @@ void make_output_directory(const fs::path& output) {
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw InputError(output.string(), "output exists and is not a directory", kChooseAnother);
   }
-  if (!fs::exists(status)) fs::create_directory(output, problem);
-  if (!fs::is_directory(output)) {
+  // "pictures/" and "pictures" are the same folder, and the same folder is above them.
+  const fs::path folder = output.has_filename() ? output : output.parent_path();
+  if (folder.has_parent_path() && !fs::exists(folder.parent_path(), problem))
+    throw OutputError(fmt::format("{}: {}\n  {}", output.string(), missing_folder(folder), kCreateFolder));
+  if (!fs::exists(status)) fs::create_directory(folder, problem);
+  if (!fs::is_directory(folder)) {
     throw OutputError(output.string() + ": cannot create the directory: " + problem.message() + "\n  " +
                       kChooseAnother);
   }

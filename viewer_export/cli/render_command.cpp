@@ -163,6 +163,7 @@ class Renderer {
 };
 
 ExitCode run_render(RenderOptions options) {
+  check_view(options.camera);
   const bool into_folder = options.into_folder();
   if (!into_folder) {
     image_format_of(options.output);  // refuses an unknown one before the work
@@ -214,21 +215,20 @@ void add_view_options(CLI::App& render, RenderOptions& options) {
                         "Camera of the room by name, or 'all' (default: the first; all into a folder).\n"
                         "A room without cameras has auto-1, auto-2, ... inside its free space");
   camera->type_name("NAME|all");
-  auto* eye = add_parsed_option(render, "--eye", options.camera.eye, parse_point, "X,Y,Z",
+  auto* eye = add_parsed_option(render, "--eye", options.camera.eye, parse_point, kPointType,
                                 "A camera of its own: where it is [m]");
   eye->excludes(camera);
-  auto* look_at = add_parsed_option(render, "--look-at", options.camera.look_at, parse_point, "X,Y,Z",
+  auto* look_at = add_parsed_option(render, "--look-at", options.camera.look_at, parse_point, kPointType,
                                     "What it looks at [m]");
   look_at->needs(eye);
   eye->needs(look_at);
-  add_parsed_option(render, "--up", options.camera.up, parse_direction, "X,Y,Z",
-                    "Which way is up (default: 0,0,1 for MGF rooms, else 0,1,0)")
-      ->needs(eye);
-  render.add_option("--fov", options.camera.fov_deg, "Full vertical field of view [deg]")
+  add_parsed_option(render, "--up", options.camera.up, parse_direction, kPointType,
+                    "Which way is up, with --eye (default: 0,0,1 for MGF rooms, else 0,1,0)");
+  render
+      .add_option("--fov", options.camera.fov_deg,
+                  "Full vertical field of view [deg], with --eye (default: 45)")
       ->check(CLI::Range(0.1, 179.0))
-      ->type_name("DEG")
-      ->capture_default_str()
-      ->needs(eye);
+      ->type_name("DEG");
   add_parsed_option(render, "--size", options.size, parse_size, "WxH",
                     "Size of the picture [px] (default: as the camera says; 640x480 with --eye)");
 }

@@ -29,38 +29,12 @@ std::string point_text(const Vec3& p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
 
-Json point_json(const Vec3& p) {
-  return {p.x(), p.y(), p.z()};
-}
-
 Json spectrum_json(const Spectrum& value) {
   return std::vector<double>(value.begin(), value.end());
 }
 
-constexpr std::size_t kMostBandColumns = 4;
-constexpr std::size_t kMostRows = 40;
-
-/// Heads of the columns of a quantity: one per band, or lowest and highest where bands are many.
-void add_band_heads(std::vector<std::string>& cells, const std::string& quantity, const BandSet& bands) {
-  if (bands.count() > kMostBandColumns) {
-    cells.insert(cells.end(), {quantity + " lowest", quantity + " highest"});
-    return;
-  }
-  for (const std::string& band : bands.names()) cells.push_back(quantity + " " + band);
-}
-
-void add_band_cells(std::vector<std::string>& cells, const Spectrum& value) {
-  if (static_cast<std::size_t>(value.size()) > kMostBandColumns) {
-    cells.insert(cells.end(), {number_text(value.minCoeff()), number_text(value.maxCoeff())});
-    return;
-  }
-  for (const double v : value) cells.push_back(number_text(v));
-}
-
-/// Where a long table was cut.
-std::string rest_text(std::size_t rows, const std::string& of_what) {
-  if (rows <= kMostRows) return "";
-  return fmt::format("  ... and {} more {}; --json lists all\n", rows - kMostRows, of_what);
+Json point_json(const Vec3& p) {
+  return {p.x(), p.y(), p.z()};
 }
 
 std::size_t face_count(const Scene& scene) {
@@ -118,35 +92,6 @@ std::string surfaces_text(const Scene& scene, const MeshReport& report) {
   return table.text() + rest_text(scene.surfaces.size(), "surfaces");
 }
 
-std::string luminaires_text(const Scene& scene, const MeshReport& report) {
-  const std::vector<LuminaireRow> rows = list_luminaires(scene, report);
-  if (rows.empty()) return "Luminaires: none\n";
-  TextTable table;
-  std::vector<std::string> head{"luminaire", "kind", "area [m2]"};
-  add_band_heads(head, "W", scene.bands);
-  head.emplace_back("flux [lm]");
-  table.row(std::move(head));
-  Spectrum total = Spectrum::Zero(static_cast<Eigen::Index>(scene.bands.count()));
-  for (const LuminaireRow& luminaire : rows) {
-    if (luminaire.power.size() > 0) total += luminaire.power;
-  }
-  for (std::size_t l = 0; l < std::min(kMostRows, rows.size()); ++l) {
-    const LuminaireRow& luminaire = rows[l];
-    std::vector<std::string> cells{"  " + luminaire.name, luminaire.kind,
-                                   luminaire.area > 0 ? number_text(luminaire.area) : "-"};
-    if (luminaire.power.size() > 0) {
-      add_band_cells(cells, luminaire.power);
-      cells.push_back(number_text(lumens(luminaire.power, scene.bands)));
-    }
-    table.row(std::move(cells));
-  }
-  std::vector<std::string> cells{"  total", "", ""};
-  add_band_cells(cells, total);
-  cells.push_back(number_text(lumens(total, scene.bands)));
-  table.row(std::move(cells));
-  return "Luminaires: power [W] per band\n" + table.text() + rest_text(rows.size(), "luminaires");
-}
-
 std::string cameras_text(const Scene& scene) {
   if (scene.cameras.empty()) return "Cameras: none; render chooses some inside the free space\n";
   TextTable table;
@@ -156,18 +101,6 @@ std::string cameras_text(const Scene& scene) {
                number_text(camera.vertical_fov_deg), fmt::format("{}x{}", camera.width, camera.height)});
   }
   return table.text();
-}
-
-Json luminaire_json(const LuminaireRow& luminaire, const BandSet& bands) {
-  Json json{{"name", luminaire.name}, {"kind", luminaire.kind}};
-  if (luminaire.area > 0) json["area_m2"] = luminaire.area;
-  if (luminaire.power.size() > 0) {
-    json["power_W"] = spectrum_json(luminaire.power);
-    json["flux_lm"] = lumens(luminaire.power, bands);
-  }
-  if (luminaire.power_per_area.size() > 0)
-    json["power_per_area_W_m2"] = spectrum_json(luminaire.power_per_area);
-  return json;
 }
 
 Json counts_json(const KindCounts& counts) {
@@ -217,7 +150,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
   text += fmt::format("refused       {}\n", counts_text(scene.refused));
   text += fmt::format("not modelled  {}\n", counts_text(scene.not_modelled));
   text += '\n' + materials_text(scene) + '\n' + surfaces_text(scene, meshed.report) + '\n' +
-          luminaires_text(scene, meshed.report) + '\n' + cameras_text(scene);
+          luminaires_text(list_luminaires(scene, meshed.report), scene.bands) + '\n' + cameras_text(scene);
   for (const std::string& note : scene.notes) text += "note: " + note + '\n';
   return text;
 }
@@ -268,14 +201,7 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
                                 {"area_m2", meshed.report.surfaces[s].input},
                                 {"removed_m2", meshed.report.surfaces[s].removed}});
   }
-  json["luminaires"] = Json::array();
-  Spectrum total = Spectrum::Zero(static_cast<Eigen::Index>(scene.bands.count()));
-  for (const LuminaireRow& luminaire : list_luminaires(scene, meshed.report)) {
-    json["luminaires"].push_back(luminaire_json(luminaire, scene.bands));
-    if (luminaire.power.size() > 0) total += luminaire.power;
-  }
-  json["total_power_W"] = spectrum_json(total);
-  json["total_flux_lm"] = lumens(total, scene.bands);
+  add_luminaires(json, list_luminaires(scene, meshed.report), scene.bands);
   json["cameras"] = Json::array();
   for (const Camera& camera : scene.cameras) {
     json["cameras"].push_back({{"name", camera.name},

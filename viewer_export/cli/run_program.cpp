@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "scenes/io/json_cursor.h"
 #include "scenes/model/error.h"
 #include "solver/matrix/interrupted.h"
+#include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/output_path.h"
@@ -30,6 +32,11 @@ constexpr const char* kFooter =
     "  reemit export room.h5 -o room.ply\n"
     "  reemit audit room.h5\n"
     "'reemit COMMAND --help' explains a command.\n"
+    "Lux: 'reemit info room.h5' for every surface, 'reemit export room.h5 -o lux.csv --units lx' for\n"
+    "every vertex. Noise: a lower --error, of solve first, then of render or export; a smaller\n"
+    "--zone-area where the last line of a command says that zones are what is off.\n"
+    "Documentation in docs/: examples.md, room_format.md, command_line.md, export_formats.md,\n"
+    "solution_file.md.\n"
     "Exit codes: 0 done, 1 a check failed, 2 bad usage, input or output, 3 out of memory,\n"
     "130 interrupted before there was a result.";
 
@@ -44,8 +51,23 @@ std::vector<std::string> known_words(const CLI::App& command) {
   return words;
 }
 
+/// What is meant where the three numbers of a point are words of their own, as in "--eye 1 2 3"; else empty.
+std::string spaced_point(const CLI::App& command, std::span<const std::string> words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string name = words[i].substr(0, words[i].find('='));
+    const CLI::Option* option = command.get_option_no_throw(name);
+    if (!name.starts_with("--") || option == nullptr || option->get_type_name() != kPointType) continue;
+    std::vector<std::string> numbers(words.begin() + static_cast<std::ptrdiff_t>(i) + 1, words.end());
+    if (name != words[i]) numbers.insert(numbers.begin(), words[i].substr(name.size() + 1));
+    const std::string point = joined_point(numbers);
+    if (!point.empty()) return fmt::format("{} takes one word; write {} {}", name, name, point);
+  }
+  return "";
+}
+
 /// What to say about a command line that does not parse.
-std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
+std::string usage_message(const CLI::App& program, const CLI::ParseError& error,
+                          std::span<const std::string> words) {
   const auto chosen = program.get_subcommands();
   const CLI::App& command = chosen.empty() ? program : *chosen.front();
   std::string message = error.what();
@@ -56,6 +78,8 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
     const std::string suggestion = nearest_name(word, known_words(command));
     if (!suggestion.empty()) message += fmt::format("; did you mean '{}'?", suggestion);
   }
+  const std::string point = spaced_point(command, words);
+  if (!point.empty()) message = point;
   const std::string name = chosen.empty() ? "reemit" : "reemit " + command.get_name();
   return fmt::format("{}\n  '{} --help' lists what it takes", message, name);
 }
@@ -76,7 +100,8 @@ ExitCode parse_and_run(CLI::App& program, const Action& action, int argc, const 
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
-      return fail(usage_message(program, error), ExitCode::kBadInput);
+      return fail(usage_message(program, error, std::vector<std::string>(argv + 1, argv + argc)),
+                  ExitCode::kBadInput);
     }
     program.exit(error);  // prints the help or the version
     return checked_output(ExitCode::kDone);

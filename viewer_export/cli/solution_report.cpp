@@ -140,8 +140,9 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
   text += fmt::format("stopped   {}\n", to_string(record.stopped));
   text += fmt::format("effort    {} packets, {} rays, {} batches, {:.2f} s\n", record.packets, record.rays,
                       solution.sums.batches, record.seconds);
-  text += fmt::format("noise     {} (95 % of the lit zones within {})\n", percent_text(record.error),
-                      percent_text(record.error_95th_percentile));
+  text += fmt::format(
+      "noise     {} rms over zones; that of 95 % of the lit zones is below {} of their own light\n",
+      percent_text(record.error), percent_text(record.error_95th_percentile));
   text += fmt::format("bound     {} (99.9 % odds that the true rms noise of the zone values is below)\n",
                       percent_text(record.error_bound));
   text += fmt::format("zones     {} error in light gathered at points; only finer zones lessen it\n",
@@ -168,7 +169,6 @@ Json solution_json(const Solution& solution, const std::filesystem::path& file,
             {"room_status", room_status}};
   json.update(record_json(solution));
   json["base_triangles"] = solution.mesh.triangle_count();
-  json["surfaces"] = solution.surface_names;
   json["warnings"] = solution.mesh_report.warnings;
   for (const std::string& warning : solution.light_warnings) json["warnings"].push_back(warning);
   return json;

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/run_log.h"
 #include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/text_table.h"
 #include "viewer_export/formats/file_extension.h"
@@ -40,6 +42,7 @@ struct SolveOptions {
   ReadOptions read;
   MeshSettings mesh;
   SolverSettings solver;
+  std::filesystem::path log;  ///< Empty: none.
   OutputStyle style;
 };
 
@@ -85,7 +88,10 @@ void check_solution_output(const std::filesystem::path& output, const std::files
 ExitCode run_solve(const SolveOptions& options) {
   const bool matrix = options.solver.method == SolveMethod::kMatrix;
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
-  for (const std::filesystem::path& file : options.room) check_solution_output(options.output, file);
+  for (const std::filesystem::path& file : options.room) {
+    check_solution_output(options.output, file);
+    if (!options.log.empty()) RunLog::check(options.log, file, options.output);
+  }
   const Scene scene = read_scene(options.room, options.read);
   if (!options.style.quiet) {
     print_warnings(scene.warnings);
@@ -108,11 +114,20 @@ ExitCode run_solve(const SolveOptions& options) {
       print_note(fmt::format("no stopping rule given; solving to --error {:g}%", 100 * kDefaultErrorTarget));
     }
   }
+  std::optional<RunLog> log;
+  if (!options.log.empty())
+    log.emplace(options.log,
+                RunLog::Run{options.room.front(), options.output, settings, meshed.mesh.zone_count(), scene.bands});
   const InterruptGuard interrupt;
   Progress progress("solving", progress_style(options.style.quiet, options.style.verbose));
-  Solution solution = solve(scene, std::move(meshed), settings, progress_callback(progress, settings.method),
-                            interrupt.requested());
+  const ProgressCallback show = progress_callback(progress, settings.method);
+  const ProgressCallback report = [&](const SolveProgress& now) {
+    show(now);
+    if (log) log->add(now);
+  };
+  Solution solution = solve(scene, std::move(meshed), settings, report, interrupt.requested());
   progress.finish();
+  if (log) log->finish(solution);
   const auto stored = [](const std::filesystem::path& file) {
     return std::filesystem::absolute(file).lexically_normal().string();
   };
@@ -153,7 +168,8 @@ void add_solve_command(CLI::App& program, Action& action) {
       "Examples:\n"
       "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
       "  reemit solve materials.mgf room.mgf lamps.mgf -o office.h5\n"
-      "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7");
+      "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7\n"
+      "How to write a room: docs/room_format.md; what the solution holds: docs/solution_file.md");
   solve
       .add_option("room", options->room,
                   "Room file: .json .obj .gltf .glb .mgf; several .mgf files are read in order\n"
@@ -201,6 +217,10 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_gltf_unit_options(solve, options->read);
 
   solve.option_defaults()->group("Output");
+  solve
+      .add_option("--log", options->log,
+                  "Log of error over time: one JSON object per line and batch, written as the run goes")
+      ->type_name("FILE");
   add_json_option(solve, options->style);
   add_progress_options(solve, options->style);
   solve.callback([options, &action] { action = [options] { return run_solve(*options); }; });

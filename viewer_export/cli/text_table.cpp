@@ -8,6 +8,11 @@
 #include <fmt/format.h>
 
 namespace reemit::cli {
+namespace {
+
+constexpr std::size_t kMostBandColumns = 4;
+
+}  // namespace
 
 void TextTable::row(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
@@ -35,6 +40,36 @@ std::string TextTable::text() const {
 
 std::string number_text(double value) {
   return fmt::format("{:.6g}", value);
+}
+
+std::pair<std::string, std::string> estimate_texts(double value, double standard_error) {
+  if (!std::isfinite(standard_error)) return {number_text(value), "not known"};
+  if (!(standard_error > 0)) return {number_text(value), "exact"};
+  // Decimals that show two digits of the error; rounding noise is shown as if it were an error.
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(standard_error)));
+  if (digits < 0 || digits > 9) return {number_text(value), fmt::format("{:.2g}", standard_error)};
+  return {fmt::format("{:.{}f}", value, digits), fmt::format("{:.{}f}", standard_error, digits)};
+}
+
+std::string rest_text(std::size_t rows, const std::string& of_what) {
+  if (rows <= kMostRows) return "";
+  return fmt::format("  ... and {} more {}; --json lists all\n", rows - kMostRows, of_what);
+}
+
+void add_band_heads(std::vector<std::string>& cells, const std::string& quantity, const BandSet& bands) {
+  if (bands.count() > kMostBandColumns) {
+    cells.insert(cells.end(), {quantity + " lowest", quantity + " highest"});
+    return;
+  }
+  for (const std::string& band : bands.names()) cells.push_back(quantity + " " + band);
+}
+
+void add_band_cells(std::vector<std::string>& cells, const Spectrum& value) {
+  if (static_cast<std::size_t>(value.size()) > kMostBandColumns) {
+    cells.insert(cells.end(), {number_text(value.minCoeff()), number_text(value.maxCoeff())});
+    return;
+  }
+  for (const double v : value) cells.push_back(number_text(v));
 }
 
 std::string percent_text(double share) {

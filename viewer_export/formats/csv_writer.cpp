@@ -17,25 +17,22 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-void write_header(const VertexData& data, OutputFile& file) {
+/// The lines above the rows; `values` are the columns behind those that every table has.
+void write_header(const VertexData& data, const std::string& units, const std::string& values,
+                  OutputFile& file) {
   for (const auto& [name, value] : describe(data.info, data.bands))
-    file.write(fmt::format("# {}: {}\n", name, value));
-  file.write("vertex,x,y,z,nx,ny,nz,surface,material");
-  for (const std::string& band : data.bands.names())
-    file.write(fmt::format(",radiance_{0},irradiance_{0},stderr_{0},direct_{0}", band));
-  file.write("\n");
+    file.write(fmt::format("# {}: {}\n", name, name == "units" && !units.empty() ? units : value));
+  file.write("vertex,x,y,z,nx,ny,nz,surface,material" + values + "\n");
 }
 
-}  // namespace
-
-std::optional<ToneMap> write_csv(const VertexData& data, OutputFile& file) {
-  write_header(data, file);
+/// `append_values` adds the columns of a vertex to its row.
+template <class Append>
+void write_rows(const VertexData& data, OutputFile& file, Append&& append_values) {
   std::vector<std::string> surfaces;
   std::vector<std::string> materials;
   for (const std::string& name : data.surface_names) surfaces.push_back(quoted(one_line(name)));
   for (const std::string& name : data.material_names) materials.push_back(quoted(one_line(name)));
 
-  const std::size_t bands = data.bands.count();
   fmt::memory_buffer row;
   for (std::size_t v = 0; v < data.vertex_count(); ++v) {
     row.clear();
@@ -43,12 +40,42 @@ std::optional<ToneMap> write_csv(const VertexData& data, OutputFile& file) {
     const Vec3& n = data.normals[v];
     fmt::format_to(std::back_inserter(row), "{},{},{},{},{},{},{},{},{}", v, p.x(), p.y(), p.z(), n.x(),
                    n.y(), n.z(), surfaces[data.surfaces[v].index()], materials[data.materials[v].index()]);
-    for (std::size_t i = v * bands; i < (v + 1) * bands; ++i)
-      fmt::format_to(std::back_inserter(row), ",{},{},{},{}", data.radiance[i], data.irradiance[i],
-                     data.radiance_stderr[i], data.direct_radiance[i]);
+    append_values(v, row);
     row.push_back('\n');
     file.write({row.data(), row.size()});
   }
+}
+
+}  // namespace
+
+std::optional<ToneMap> write_csv(const VertexData& data, OutputFile& file) {
+  std::string values;
+  for (const std::string& band : data.bands.names())
+    values += fmt::format(",radiance_{0},irradiance_{0},stderr_{0},direct_{0}", band);
+  write_header(data, "", values, file);
+  const std::size_t bands = data.bands.count();
+  write_rows(data, file, [&](std::size_t v, fmt::memory_buffer& row) {
+    for (std::size_t i = v * bands; i < (v + 1) * bands; ++i)
+      fmt::format_to(std::back_inserter(row), ",{},{},{},{}", data.radiance[i], data.irradiance[i],
+                     data.radiance_stderr[i], data.direct_radiance[i]);
+  });
+  return std::nullopt;
+}
+
+std::optional<ToneMap> write_photometric_csv(const VertexData& data, OutputFile& file) {
+  write_header(data, "lengths in m, luminance in cd/m2, illuminance in lx",
+               ",luminance,illuminance,stderr_luminance,direct_luminance", file);
+  const Spectrum& efficacy = data.bands.efficacy_lm_per_w();
+  const auto bands = static_cast<std::size_t>(efficacy.size());
+  write_rows(data, file, [&](std::size_t v, fmt::memory_buffer& row) {
+    for (const auto* values :
+         {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance}) {
+      double sum = 0;
+      for (std::size_t b = 0; b < bands; ++b)
+        sum += efficacy[static_cast<Eigen::Index>(b)] * static_cast<double>((*values)[v * bands + b]);
+      fmt::format_to(std::back_inserter(row), ",{}", static_cast<float>(sum));
+    }
+  });
   return std::nullopt;
 }
 

@@ -12,4 +12,9 @@ namespace reemit {
 /// map.
 std::optional<ToneMap> write_csv(const VertexData& data, OutputFile& file);
 
+/// The same in photometric units: luminance [cd/m2] and illuminance [lx] in place of the values of the bands.
+/// Bands are carried by the same packets, so their errors are taken to go together fully: the standard error
+/// of luminance is exact in a grey room and an upper bound in others.
+std::optional<ToneMap> write_photometric_csv(const VertexData& data, OutputFile& file);
+
 }  // namespace reemit

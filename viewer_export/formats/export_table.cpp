@@ -1,5 +1,6 @@
 #include "viewer_export/formats/export_table.h"
 
+#include "scenes/model/error.h"
 #include "viewer_export/formats/csv_writer.h"
 #include "viewer_export/formats/file_extension.h"
 #include "viewer_export/formats/glb_writer.h"
@@ -22,6 +23,20 @@ std::span<const ExportFormat> export_formats() {
 
 const ExportFormat& export_format_of(const std::filesystem::path& file) {
   return format_by_extension(export_formats(), file);
+}
+
+void check_photometric(const std::filesystem::path& file) {
+  if (export_format_of(file).write == write_csv) return;
+  throw InputError(file.string(), "--units lx is for .csv: viewers read colours and radiance",
+                   "Write .csv, or leave --units out: `quality` in .ply is luminance [cd/m2].");
+}
+
+void write_photometric_data(const VertexData& data, const std::filesystem::path& file) {
+  check_photometric(file);
+  check_consistent(data);
+  OutputFile output(file);
+  write_photometric_csv(data, output);
+  output.commit();
 }
 
 std::optional<ToneMap> write_vertex_data(const VertexData& data, const std::filesystem::path& file) {

@@ -30,4 +30,10 @@ const ExportFormat& export_format_of(const std::filesystem::path& file);
 /// ResourceError when the file cannot be written, std::invalid_argument for inconsistent data.
 std::optional<ToneMap> write_vertex_data(const VertexData& data, const std::filesystem::path& file);
 
+/// Throws InputError unless the format of the extension can hold photometric units.
+void check_photometric(const std::filesystem::path& file);
+
+/// Writes illuminance [lx] and luminance [cd/m2] instead. Throws as check_photometric and write_vertex_data.
+void write_photometric_data(const VertexData& data, const std::filesystem::path& file);
+
 }  // namespace reemit

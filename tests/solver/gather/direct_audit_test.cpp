@@ -28,7 +28,7 @@ test::RoomBuilder room_with_shelf() {
 Solution solved(const test::RoomBuilder& room) {
   SolverSettings settings;
   settings.packets = 2'000'000;
-  return solve(room.scene(), room.mesh(), settings, {}, kNever);
+  return solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
 }
 
 TEST(DirectAudit, packets_and_shadow_rays_find_the_same_direct_light) {

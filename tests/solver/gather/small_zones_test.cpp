@@ -32,7 +32,7 @@ Solution run(const VariableFurnace& furnace, bool gather, std::uint64_t seed = 1
   settings.packets = 5'000'000;
   settings.gather_small_zones = gather;
   settings.seed = seed;
-  return solve(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
+  return solve_zones(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
 }
 
 bool is_small(const Solution& s, std::size_t z) {
@@ -109,7 +109,7 @@ TEST(SmallZones, need_all_batch_groups) {
   settings.packets = 30'000;
   settings.batch_packets = 3'000;
   const VariableFurnace furnace = room_of_many_sizes();
-  const Solution s = solve(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
+  const Solution s = solve_zones(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
   EXPECT_EQ(s.record.gathered_zones, 0U);
 }
 

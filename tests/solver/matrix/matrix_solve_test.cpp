@@ -28,7 +28,7 @@ Solution run(const RoomBuilder& room, SolveMethod method, std::uint64_t packets 
   settings.batch_packets = packets / 32;
   settings.seed = 77;
   settings.threads = threads;
-  return solve(room.scene(), room.mesh(), settings, nullptr, interrupt);
+  return solve_zones(room.scene(), room.mesh(), settings, nullptr, interrupt);
 }
 
 /// Unit cube of twelve triangles; every face is split along the (0,0)-(1,1) diagonal of its axes (y,z), (x,z)
@@ -142,7 +142,7 @@ TEST(MatrixSolve, StatedErrorsCoverWhatOtherRaysGive) {
   SolverSettings settings;
   settings.method = SolveMethod::kMatrix;
   settings.seed = 78;
-  auto second = irradiances(solve(room.scene(), room.mesh(), settings, nullptr, interrupt));
+  auto second = irradiances(solve_zones(room.scene(), room.mesh(), settings, nullptr, interrupt));
   EXPECT_GT(test::agreement(first, second, 16), test::kFalseAlarm);
   double differences = 0;
   double variances = 0;

@@ -17,7 +17,7 @@ using test::RoomBuilder;
 
 Solution run(const RoomBuilder& room, SolverSettings settings) {
   const std::atomic<bool> interrupt = false;
-  return solve(room.scene(), room.mesh(), settings, nullptr, interrupt);
+  return solve_zones(room.scene(), room.mesh(), settings, nullptr, interrupt);
 }
 
 SolverSettings settings_of(SolveMethod method, std::uint64_t packets,

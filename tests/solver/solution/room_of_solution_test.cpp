@@ -47,7 +47,7 @@ TEST_F(RoomOfSolution, IsTakenFromWhereTheUserSays) {
   EXPECT_EQ(read_room_of(solution_, file_, {folder_ / "other.json"}).surfaces.size(),
             solution_.surface_names.size());
   EXPECT_THAT([&] { read_room_of(solution_, file_, {folder_ / "none.json"}); },
-              ThrowsMessage<InputError>(HasSubstr("no such room file")));
+              ThrowsMessage<InputError>(HasSubstr("there is no such file")));
 }
 
 TEST_F(RoomOfSolution, OfSeveralFilesIsFoundBesideTheSolutionOrByTheirNames) {

@@ -226,9 +226,9 @@ TEST_F(SolutionFile, HoldsZoneValuesWithUnits) {
 TEST_F(SolutionFile, RefusesOtherFiles) {
   EXPECT_THAT([&] { load_solution(file_); }, ThrowsMessage<InputError>(HasSubstr("no such file")));
   EXPECT_THAT([&] { load_solution(folder_.path()); },
-              ThrowsMessage<InputError>(HasSubstr("not a regular file")));
+              ThrowsMessage<InputError>(HasSubstr("it is a folder")));
   write_bytes(file_, "");
-  EXPECT_THAT([&] { load_solution(file_); }, ThrowsMessage<InputError>(HasSubstr("no HDF5")));
+  EXPECT_THAT([&] { load_solution(file_); }, ThrowsMessage<InputError>(HasSubstr("the file is empty")));
   write_bytes(file_, std::string(5000, 'x'));
   EXPECT_THAT([&] { load_solution(file_); }, ThrowsMessage<InputError>(HasSubstr("no HDF5")));
   EXPECT_FALSE(is_solution_file(file_));

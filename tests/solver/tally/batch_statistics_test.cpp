@@ -30,7 +30,7 @@ Solution run(const test::RoomBuilder& room, std::uint64_t packets, std::uint64_t
   settings.batch_packets = packets / static_cast<std::uint64_t>(batches);
   settings.seed = seed;
   const std::atomic<bool> never{false};
-  return solve(room.scene(), room.mesh(), settings, {}, never);
+  return solve_zones(room.scene(), room.mesh(), settings, {}, never);
 }
 
 TEST(Replicates, independent_ones_have_the_textbook_error) {

@@ -1,7 +1,11 @@
 // The whole way of the data through the built program: solve, render, export, audit, info.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -190,6 +194,62 @@ TEST_F(Pipeline, AnEyeOutsideOfTheRoomIsToldButRendered) {
   EXPECT_TRUE(std::filesystem::exists(path("eye.png")));
 }
 
+TEST_F(Pipeline, PhotometricUnitsAreTheBandsTimesTheirEfficacy) {
+  solve_small_room(folder_, "room.h5");
+  output_of({"export", path("room.h5"), "-o", path("watts.csv"), "--values", "zones"});
+  output_of({"export", path("room.h5"), "-o", path("lux.csv"), "--values", "zones", "--units", "lx"});
+  const std::vector<CsvRow> watts = csv_rows(folder_ / "watts.csv");
+  const std::vector<CsvRow> lux = csv_rows(folder_ / "lux.csv");
+  ASSERT_EQ(watts.size(), lux.size());
+  const auto photometric = [](const CsvRow& row, const std::string& name) {
+    return 179 * (0.2126 * std::stod(row.at(name + "_r")) + 0.7152 * std::stod(row.at(name + "_g")) +
+                  0.0722 * std::stod(row.at(name + "_b")));
+  };
+  for (std::size_t i = 0; i < lux.size(); ++i) {
+    const double expected = photometric(watts[i], "irradiance");
+    EXPECT_NEAR(std::stod(lux[i].at("illuminance")), expected, 1e-5 * expected);
+    EXPECT_NEAR(std::stod(lux[i].at("luminance")), photometric(watts[i], "radiance"), 1e-4 * expected);
+  }
+  const ProgramRun refused = run_reemit({"export", path("room.h5"), "-o", path("x.ply"), "--units", "lx"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("for .csv"));
+}
+
+TEST_F(Pipeline, TheLogOfAKilledRunCanBeRead) {
+  RunningProgram program(
+      {"solve", path("room.json"), "-o", path("room.h5"), "--time", "60", "--log", path("run.jsonl")});
+  const auto lines = [&] {
+    std::istringstream text(read_bytes(folder_ / "run.jsonl"));
+    std::vector<std::string> all;
+    for (std::string line; std::getline(text, line);) all.push_back(line);
+    return all;
+  };
+  for (int i = 0; i < 600 && lines().size() < 4; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  program.send(SIGKILL);
+  EXPECT_EQ(program.wait().exit_code, -SIGKILL);
+  const std::vector<std::string> all = lines();
+  ASSERT_GE(all.size(), 4U);
+  EXPECT_EQ(json::parse(all[0])["event"], "start");
+  double seconds = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const json batch = json::parse(all[i]);
+    EXPECT_EQ(batch["event"], "batch");
+    EXPECT_EQ(batch["batches"].get<std::size_t>(), i);
+    EXPECT_GT(batch["seconds"].get<double>(), seconds);
+    EXPECT_EQ(batch["error"].is_null(), i < 2) << "known from two batches on";
+    seconds = batch["seconds"].get<double>();
+  }
+
+  output_of(
+      {"solve", path("room.json"), "-o", path("room.h5"), "--packets", "20000", "--log", path("run.jsonl")});
+  EXPECT_EQ(json::parse(lines().back())["event"], "end") << "an old log is replaced";
+  const ProgramRun refused = run_reemit(
+      {"solve", path("room.json"), "-o", path("other.h5"), "--packets", "20000", "--log", path("room.h5")});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("no log of a run"));
+}
+
 TEST_F(Pipeline, ExportedIrradianceIsPhysical) {
   // No more light can arrive anywhere than the lamp's radiance all around: E <= pi L_e / (1 - rho), and the
   // walls see some of it.
@@ -294,6 +354,38 @@ TEST_F(Pipeline, InfoTellsWhatIsRefusedAndWhatIsNotModelled) {
   EXPECT_EQ(document["refused"]["count"], 1);
   EXPECT_THAT(document["error"].get<std::string>(), HasSubstr("bad.obj:14: index 99 is out of range"));
   EXPECT_EQ(document["advice"], "The file has 4.");
+}
+
+TEST_F(Pipeline, InfoGivesTheLightOfEverySurfaceAndMaterialWithItsError) {
+  solve_small_room(folder_, "room.h5");
+  const json info = json::parse(output_of({"info", path("room.h5"), "--json"}));
+  ASSERT_EQ(info["surfaces"].size(), 14U) << "both sides of six walls and the lamp";
+  ASSERT_EQ(info["materials"].size(), 3U);
+  double leaving = 0;
+  double received = 0;
+  for (const json& surface : info["surfaces"]) {
+    const bool outside = surface["side"] == "back" && surface["name"] != "lamp";
+    EXPECT_EQ(surface["counts"], !outside) << surface["name"];
+    if (outside) continue;
+    EXPECT_GT(surface["illuminance_lx"].get<double>(), 0);
+    EXPECT_GT(surface["illuminance_stderr_lx"].get<double>(), 0);
+    EXPECT_NEAR(surface["received_flux_lm"].get<double>(),
+                surface["area_m2"].get<double>() * surface["illuminance_lx"].get<double>(), 1e-9);
+    leaving += surface["leaving_flux_lm"].get<double>();
+    received += surface["received_flux_lm"].get<double>();
+  }
+  // The room is closed: what leaves its surfaces arrives on them, but for the quanta on their way at the end.
+  EXPECT_NEAR(received / leaving, 1, 1e-4);
+  const json& lamp = info["surfaces"][12];
+  EXPECT_EQ(lamp["name"], "lamp");
+  EXPECT_NEAR(lamp["exitance_W_m2"][0].get<double>(), 30, 1e-9);
+  EXPECT_NEAR(lamp["leaving_flux_lm"].get<double>(), info["luminaires"][0]["flux_lm"].get<double>(), 1e-6);
+  EXPECT_THAT(output_of({"info", path("room.h5")}), HasSubstr("E [lx]"));
+
+  std::filesystem::remove(folder_ / "room.json");
+  const json without = json::parse(output_of({"info", path("room.h5"), "--json"}));
+  EXPECT_NE(without["room_status"], "unchanged");
+  EXPECT_EQ(without["luminaires"], info["luminaires"]) << "luminous surfaces are in the solution";
 }
 
 TEST_F(Pipeline, WarningsGoToStandardErrorAndQuietSilencesThem) {

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/run_program.h"
+#include "tests/support/small_rooms.h"
+#include "tests/support/solved_room.h"
+#include "tests/support/temp_folder.h"
 
 namespace reemit::test {
 namespace {
@@ -52,6 +55,13 @@ TEST(Usage, MistakesEndWithCode2AndAHint) {
       {{"render", "x.h5", "-o", "x.png", "--size", "640"}, "640x480"},
       {{"render", "x.h5", "-o", "x.png", "--eye", "1,2"}, "X,Y,Z"},
       {{"render", "x.h5", "-o", "x.png", "--eye", "1,2,3"}, "--look-at"},
+      {{"render", "x.h5", "-o", "x.png", "--eye", "1", "2", "3"}, "write --eye 1,2,3"},
+      {{"render", "--look-at=1,", "-2,", "3", "x.h5", "-o", "x.png"}, "write --look-at 1,-2,3"},
+      {{"render", "x.h5", "-o", "x.png", "--camera", "front", "--fov", "50"}, "is for a view by --eye"},
+      {{"render", "x.h5", "-o", "x.png", "--up", "0,0,1"}, "own up direction"},
+      {{"solve", "missing.json", "-o", "x.h5"}, "missing.json: there is no such file"},
+      {{"info", "missing.h5"}, "missing.h5: there is no such file"},
+      {{"export", "missing.h5", "-o", "x.ply"}, "missing.h5: there is no such file"},
       {{"render", "x.h5", "-o", "x.png", "--spp", "4", "--error", "1%"}, "excludes"},
       {{"render", "x.h5", "-o", "x.gif"}, ".gif"},
       {{"export", "x.h5", "-o", "x.xyz"}, ".xyz"},
@@ -66,6 +76,24 @@ TEST(Usage, MistakesEndWithCode2AndAHint) {
     EXPECT_THAT(run.err, HasSubstr("reemit: error: ")) << line;
     EXPECT_THAT(run.err, HasSubstr(misuse.message)) << line;
     EXPECT_THAT(run.out, IsEmpty()) << line;
+  }
+}
+
+TEST(Usage, MissingFoldersAreNamed) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const std::string room = (folder / "room.json").string();
+  const std::string solution = solve_small_room(folder, "room.h5").string();
+  const std::string missing = (folder / "none").string();
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"solve", room, "-o", missing + "/x.h5"},
+        {"export", solution, "-o", missing + "/x.csv"},
+        {"render", solution, "-o", missing + "/x.png"},
+        {"render", solution, "-o", missing + "/pictures/"},
+        {"render", solution, "-o", missing + "/x.png", "--camera", "front"}}) {
+    const ProgramRun run = run_reemit(command);
+    EXPECT_EQ(run.exit_code, 2) << command.front();
+    EXPECT_THAT(run.err, HasSubstr("there is no folder '" + missing + "'")) << command.front();
   }
 }
 

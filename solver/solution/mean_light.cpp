@@ -1,0 +1,153 @@
+#include "solver/solution/mean_light.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace reemit {
+namespace {
+
+constexpr std::size_t kGroups = ZoneSums::kGroups;
+
+/// Means over a set of zones of one material, per band.
+struct GroupedMean {
+  explicit GroupedMean(std::size_t bands)
+      : emitted(Spectrum::Zero(static_cast<Eigen::Index>(bands))), irradiance(emitted) {
+    groups.fill(emitted);
+  }
+
+  bool dark() const { return (irradiance == 0).all() && (emitted == 0).all(); }
+
+  /// Adds the zones of another set.
+  void merge(const GroupedMean& other) {
+    const double all = area + other.area;
+    if (!(all > 0)) return;
+    const auto weigh = [&](Spectrum& own, const Spectrum& added) {
+      own = (area * own + other.area * added) / all;
+    };
+    weigh(emitted, other.emitted);
+    weigh(irradiance, other.irradiance);
+    for (std::size_t g = 0; g < kGroups; ++g) weigh(groups[g], other.groups[g]);
+    area = all;
+  }
+
+  double area = 0;                       // [m2]
+  Spectrum emitted;                      // by the zones themselves [W/m2]
+  Spectrum irradiance;                   // of all batches [W/m2]
+  std::array<Spectrum, kGroups> groups;  // irradiance of each group of batches [W/m2]
+};
+
+/// Index surface * 2 + (0 front, 1 back); of area 0 where a side has no zones.
+std::vector<GroupedMean> gather_sides(const Solution& solution) {
+  const ZoneMesh& mesh = solution.mesh;
+  const ZoneSums& sums = solution.sums;
+  const std::size_t bands = solution.bands.count();
+  const std::size_t values = mesh.zone_count() * bands;
+  std::vector<GroupedMean> sides(2 * solution.surface_names.size(), GroupedMean(bands));
+  const auto side_of = [&](ZoneId z) -> GroupedMean& {
+    return sides[2 * mesh.zone_surface(z).index() + (mesh.zone_is_front(z) ? 0 : 1)];
+  };
+  const auto add_up = [&](auto&& value_of, auto&& into) {
+    for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+      Spectrum& sum = into(side_of(ZoneId(z)));
+      const double area = mesh.zone_area(ZoneId(z));
+      for (std::size_t b = 0; b < bands; ++b)
+        sum[static_cast<Eigen::Index>(b)] += area * value_of(z * bands + b);
+    }
+  };
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    GroupedMean& side = side_of(ZoneId(z));
+    side.area += mesh.zone_area(ZoneId(z));
+    for (std::size_t b = 0; b < bands; ++b)
+      side.emitted[static_cast<Eigen::Index>(b)] = solution.emitted_radiosity(ZoneId(z), b);
+  }
+  add_up([&](std::size_t i) { return sums.direct[i] + sums.indirect[i]; },
+         [](GroupedMean& side) -> Spectrum& { return side.irradiance; });
+  for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
+    add_up([&](std::size_t i) { return sums.group_total[g * values + i]; },
+           [g](GroupedMean& side) -> Spectrum& { return side.groups[g]; });
+  for (GroupedMean& side : sides) {
+    if (!(side.area > 0)) continue;
+    if (sums.batches > 0) side.irradiance /= side.area * static_cast<double>(sums.weight());
+    for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
+      side.groups[g] /= side.area * static_cast<double>(sums.group_weight[g]);
+  }
+  return sides;
+}
+
+/// Weights of the groups that have batches.
+struct GroupWeights {
+  explicit GroupWeights(const ZoneSums& sums) {
+    for (const std::int64_t weight : sums.group_weight) {
+      const auto w = static_cast<double>(weight);
+      sum += w;
+      of_squares += w * w;
+    }
+  }
+  double sum = 0;
+  double of_squares = 0;
+};
+
+/// `value_of` is linear in the irradiance, but for a constant: it takes the mean or that of a group. The
+/// error is that of a ratio estimate, as ZoneSums has it for batches.
+template <class Function>
+Estimate estimate(const ZoneSums& sums, const GroupedMean& light, Function&& value_of) {
+  const double mean = value_of(light.irradiance);
+  if (sums.batches == 0) return {mean, 0};
+  if (sums.batches == 1) return {mean, std::numeric_limits<double>::infinity()};
+  const GroupWeights weights(sums);
+  double squares = 0;
+  for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g) {
+    const double deviation = static_cast<double>(sums.group_weight[g]) * (value_of(light.groups[g]) - mean);
+    squares += deviation * deviation;
+  }
+  return {mean, std::sqrt(squares / (weights.sum * weights.sum - weights.of_squares))};
+}
+
+MeanLight finished(const Solution& solution, const Material& material, const GroupedMean& grouped) {
+  const Spectrum& efficacy = solution.bands.efficacy_lm_per_w();
+  const Spectrum& rho = material.reflectance;
+  const auto of = [&](auto&& value_of) { return estimate(solution.sums, grouped, value_of); };
+  MeanLight light;
+  light.area = grouped.area;
+  for (Eigen::Index b = 0; b < efficacy.size(); ++b) {
+    light.irradiance.push_back(of([&](const Spectrum& e) { return e[b]; }));
+    // A black surface reflects nothing however little is known about its irradiance.
+    const double own = grouped.emitted[b];
+    light.exitance.push_back(rho[b] > 0 ? of([&](const Spectrum& e) { return own + rho[b] * e[b]; })
+                                        : Estimate{own, 0});
+  }
+  light.illuminance = of([&](const Spectrum& e) { return (efficacy * e).sum(); });
+  const double own = (efficacy * grouped.emitted).sum();
+  light.luminous_exitance = (rho > 0).any()
+                                ? of([&](const Spectrum& e) { return own + (efficacy * rho * e).sum(); })
+                                : Estimate{own, 0};
+  return light;
+}
+
+}  // namespace
+
+RoomLight mean_light(const Solution& solution) {
+  const std::vector<GroupedMean> sides = gather_sides(solution);
+  std::vector<GroupedMean> by_material(solution.materials.size(), GroupedMean(solution.bands.count()));
+  RoomLight room;
+  for (std::size_t s = 0; s < solution.surface_names.size(); ++s) {
+    const MaterialId material = solution.surface_materials[s];
+    const bool dark = sides[2 * s].dark() && sides[2 * s + 1].dark();
+    for (const bool front : {true, false}) {
+      const GroupedMean& side = sides[2 * s + (front ? 0 : 1)];
+      if (!(side.area > 0)) continue;
+      const bool counts = dark ? front : !side.dark();
+      if (counts) by_material[material.index()].merge(side);
+      room.sides.push_back(
+          {SurfaceId(s), front, counts, finished(solution, solution.materials[material.index()], side)});
+    }
+  }
+  for (std::size_t m = 0; m < by_material.size(); ++m)
+    room.materials.push_back(finished(solution, solution.materials[m], by_material[m]));
+  const GroupWeights weights(solution.sums);
+  if (solution.sums.batches > 1) room.degrees_of_freedom = weights.sum * weights.sum / weights.of_squares - 1;
+  return room;
+}
+
+}  // namespace reemit

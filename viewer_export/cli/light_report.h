@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "solver/solution/solution.h"
+#include "viewer_export/cli/luminaire_list.h"
+
+namespace reemit::cli {
+
+/// Illuminance, exitance, area and flux of every surface and material of a solution with their standard
+/// errors, and what its luminaires send: three tables for people.
+std::string light_text(const Solution& solution, const std::vector<LuminaireRow>& luminaires);
+
+/// Sets "surfaces", "materials", "luminaires" and what belongs to them in the document of `info --json`
+/// (docs/command_line.md).
+void add_light(nlohmann::ordered_json& json, const Solution& solution,
+               const std::vector<LuminaireRow>& luminaires);
+
+}  // namespace reemit::cli
