@@ -14,7 +14,7 @@ namespace {
 /// 1 W/sr per candela, so that irradiances are in lx.
 class Hanging {
  public:
-  Hanging(const IesLuminaire& luminaire, double height) {
+  Hanging(const MeasuredLuminaire& luminaire, double height) {
     room_.add("receiver", room_.paint(0),
               Polygon{Vec3(kReach, -kReach, 0), Vec3(0, 2 * kReach, 0), Vec3(-kReach, -kReach, 0)});
     PhotometricLight light;
@@ -75,7 +75,7 @@ std::vector<ValidationRow> evaluate_measured_luminaires(const std::vector<Refere
   std::vector<ValidationRow> rows;
   for (const ReferenceCase& c : cases) {
     const std::string file = c.parameters.at("file");
-    const IesLuminaire luminaire = read_ies_file(REEMIT_SOURCE_DIR "/bench/validation/luminaires/" + file);
+    const MeasuredLuminaire luminaire = read_ies_file(REEMIT_SOURCE_DIR "/bench/validation/luminaires/" + file);
     const Hanging room(luminaire, c.parameters.at("h"));
     const RayScene rays(room.mesh());
     for (const ReferenceValue& v : c.values) {

@@ -5,19 +5,22 @@
 namespace reemit {
 namespace {
 
-/// Points that are kept although a zone then has several: more cost cache misses and change little.
+/// Points that are kept although a zone then has several: more cost cache misses and change little ...
 constexpr std::size_t kEnoughPoints = 16'384;
+/// ... unless very many packets would share one.
+constexpr std::size_t kMostSharing = 8;
 constexpr std::uint32_t kSweepNumbers = 255;
 constexpr int kSweepShift = 56;
 
 }  // namespace
 
-ArrivalPoints::ArrivalPoints(std::size_t zones, std::uint32_t packets)
-    : per_zone_(
-          std::clamp<std::size_t>(packets / std::max<std::size_t>(1, zones), 1,
-                                  std::max<std::size_t>(1, kEnoughPoints / std::max<std::size_t>(1, zones)))),
-      written_(zones * per_zone_),
-      read_(zones * per_zone_) {}
+ArrivalPoints::ArrivalPoints(std::size_t zones, std::uint32_t packets) {
+  zones = std::max<std::size_t>(1, zones);
+  const std::size_t enough = std::max<std::size_t>(kEnoughPoints, packets / kMostSharing) / zones;
+  per_zone_ = std::max<std::size_t>(1, std::min<std::size_t>(enough, packets / zones));
+  written_.resize(zones * per_zone_);
+  read_.resize(zones * per_zone_);
+}
 
 void ArrivalPoints::begin(std::uint32_t sweep) {
   std::swap(written_, read_);

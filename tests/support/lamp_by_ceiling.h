@@ -32,8 +32,10 @@ class LampByCeiling {
   const RoomBuilder& builder() const { return room_; }
   /// A base triangle of the floor.
   TriangleId floor() const { return TriangleId(8); }
-  Solution solved(std::uint64_t packets, std::uint64_t seed) const {
+  Solution solved(std::uint64_t packets, std::uint64_t seed,
+                  Reemission reemission = Reemission::kFromHits) const {
     SolverSettings settings;
+    settings.reemission = reemission;
     settings.packets = packets;
     settings.seed = seed;
     const std::atomic<bool> never{false};

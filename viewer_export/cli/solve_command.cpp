@@ -116,8 +116,8 @@ ExitCode run_solve(const SolveOptions& options) {
   }
   std::optional<RunLog> log;
   if (!options.log.empty())
-    log.emplace(options.log,
-                RunLog::Run{options.room.front(), options.output, settings, meshed.mesh.zone_count(), scene.bands});
+    log.emplace(options.log, RunLog::Run{options.room.front(), options.output, settings,
+                                         meshed.mesh.zone_count(), scene.bands});
   const InterruptGuard interrupt;
   Progress progress("solving", progress_style(options.style.quiet, options.style.verbose));
   const ProgressCallback show = progress_callback(progress, settings.method);

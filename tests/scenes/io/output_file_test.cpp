@@ -145,7 +145,7 @@ TEST(CheckWritable, RefusesWhatCannotBeWritten) {
   write_bytes(folder / "file", "");
   std::filesystem::create_symlink("loop", folder / "loop");
   EXPECT_THAT([&] { check_writable(folder / "nowhere/a.txt"); },
-              ThrowsMessage<ResourceError>(HasSubstr("Create the folder first")));
+              ThrowsMessage<ResourceError>(HasSubstr("Create it first")));
   EXPECT_THAT([&] { check_writable(folder.path()); }, ThrowsMessage<ResourceError>(HasSubstr("is a folder")));
   EXPECT_THAT([&] { check_writable("/dev/null"); },
               ThrowsMessage<ResourceError>(HasSubstr("not a regular file")));

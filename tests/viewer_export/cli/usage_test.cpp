@@ -66,7 +66,7 @@ TEST(Usage, MistakesEndWithCode2AndAHint) {
       {{"render", "x.h5", "-o", "x.gif"}, ".gif"},
       {{"export", "x.h5", "-o", "x.xyz"}, ".xyz"},
       {{"audit"}, "solution is required"},
-      {{"info", "a", "b"}, "unknown argument 'b'"},
+      {{"audit", "a", "b"}, "unknown argument 'b'"},
   };
   for (const Misuse& misuse : misuses) {
     const ProgramRun run = run_reemit(misuse.arguments);
