@@ -183,9 +183,6 @@ TEST(BadRooms, UnknownMaterial) {
   folder.write("room.json", replaced(small_json_room(), "\"name\": \"lamp\", \"material\": \"lamp\"",
                                      "\"name\": \"lamp\", \"material\": \"lmap\""));
   expect_refused(folder, "room.json", {"/objects/1/material", "lmap", "lamp"});
-  folder.write("room.mtl", small_obj_materials());
-  folder.write("room.obj", replaced(small_obj_room(), "usemtl lamp", "usemtl lmap"));
-  expect_refused(folder, "room.obj", {"room.obj", "lmap"});
   folder.write("room.mgf", replaced(small_mgf_room(), "m lamp\no", "m lmap\no"));
   expect_refused(folder, "room.mgf", {"room.mgf", "lmap"});
 }

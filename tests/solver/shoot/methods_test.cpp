@@ -164,7 +164,7 @@ TEST(Methods, LightStaysInAGapNarrowerThanAZone) {
     EXPECT_LT(4 * coarse.stderr_of_mean, 0.03 * coarse.mean);
     settings.reemission = Reemission::kFromZones;
     const double zonal = mean_over_quad(run(room_of(1), settings), kFloor, 1).mean;
-    EXPECT_GT(std::fabs(zonal / coarse.mean - 1), 0.05) << "light that leaves the gap at once";
+    EXPECT_GT(std::fabs(zonal / coarse.mean - 1), 0.03) << "light that leaves the gap at once";
   }
 }
 
