@@ -11,6 +11,7 @@
 #include "mesh/edge_points.h"
 #include "mesh/group_outlines.h"
 #include "mesh/near_pieces.h"
+#include "mesh/plane_boxes.h"
 #include "mesh/segment_crossings.h"
 #include "mesh/shape_contacts.h"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/plane_boxes.h"
+
 namespace reemit {
 namespace {
 
@@ -57,10 +59,6 @@ bool GroupOutlines::cover(const Vec2& p) const {
   tree_.visit([&](const Vec3& min, const Vec3& max) { return !found && at_p(min, max); },
               [&](std::uint32_t k) { found = found || contains(k, p); });
   return found;
-}
-
-IndexedBox box_in_plane(const Vec2& low, const Vec2& high, std::size_t index) {
-  return {{low.x(), low.y(), 0}, {high.x(), high.y(), 0}, static_cast<std::uint32_t>(index)};
 }
 
 }  // namespace reemit

@@ -6,7 +6,7 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/convex_region.h"
-#include "mesh/group_outlines.h"
+#include "mesh/plane_boxes.h"
 
 namespace reemit {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "mesh/face_notes.h"
 #include "mesh/group_outlines.h"
+#include "mesh/plane_boxes.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -120,12 +121,12 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
   std::vector<std::vector<std::size_t>> covering(cut.region_point.size());
   std::vector<std::size_t> winner(cut.region_point.size());
   for (std::size_t r = 0; r < covering.size(); ++r) {
-    if (group.pieces.size() == 1)
+    if (group.pieces.size() == 1) {
       covering[r] = group.pieces;
-    else
+    } else {
       outlines.covering(cut.region_point[r], covering[r]);
-    if (group.pieces.size() > 1)
       for (std::size_t& k : covering[r]) k = group.pieces[k];
+    }
     if (!covering[r].empty()) winner[r] = winner_of(pieces_, covering[r], room_centre_);
   }
   const std::size_t before = out_.size();
