@@ -85,13 +85,8 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(side_normal(rays, x)) > 0)) return;
   const Vec3f origin = rays.ray_origin(x.triangle, x.u, x.v, x.front);
+  rays_.set(count_, origin, direction);
   const auto lane = static_cast<std::size_t>(count_);
-  rays_.ox[lane] = origin.x();
-  rays_.oy[lane] = origin.y();
-  rays_.oz[lane] = origin.z();
-  rays_.dx[lane] = direction.x();
-  rays_.dy[lane] = direction.y();
-  rays_.dz[lane] = direction.z();
   second_look_[lane] = false;
   keys_[lane] = key;
   sums_[lane] = sum;
@@ -106,14 +101,9 @@ void GatherBatch::flush() {
 
 // Puts a ray back into the queue, turned a little, where it costs no block of its own.
 void GatherBatch::keep_for_second_look(std::size_t lane) {
+  const int ray = static_cast<int>(lane);
+  rays_.set(count_, rays_.origin(ray), RayScene::nudged(rays_.direction(ray)));
   const auto to = static_cast<std::size_t>(count_++);
-  const Vec3f direction = RayScene::nudged({rays_.dx[lane], rays_.dy[lane], rays_.dz[lane]});
-  rays_.ox[to] = rays_.ox[lane];
-  rays_.oy[to] = rays_.oy[lane];
-  rays_.oz[to] = rays_.oz[lane];
-  rays_.dx[to] = direction.x();
-  rays_.dy[to] = direction.y();
-  rays_.dz[to] = direction.z();
   second_look_[to] = true;
   keys_[to] = keys_[lane];
   sums_[to] = sums_[lane];

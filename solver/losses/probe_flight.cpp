@@ -5,13 +5,9 @@
 namespace reemit {
 
 void look_again(const RayScene& scene, const Ray16& rays, int count, Hit16& hits) {
-  Ray16 turned = rays;
-  for (int lane = 0; lane < count; ++lane) {
-    const Vec3f d = RayScene::nudged({rays.dx[lane], rays.dy[lane], rays.dz[lane]});
-    turned.dx[lane] = d.x();
-    turned.dy[lane] = d.y();
-    turned.dz[lane] = d.z();
-  }
+  Ray16 turned;
+  for (int lane = 0; lane < count; ++lane)
+    turned.set(lane, rays.origin(lane), RayScene::nudged(rays.direction(lane)));
   Hit16 second;
   scene.closest16(turned, count, second);
   for (int lane = 0; lane < count; ++lane) {

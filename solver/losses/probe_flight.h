@@ -31,8 +31,8 @@ void trace_probes(const RayScene& scene, const Ray16& rays, int count, const Vis
     look_again(scene, rays, count, hits);
   for (int lane = 0; lane < count; ++lane) {
     ProbeRay probe;
-    probe.origin = {rays.ox[lane], rays.oy[lane], rays.oz[lane]};
-    probe.direction = {rays.dx[lane], rays.dy[lane], rays.dz[lane]};
+    probe.origin = rays.origin(lane);
+    probe.direction = rays.direction(lane);
     probe.met = hits.triangle[lane] != RayScene::kMiss;
     if (probe.met)
       probe.hit = {TriangleId(hits.triangle[lane]), hits.u[lane], hits.v[lane], hits.distance[lane],

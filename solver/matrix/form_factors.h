@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 #include "mesh/zone_mesh.h"
+#include "scenes/model/interrupted.h"
 #include "solver/matrix/form_factor_report.h"
-#include "solver/matrix/interrupted.h"
 #include "solver/matrix/leaks.h"
 #include "solver/matrix/symmetric_table.h"
 #include "solver/trace/ray_scene.h"

@@ -65,9 +65,7 @@ std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const Ray
   for (std::uint32_t k = 0; k < kRaysPerLight; ++k) {
     start_light_ray(light, rays, numbers.sample(k, 0), numbers.sample(k, 1), numbers.sample(k, 2),
                     numbers.sample(k, 3), ray, 0);
-    const Vec3f origin(ray.ox[0], ray.oy[0], ray.oz[0]);
-    const Vec3f direction(ray.dx[0], ray.dy[0], ray.dz[0]);
-    if (const auto account = end_of_ray(rays, origin, direction)) count(leaks, *account);
+    if (const auto account = end_of_ray(rays, ray.origin(0), ray.direction(0))) count(leaks, *account);
   }
   return leaks;
 }

@@ -12,15 +12,6 @@ namespace {
 /// Radius of the sphere about the origin that holds the normalised room [-1,1]^3.
 constexpr float kRoomRadius = 1.7320509F;
 
-void set_ray(const Vec3f& origin, const Vec3f& direction, Ray16& rays, int lane) {
-  rays.ox[lane] = origin.x();
-  rays.oy[lane] = origin.y();
-  rays.oz[lane] = origin.z();
-  rays.dx[lane] = direction.x();
-  rays.dy[lane] = direction.y();
-  rays.dz[lane] = direction.z();
-}
-
 struct StartRay {
   const RayScene& scene;
   float u0, u1, u2, u3;
@@ -28,23 +19,23 @@ struct StartRay {
   int lane;
 
   void operator()(const PointLight& l) const {
-    set_ray(scene.normalised(l.position), sample_sphere(u2, u3), rays, lane);
+    rays.set(lane, scene.normalised(l.position), sample_sphere(u2, u3));
   }
   void operator()(const SpotLight& l) const {
     const Frame frame(l.direction.cast<float>());
-    set_ray(scene.normalised(l.position), frame.to_world(SpotDistribution(l).sample(u2, u3)), rays, lane);
+    rays.set(lane, scene.normalised(l.position), frame.to_world(SpotDistribution(l).sample(u2, u3)));
   }
   void operator()(const DirectionalLight& l) const {
     const Frame frame(l.direction.cast<float>());
     const Point2 d = sample_disk(u0, u1);
     const Vec3f origin = kRoomRadius * (d.x * frame.tangent + d.y * frame.bitangent - 1.01F * frame.normal);
-    set_ray(origin, frame.normal, rays, lane);
+    rays.set(lane, origin, frame.normal);
   }
   void operator()(const PhotometricLight& l) const {
     Vec3f origin;
     Vec3f direction;
     start_photometric_ray(l, scene, u0, u1, u2, u3, origin, direction);
-    set_ray(origin, direction, rays, lane);
+    rays.set(lane, origin, direction);
   }
 };
 

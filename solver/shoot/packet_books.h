@@ -58,8 +58,8 @@ class MissedPackets {
   std::size_t count() const { return id_.size(); }
 
   void add(const Ray16& rays, int lane, std::uint32_t id, const std::int64_t* power) {
-    origin_.emplace_back(rays.ox[lane], rays.oy[lane], rays.oz[lane]);
-    direction_.emplace_back(rays.dx[lane], rays.dy[lane], rays.dz[lane]);
+    origin_.push_back(rays.origin(lane));
+    direction_.push_back(rays.direction(lane));
     id_.push_back(id);
     power_.insert(power_.end(), power, power + bands_);
   }
@@ -68,14 +68,7 @@ class MissedPackets {
   void take(PacketBlock& block) {
     block.count = static_cast<int>(std::min<std::size_t>(16, count()));
     for (int lane = 0; lane < block.count; ++lane) {
-      const Vec3f& o = origin_.back();
-      const Vec3f d = RayScene::nudged(direction_.back());
-      block.rays.ox[lane] = o.x();
-      block.rays.oy[lane] = o.y();
-      block.rays.oz[lane] = o.z();
-      block.rays.dx[lane] = d.x();
-      block.rays.dy[lane] = d.y();
-      block.rays.dz[lane] = d.z();
+      block.rays.set(lane, origin_.back(), RayScene::nudged(direction_.back()));
       block.id[lane] = id_.back();
       std::copy(power_.end() - static_cast<std::ptrdiff_t>(bands_), power_.end(),
                 block.power.begin() + lane * static_cast<std::ptrdiff_t>(bands_));

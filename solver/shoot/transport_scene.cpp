@@ -45,10 +45,7 @@ void TransportScene::start_at(TriangleId t, float u, float v, bool front, const 
   const Vec3f origin = rays_->ray_origin(t, u, v, front);
   const Vec3f normal = rays_->normal(t, u, v);
   const Vec3f direction = Frame(front ? normal : Vec3f(-normal)).to_world(local);
-  for (int k = 0; k < 3; ++k) {
-    (k == 0 ? rays.ox : k == 1 ? rays.oy : rays.oz)[lane] = origin[k];
-    (k == 0 ? rays.dx : k == 1 ? rays.dy : rays.dz)[lane] = direction[k];
-  }
+  rays.set(lane, origin, direction);
 }
 
 void TransportScene::start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
@@ -66,11 +63,8 @@ void TransportScene::start_curved(const ZoneLanes& lanes, const UniformLanes& nu
 void TransportScene::start_at_feet(const ZoneLanes& lanes, Ray16& rays) const {
   for (int lane = 0; lane < 16; ++lane) {
     if ((lanes.feet >> lane & 1U) == 0) continue;
-    const Vec3f start =
-        rays_->clear_of_shapes(TriangleId(lanes.zone[lane]), {rays.ox[lane], rays.oy[lane], rays.oz[lane]});
-    rays.ox[lane] = start.x();
-    rays.oy[lane] = start.y();
-    rays.oz[lane] = start.z();
+    const Vec3f start = rays_->clear_of_shapes(TriangleId(lanes.zone[lane]), rays.origin(lane));
+    rays.set(lane, start, rays.direction(lane));
   }
 }
 

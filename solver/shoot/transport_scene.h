@@ -33,25 +33,20 @@ class TransportScene {
   /// Puts the geometry of a zone into lanes first .. last-1.
   void put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {
     const TriangleId t = mesh_->zone_triangle(z);
-    const std::uint32_t bits = ((1U << last) - 1) & ~((1U << first) - 1);
     if (t.index() >= mesh_->flat_count()) {
+      const std::uint32_t bits = lane_bits(first, last);
       lanes.curved |= bits;
       lanes.points &= ~bits;
       lanes.feet &= ~bits;
       std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(z.index()));
       return;
     }
-    lanes.curved &= ~bits;
     const TrianglePatch& p = patches_[t.index()];
-    lanes.feet &= ~bits;
-    if (p.is_foot) {
-      lanes.feet |= bits;
-      std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(t.index()));
-    }
     std::size_t in_side = z.index() - p.first_zone;
     const std::size_t per_side = std::size_t{p.divisions} * p.divisions;
-    const float side = in_side < per_side ? 1.0F : -1.0F;
-    if (in_side >= per_side) in_side -= per_side;
+    const bool front = in_side < per_side;
+    if (!front) in_side -= per_side;
+    put_flat_side(static_cast<std::uint32_t>(t.index()), front, lanes, first, last);
     const ZoneCell cell = zone_cell(p.divisions, static_cast<std::uint32_t>(in_side));
     // An upper zone is a lower one turned about the middle of their cell.
     const float turn = cell.upper ? -1.0F : 1.0F;
@@ -62,35 +57,24 @@ class TransportScene {
                 p.corner[k] + i * p.edge1[k] + j * p.edge2[k]);
       std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, turn * p.edge1[k]);
       std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, turn * p.edge2[k]);
-      std::fill(lanes.middle[k] + first, lanes.middle[k] + last, p.middle[k]);
-      std::fill(lanes.tangent[k] + first, lanes.tangent[k] + last, p.frame.tangent[k]);
-      std::fill(lanes.bitangent[k] + first, lanes.bitangent[k] + last, p.frame.bitangent[k]);
-      std::fill(lanes.normal[k] + first, lanes.normal[k] + last, side * p.frame.normal[k]);
     }
   }
 
   /// Puts a side of a base triangle into lanes first .. last-1, for put_point.
   void put_side(std::uint32_t triangle, bool front, ZoneLanes& lanes, int first, int last) const {
-    const std::uint32_t bits = ((1U << last) - 1) & ~((1U << first) - 1);
-    std::fill(lanes.zone + first, lanes.zone + last, triangle);
-    lanes.feet &= ~bits;
-    const float side = front ? 1.0F : -1.0F;
     if (triangle >= mesh_->flat_count()) {
+      const std::uint32_t bits = lane_bits(first, last);
       lanes.curved |= bits;
       lanes.points |= bits;
-      std::fill(lanes.corner[2] + first, lanes.corner[2] + last, side);
+      lanes.feet &= ~bits;
+      std::fill(lanes.zone + first, lanes.zone + last, triangle);
+      std::fill(lanes.corner[2] + first, lanes.corner[2] + last, front ? 1.0F : -1.0F);
       return;
     }
-    lanes.curved &= ~bits;
-    const TrianglePatch& p = patches_[triangle];
-    if (p.is_foot) lanes.feet |= bits;
+    put_flat_side(triangle, front, lanes, first, last);
     for (int k = 0; k < 3; ++k) {
       std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, 0.0F);
       std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, 0.0F);
-      std::fill(lanes.middle[k] + first, lanes.middle[k] + last, p.middle[k]);
-      std::fill(lanes.tangent[k] + first, lanes.tangent[k] + last, p.frame.tangent[k]);
-      std::fill(lanes.bitangent[k] + first, lanes.bitangent[k] + last, p.frame.bitangent[k]);
-      std::fill(lanes.normal[k] + first, lanes.normal[k] + last, side * p.frame.normal[k]);
     }
   }
   /// Makes the ray of a lane leave from (u,v), whatever the uniform numbers of its point are.
@@ -104,6 +88,11 @@ class TransportScene {
     const float un = u * static_cast<float>(p.divisions);
     const float vn = v * static_cast<float>(p.divisions);
     for (int k = 0; k < 3; ++k) lanes.corner[k][lane] = p.corner[k] + un * p.edge1[k] + vn * p.edge2[k];
+  }
+  /// Makes the ray of a lane leave from where another met a side.
+  void put_hit(std::uint32_t triangle, float u, float v, bool front, ZoneLanes& lanes, int lane) const {
+    put_side(triangle, front, lanes, lane, lane + 1);
+    put_point(triangle, u, v, lanes, lane);
   }
 
   /// start_rays for zones that may be curved.
@@ -124,6 +113,27 @@ class TransportScene {
   }
 
  private:
+  static std::uint32_t lane_bits(int first, int last) { return ((1U << last) - 1) & ~((1U << first) - 1); }
+
+  /// What the zones on a side of a flat triangle have in common.
+  void put_flat_side(std::uint32_t triangle, bool front, ZoneLanes& lanes, int first, int last) const {
+    const std::uint32_t bits = lane_bits(first, last);
+    const TrianglePatch& p = patches_[triangle];
+    lanes.curved &= ~bits;
+    lanes.feet &= ~bits;
+    if (p.is_foot) {
+      lanes.feet |= bits;
+      std::fill(lanes.zone + first, lanes.zone + last, triangle);
+    }
+    const float side = front ? 1.0F : -1.0F;
+    for (int k = 0; k < 3; ++k) {
+      std::fill(lanes.middle[k] + first, lanes.middle[k] + last, p.middle[k]);
+      std::fill(lanes.tangent[k] + first, lanes.tangent[k] + last, p.frame.tangent[k]);
+      std::fill(lanes.bitangent[k] + first, lanes.bitangent[k] + last, p.frame.bitangent[k]);
+      std::fill(lanes.normal[k] + first, lanes.normal[k] + last, side * p.frame.normal[k]);
+    }
+  }
+
   void start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays, int lane) const;
   void start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
   void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;

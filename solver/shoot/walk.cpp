@@ -19,10 +19,9 @@ constexpr std::uint32_t kPacketsPerTask = 1024;
 /// power is unshot.
 constexpr std::uint32_t kMostBounces = 200'000;
 
-/// Packets that wait to leave a zone.
+/// Packets that wait to leave what they met.
 struct WaitingPackets {
   struct Packet {
-    ZoneId zone;
     std::uint32_t triangle;  ///< That it met,
     float at_u, at_v;        ///< where
     bool front;              ///< and on which side.
@@ -122,19 +121,15 @@ class WalkTask {
         for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = p.u[d];
         id[lane] = p.id;
         if (from_hits_)
-          put_point(p, lane);
+          transport_.put_hit(p.triangle, p.at_u, p.at_v, p.front, lanes_, lane);
         else
-          transport_.put_zone(p.zone, lanes_, lane, lane + 1);
+          transport_.put_zone(transport_.zone_of(p.triangle, p.at_u, p.at_v, p.front), lanes_, lane,
+                              lane + 1);
       }
       transport_.start(lanes_, numbers, rays_);
       trace(count, id, &leaving_.quanta[first * bands_], zones_.indirect, bounce);
     }
     look_again(zones_.indirect, bounce);
-  }
-
-  void put_point(const WaitingPackets::Packet& p, int lane) {
-    transport_.put_side(p.triangle, p.front, lanes_, lane, lane + 1);
-    transport_.put_point(p.triangle, p.at_u, p.at_v, lanes_, lane);
   }
 
   void trace(int count, const std::uint32_t id[16], const std::int64_t* power,
@@ -182,12 +177,12 @@ class WalkTask {
       }
       for (std::size_t b = 0; b < bands_; ++b)
         book(incident[zone[lane].index() * bands_ + b], quanta[b], shared_);
-      reflect(zone[lane], surface, id[lane], quanta, bits, static_cast<std::size_t>(lane));
+      reflect(surface, id[lane], quanta, bits, static_cast<std::size_t>(lane));
     }
   }
 
-  void reflect(ZoneId zone, SurfaceId surface, std::uint32_t id, const std::int64_t* quanta,
-               const BitLanes& bits, std::size_t lane) {
+  void reflect(SurfaceId surface, std::uint32_t id, const std::int64_t* quanta, const BitLanes& bits,
+               std::size_t lane) {
     const double survival = transport_.largest_reflectance(surface);
     const double* rho = transport_.reflectance(surface);
     std::int64_t* absorbed = &absorbed_[surface.index() * bands_];
@@ -196,8 +191,7 @@ class WalkTask {
       return;
     }
     waiting_.packets.push_back(
-        {zone,
-         hits_.triangle[lane],
+        {hits_.triangle[lane],
          hits_.u[lane],
          hits_.v[lane],
          hits_.front[lane],

@@ -236,8 +236,8 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     if (t == kMiss) continue;
     if (query.hit.geomID[i] != EmbreeScene::kTriangles) {
       Hit hit;
-      read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i],
-               {rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, hit);
+      read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i], rays.origin(i),
+               rays.direction(i), hit);
       hits.triangle[i] = static_cast<std::uint32_t>(hit.triangle.index());
       hits.u[i] = hit.u;
       hits.v[i] = hit.v;
@@ -265,13 +265,7 @@ void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   int doubtful_count = 0;
   for (int i = 0; i < count; ++i) {
     if (!is_doubtful(hits.triangle[i], hits.front[i])) continue;
-    doubtful.ox[doubtful_count] = rays.ox[i];
-    doubtful.oy[doubtful_count] = rays.oy[i];
-    doubtful.oz[doubtful_count] = rays.oz[i];
-    const Vec3f d = nudged({rays.dx[i], rays.dy[i], rays.dz[i]});
-    doubtful.dx[doubtful_count] = d.x();
-    doubtful.dy[doubtful_count] = d.y();
-    doubtful.dz[doubtful_count] = d.z();
+    doubtful.set(doubtful_count, rays.origin(i), nudged(rays.direction(i)));
     lanes[doubtful_count++] = i;
   }
   if (doubtful_count == 0) return;

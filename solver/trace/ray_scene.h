@@ -23,6 +23,17 @@ struct Hit {
 struct alignas(64) Ray16 {
   float ox[16], oy[16], oz[16];
   float dx[16], dy[16], dz[16];
+
+  void set(int lane, const Vec3f& origin, const Vec3f& direction) {
+    ox[lane] = origin.x();
+    oy[lane] = origin.y();
+    oz[lane] = origin.z();
+    dx[lane] = direction.x();
+    dy[lane] = direction.y();
+    dz[lane] = direction.z();
+  }
+  Vec3f origin(int lane) const { return {ox[lane], oy[lane], oz[lane]}; }
+  Vec3f direction(int lane) const { return {dx[lane], dy[lane], dz[lane]}; }
 };
 
 struct Hit16 {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenes/model/interrupted.h"
 #include "solver/gather/direct_audit.h"
-#include "solver/matrix/interrupted.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/audit_report.h"

@@ -10,7 +10,7 @@
 
 #include "scenes/io/json_cursor.h"
 #include "scenes/model/error.h"
-#include "solver/matrix/interrupted.h"
+#include "scenes/model/interrupted.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/messages.h"

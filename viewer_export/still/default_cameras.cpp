@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "solver/sampling/sphere_lattice.h"
 #include "viewer_export/still/lit_space.h"
 #include "viewer_export/still/panorama.h"
 #include "viewer_export/still/up_direction.h"
@@ -84,11 +85,11 @@ struct Surroundings {
     int right_sides = 0;
     int wrong_sides = 0;
     for (int i = 0; i < kSurroundRays; ++i) {
-      // Directions on a spherical Fibonacci lattice: even cover with any number of them.
-      const auto elevation = static_cast<float>(std::asin(1 - (2.0 * i + 1) / kSurroundRays));
-      const auto azimuth = static_cast<float>(2 * pi * std::fmod(i * (std::numbers::phi - 1), 1.0));
+      const auto [z, azimuth] = sphere_lattice(i, kSurroundRays);
+      const Vec3f direction =
+          axes.direction(static_cast<float>(azimuth), static_cast<float>(std::asin(z))).normalized();
       Hit hit;
-      if (!rays.closest(place, axes.direction(azimuth, elevation).normalized(), hit)) continue;
+      if (!rays.closest(place, direction, hit)) continue;
       eye.clearance = std::min(eye.clearance, hit.distance);
       ++(hit.front || rays.mesh().triangle(hit.triangle).two_sided ? right_sides : wrong_sides);
     }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "solver/sampling/sphere_lattice.h"
 #include "viewer_export/still/camera.h"
 
 namespace reemit {
@@ -56,9 +56,7 @@ bool is_dark(const Solution& solution) {
 Sights around(const Vec3f& eye, const RayScene& rays, const Solution& solution, const Scene& scene) {
   Sights sights;
   for (int i = 0; i < kSurroundRays; ++i) {
-    // Directions on a spherical Fibonacci lattice: even cover with any number of them.
-    const double z = 1 - (2.0 * i + 1) / kSurroundRays;
-    const double azimuth = 2 * std::numbers::pi * std::fmod(i * (std::numbers::phi - 1), 1.0);
+    const auto [z, azimuth] = sphere_lattice(i, kSurroundRays);
     const double r = std::sqrt(1 - z * z);
     const Vec3 direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
     sights.add(rays, solution, scene, eye, direction.cast<float>().normalized());

@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include "solver/losses/probe_flight.h"
-#include "solver/sampling/warp.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/flight.h"
 #include "solver/shoot/transport_scene.h"
@@ -40,8 +39,7 @@ Flight spread_packets(const Emission& emission, const std::vector<double>& weigh
 /// Notes a leg; true if the side it ends on reflects.
 bool note(const TransportScene& transport, const ProbeRay& probe, LitSpace& space) {
   space.legs.push_back({probe.origin, probe.direction, probe.met ? probe.hit.distance : kEscape});
-  if (!probe.met || (!probe.hit.front && !transport.mesh().triangle(probe.hit.triangle).two_sided))
-    return false;
+  if (!probe.met || is_back(transport, probe.hit)) return false;
   const Vec3f normal = transport.rays().normal(probe.hit.triangle, probe.hit.u, probe.hit.v);
   space.lit_points.push_back(probe.origin + probe.hit.distance * probe.direction);
   space.lit_normals.push_back(probe.hit.front ? normal : Vec3f(-normal));
@@ -57,21 +55,14 @@ std::vector<Hit> reflect(const TransportScene& transport, const std::vector<Hit>
     const int count = static_cast<int>(std::min<std::size_t>(16, hits.size() - first));
     UniformLanes uniform;
     numbers.get16(static_cast<std::uint32_t>(first), uniform);
-    Ray16 rays;
+    ZoneLanes lanes{};
     for (int lane = 0; lane < count; ++lane) {
       const Hit& hit = hits[first + static_cast<std::size_t>(lane)];
-      const Vec3f front = transport.rays().normal(hit.triangle, hit.u, hit.v);
-      const Frame frame(hit.front ? front : Vec3f(-front));
-      const Vec3f direction =
-          frame.to_world(sample_cosine_hemisphere(uniform.u[2][lane], uniform.u[3][lane]));
-      const Vec3f origin = transport.rays().ray_origin(hit.triangle, hit.u, hit.v, hit.front);
-      rays.ox[lane] = origin.x();
-      rays.oy[lane] = origin.y();
-      rays.oz[lane] = origin.z();
-      rays.dx[lane] = direction.x();
-      rays.dy[lane] = direction.y();
-      rays.dz[lane] = direction.z();
+      transport.put_hit(static_cast<std::uint32_t>(hit.triangle.index()), hit.u, hit.v, hit.front, lanes,
+                        lane);
     }
+    Ray16 rays;
+    transport.start(lanes, uniform, rays);
     trace_probes(transport.rays(), rays, count, [&](int, const ProbeRay& probe) {
       if (note(transport, probe, space)) next.push_back(probe.hit);
     });

@@ -113,9 +113,8 @@ TEST_F(Emitters, packets_start_on_the_opening_and_follow_the_intensities) {
   for (std::uint32_t k = 0; k < kSamples; ++k) {
     start_light_ray(l, *rays_, numbers.sample(k, 0), numbers.sample(k, 1), numbers.sample(k, 2),
                     numbers.sample(k, 3), ray, 0);
-    const Vec3 d = l.orientation.transpose() * Vec3f(ray.dx[0], ray.dy[0], ray.dz[0]).cast<double>();
-    const Vec3 p =
-        l.orientation.transpose() * (rays_->in_room(Vec3f(ray.ox[0], ray.oy[0], ray.oz[0])) - l.position);
+    const Vec3 d = l.orientation.transpose() * ray.direction(0).cast<double>();
+    const Vec3 p = l.orientation.transpose() * (rays_->in_room(ray.origin(0)) - l.position);
     EXPECT_GT(l.table->intensity(d), 0);
     EXPECT_LT(std::fabs(p.z()), 1e-4);
     EXPECT_LT(std::fabs(p.x()), 0.4 + 1e-4);
@@ -233,10 +232,7 @@ TEST_F(Emitters, an_opening_in_the_plane_of_a_surface_shines_out_of_it) {
     start_light_ray(l, *rays_, numbers.sample(k, 0), numbers.sample(k, 1), numbers.sample(k, 2),
                     numbers.sample(k, 3), ray, 0);
     Hit hit;
-    const Vec3f direction(ray.dx[0], ray.dy[0], ray.dz[0]);
-    if (!rays_->closest(Vec3f(ray.ox[0], ray.oy[0], ray.oz[0]), direction, hit) || !hit.front ||
-        hit.distance < 1e-3F)
-      ++lost;
+    if (!rays_->closest(ray.origin(0), ray.direction(0), hit) || !hit.front || hit.distance < 1e-3F) ++lost;
   }
   EXPECT_EQ(seen, 1024);
   EXPECT_EQ(lost, 0);

@@ -40,10 +40,9 @@ TEST(RayLanes, EqualTheScalarMappings) {
       const auto [a, b] = sample_triangle(numbers.u[0][i], numbers.u[1][i]);
       const Vec3f origin = RayScene::lifted(corner + a * edge1 + b * edge2, frame.normal, middle);
       const Vec3f direction = frame.to_world(sample_cosine_hemisphere(numbers.u[2][i], numbers.u[3][i]));
-      EXPECT_LT((Vec3f(rays.ox[i], rays.oy[i], rays.oz[i]) - origin).norm(), 3e-7F);
+      EXPECT_LT((rays.origin(i) - origin).norm(), 3e-7F);
       // Near the horizon the cosine is the root of a small difference.
-      EXPECT_LT((Vec3f(rays.dx[i], rays.dy[i], rays.dz[i]) - direction).norm(),
-                1e-6F / std::max(1e-3F, direction.dot(frame.normal)));
+      EXPECT_LT((rays.direction(i) - direction).norm(), 1e-6F / std::max(1e-3F, direction.dot(frame.normal)));
     }
   }
 }

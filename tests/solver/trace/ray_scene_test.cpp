@@ -53,19 +53,12 @@ TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
     Hit16 hits;
     for (int i = 0; i < 16; ++i) {
       const auto u = rng.uniform4(block, 0, static_cast<std::uint32_t>(i));
-      const Vec3f d = sample_sphere(u[0], u[1]);
-      rays.ox[i] = 0.1F * u[2];
-      rays.oy[i] = 0.1F * u[3];
-      rays.oz[i] = 0;
-      rays.dx[i] = d.x();
-      rays.dy[i] = d.y();
-      rays.dz[i] = d.z();
+      rays.set(i, {0.1F * u[2], 0.1F * u[3], 0}, sample_sphere(u[0], u[1]));
     }
     scene.closest16(rays, 13, hits);
     for (int i = 0; i < 13; ++i) {
       Hit hit;
-      const bool found =
-          scene.closest({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, hit);
+      const bool found = scene.closest(rays.origin(i), rays.direction(i), hit);
       ASSERT_EQ(found, hits.triangle[i] != RayScene::kMiss);
       if (!found) {
         ++misses;
@@ -98,13 +91,7 @@ TEST(RayScene, AWedgeShowsFewBacksAtItsEdge) {
       const auto u = rng.uniform4(block, 0, static_cast<std::uint32_t>(i));
       const Vec3f from(-0.9F + 0.5F * u[0], -0.8F + 1.6F * u[1], -0.5F + u[2]);
       const Vec3f at(0, 0.1F, -0.5F + u[3]);
-      const Vec3f d = (at - from).normalized();
-      rays.ox[i] = from.x();
-      rays.oy[i] = from.y();
-      rays.oz[i] = from.z();
-      rays.dx[i] = d.x();
-      rays.dy[i] = d.y();
-      rays.dz[i] = d.z();
+      rays.set(i, from, (at - from).normalized());
     }
     Hit16 hits;
     const auto backs = [&] {

@@ -186,20 +186,12 @@ TEST(CurvedRayScene, BlocksOfSixteenEqualSingleRays) {
     for (int i = 0; i < count; ++i) {
       const auto u = rng.uniform4(block, 0, static_cast<std::uint32_t>(i));
       const auto w = rng.uniform4(block, 1, static_cast<std::uint32_t>(i));
-      const Vec3f d = sample_sphere(u[0], u[1]);
-      const Vec3f o = scene.normalised(3 * Vec3(u[2], u[3], w[0]));
-      rays.ox[i] = o.x();
-      rays.oy[i] = o.y();
-      rays.oz[i] = o.z();
-      rays.dx[i] = d.x();
-      rays.dy[i] = d.y();
-      rays.dz[i] = d.z();
+      rays.set(i, scene.normalised(3 * Vec3(u[2], u[3], w[0])), sample_sphere(u[0], u[1]));
     }
     scene.closest16(rays, count, hits);
     for (int i = 0; i < count; ++i) {
       Hit hit;
-      ASSERT_TRUE(
-          scene.closest({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, hit));
+      ASSERT_TRUE(scene.closest(rays.origin(i), rays.direction(i), hit));
       ASSERT_EQ(hit.triangle.index(), hits.triangle[i]);
       EXPECT_EQ(hit.front, hits.front[i]);
       EXPECT_NEAR(hit.distance, hits.distance[i], 1e-6);

@@ -1,2 +1,0 @@
-#pragma once
-#include "scenes/model/interrupted.h"
