@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -206,16 +205,8 @@ class EulumdatFile {
   void finish() {
     const std::string rest = text_.rest_as_text();
     if (!rest.empty()) result_.warnings.push_back(rest + ".");
-    bool closed = false;
-    try {
-      result_.table = std::make_shared<const IntensityTable>(unfolded(grid_, closed));
-    } catch (const std::invalid_argument&) {
-      text_.fail("the luminaire gives no light: its intensities add up to 0 or to no number",
-                 "Was the file written completely?");
-    }
     const std::string file = path_.lexically_normal().string();
-    const std::string unusual = unusual_range(grid_);
-    if (!unusual.empty()) result_.warnings.push_back(fmt::format("{}: {}.", file, unusual));
+    result_.table = table_of(grid_, text_.where(), file, result_.warnings);
     if (stated_ && !absolute_) result_.lamp_lumens = flux_;
     check_flux(file);
   }

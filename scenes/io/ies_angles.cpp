@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "scenes/model/error.h"
 
 namespace reemit {
 namespace {
@@ -63,55 +67,8 @@ Planes unfolded_planes(const IesGrid& grid, bool& closed) {
   return planes;
 }
 
-}  // namespace
-
-IesComplaint check_vertical_angles(const IesGrid& grid) {
-  const bool type_c = grid.type == PhotometricType::kC;
-  const double first = grid.vertical.front();
-  const double last = grid.vertical.back();
-  const double least = type_c ? 0 : -90;
-  const double most = type_c ? 180 : 90;
-  if (first >= least - kSlack && last <= most + kSlack) return {};
-  return {fmt::format("the vertical angles run from {} to {} degrees", first, last),
-          type_c ? "In type C photometry they lie between 0 and 180 degrees."
-                 : "In type A and B photometry they lie between -90 and 90 degrees."};
-}
-
-std::string unusual_range(const IesGrid& grid) {
-  const auto range = [](const char* which, const std::vector<double>& angles) {
-    return fmt::format("the {} angles run from {} to {} degrees only; there is no light outside of them",
-                       which, angles.front(), angles.back());
-  };
-  const std::vector<double>& v = grid.vertical;
-  const std::vector<double>& h = grid.horizontal;
-  if (grid.type == PhotometricType::kC)
-    return one_of(v.front(), {0, 90}) && one_of(v.back(), {90, 180}) ? "" : range("vertical", v);
-  if (!one_of(v.front(), {-90, 0}) || !same(v.back(), 90)) return range("vertical", v);
-  return one_of(h.front(), {-90, 0}) && same(h.back(), 90) ? "" : range("horizontal", h);
-}
-
-IesComplaint check_horizontal_angles(const IesGrid& grid) {
-  const double first = grid.horizontal.front();
-  const double last = grid.horizontal.back();
-  const std::string problem = fmt::format("the horizontal angles run from {} to {} degrees", first, last);
-  if (grid.type != PhotometricType::kC) {
-    const bool within = (same(first, 0) || (first >= -90 - kSlack && first < 0)) && last <= 90 + kSlack;
-    if (within && last > 0) return {};
-    return {problem,
-            "In type A and B photometry they run from 0, mirrored, or from below 0 to 90 degrees at most."};
-  }
-  if (grid.horizontal.size() == 1) {
-    if (same(first, 0)) return {};
-    return {fmt::format("the only horizontal angle is {} degrees", first),
-            "It must be 0, for a distribution without regard to the plane."};
-  }
-  const bool from_zero = same(first, 0) && (one_of(last, {90, 180}) || (last > 180 && last <= 360 + kSlack));
-  if (from_zero || (same(first, 90) && same(last, 270))) return {};
-  return {problem,
-          "In type C photometry they run from 0 to 90, 180 or 360 degrees by their symmetry, or from 90 to "
-          "270."};
-}
-
+/// Sets `closed` if the last plane was missing and plane 0 was taken for it. Throws std::invalid_argument if
+/// there is no flux.
 IntensityTable unfolded(const IesGrid& grid, bool& closed) {
   closed = false;
   const Planes planes = unfolded_planes(grid, closed);
@@ -136,6 +93,75 @@ IntensityTable unfolded(const IesGrid& grid, bool& closed) {
   for (std::size_t plane = 0; plane < planes.azimuth.size(); ++plane)
     for (std::size_t row = 0; row < rows; ++row) candela.push_back(value(plane, row));
   return {grid.type, polar, planes.azimuth, std::move(candela)};
+}
+
+/// What to warn of when angles that can be read cover less than any range that LM-63 knows; else empty.
+std::string unusual_range(const IesGrid& grid) {
+  const auto range = [](const char* which, const std::vector<double>& angles) {
+    return fmt::format("the {} angles run from {} to {} degrees only; there is no light outside of them",
+                       which, angles.front(), angles.back());
+  };
+  const std::vector<double>& v = grid.vertical;
+  const std::vector<double>& h = grid.horizontal;
+  if (grid.type == PhotometricType::kC)
+    return one_of(v.front(), {0, 90}) && one_of(v.back(), {90, 180}) ? "" : range("vertical", v);
+  if (!one_of(v.front(), {-90, 0}) || !same(v.back(), 90)) return range("vertical", v);
+  return one_of(h.front(), {-90, 0}) && same(h.back(), 90) ? "" : range("horizontal", h);
+}
+
+}  // namespace
+
+IesComplaint check_vertical_angles(const IesGrid& grid) {
+  const bool type_c = grid.type == PhotometricType::kC;
+  const double first = grid.vertical.front();
+  const double last = grid.vertical.back();
+  const double least = type_c ? 0 : -90;
+  const double most = type_c ? 180 : 90;
+  if (first >= least - kSlack && last <= most + kSlack) return {};
+  return {fmt::format("the vertical angles run from {} to {} degrees", first, last),
+          type_c ? "In type C photometry they lie between 0 and 180 degrees."
+                 : "In type A and B photometry they lie between -90 and 90 degrees."};
+}
+
+IesComplaint check_horizontal_angles(const IesGrid& grid) {
+  const double first = grid.horizontal.front();
+  const double last = grid.horizontal.back();
+  const std::string problem = fmt::format("the horizontal angles run from {} to {} degrees", first, last);
+  if (grid.type != PhotometricType::kC) {
+    const bool within = (same(first, 0) || (first >= -90 - kSlack && first < 0)) && last <= 90 + kSlack;
+    if (within && last > 0) return {};
+    return {problem,
+            "In type A and B photometry they run from 0, mirrored, or from below 0 to 90 degrees at most."};
+  }
+  if (grid.horizontal.size() == 1) {
+    if (same(first, 0)) return {};
+    return {fmt::format("the only horizontal angle is {} degrees", first),
+            "It must be 0, for a distribution without regard to the plane."};
+  }
+  const bool from_zero = same(first, 0) && (one_of(last, {90, 180}) || (last > 180 && last <= 360 + kSlack));
+  if (from_zero || (same(first, 90) && same(last, 270))) return {};
+  return {problem,
+          "In type C photometry they run from 0 to 90, 180 or 360 degrees by their symmetry, or from 90 to "
+          "270."};
+}
+
+std::shared_ptr<const IntensityTable> table_of(const IesGrid& grid, const std::string& where,
+                                               const std::string& file, std::vector<std::string>& warnings) {
+  bool closed = false;
+  std::shared_ptr<const IntensityTable> table;
+  try {
+    table = std::make_shared<const IntensityTable>(unfolded(grid, closed));
+  } catch (const std::invalid_argument&) {
+    throw InputError(where, "the luminaire gives no light: its intensities add up to 0 or to no number",
+                     "Was the file written completely?");
+  }
+  if (closed)
+    warnings.push_back(
+        fmt::format("{}: the horizontal angles end at {} degrees; from there to 360 it is taken to plane 0.",
+                    file, grid.horizontal.back()));
+  const std::string unusual = unusual_range(grid);
+  if (!unusual.empty()) warnings.push_back(fmt::format("{}: {}.", file, unusual));
+  return table;
 }
 
 }  // namespace reemit

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,13 +23,11 @@ struct IesComplaint {
 IesComplaint check_vertical_angles(const IesGrid& grid);
 IesComplaint check_horizontal_angles(const IesGrid& grid);
 
-/// What to warn of when angles that can be read cover less than any range that LM-63 knows; else empty.
-std::string unusual_range(const IesGrid& grid);
-
 /// Unfolds the symmetry of the horizontal angles and brings the grid to polar angle and azimuth. The values
-/// are copied, not resampled: mirrored grid lines of a bilinear function give the mirrored function. Sets
-/// `closed` if the last plane was missing and plane 0 was taken for it. Throws std::invalid_argument if there
-/// is no flux.
-IntensityTable unfolded(const IesGrid& grid, bool& closed);
+/// are copied, not resampled: mirrored grid lines of a bilinear function give the mirrored function. Adds to
+/// the warnings, which name `file`, where the last plane is missing or angles cover less than any range that
+/// LM-63 knows. Throws InputError, which says `where`, if there is no flux.
+std::shared_ptr<const IntensityTable> table_of(const IesGrid& grid, const std::string& where,
+                                               const std::string& file, std::vector<std::string>& warnings);
 
 }  // namespace reemit

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -239,20 +238,8 @@ class IesFile {
   }
 
   void finish() {
-    bool closed = false;
-    try {
-      result_.table = std::make_shared<const IntensityTable>(unfolded(grid_, closed));
-    } catch (const std::invalid_argument&) {
-      text_.fail("the luminaire gives no light: its intensities add up to 0 or to no number",
-                 "Was the file written completely?");
-    }
     const std::string file = path_.lexically_normal().string();
-    if (closed)
-      result_.warnings.push_back(fmt::format(
-          "{}: the horizontal angles end at {} degrees; from there to 360 it is taken to plane 0.", file,
-          grid_.horizontal.back()));
-    const std::string unusual = unusual_range(grid_);
-    if (!unusual.empty()) result_.warnings.push_back(fmt::format("{}: {}.", file, unusual));
+    result_.table = table_of(grid_, text_.where(), file, result_.warnings);
     if (grid_.type != PhotometricType::kC && std::fabs(grid_.vertical.front()) < 1)
       result_.warnings.push_back(
           fmt::format("{}: the vertical angles begin at 0 degrees, so no light goes to angles below.", file));

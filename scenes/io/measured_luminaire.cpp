@@ -1,18 +1,13 @@
 #include "scenes/io/measured_luminaire.h"
 
-#include <algorithm>
-#include <cctype>
-
 #include "scenes/io/eulumdat_reader.h"
 #include "scenes/io/ies_reader.h"
+#include "scenes/io/text_parse.h"
 
 namespace reemit {
 
 MeasuredLuminaire read_luminaire_file(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".ldt" ? read_eulumdat_file(file) : read_ies_file(file);
+  return lower_case_extension(file) == ".ldt" ? read_eulumdat_file(file) : read_ies_file(file);
 }
 
 const MeasuredLuminaire& LuminaireLibrary::load(const std::filesystem::path& file,

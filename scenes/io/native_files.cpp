@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 
@@ -9,17 +8,11 @@
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/io/surface_geometry.h"
+#include "scenes/io/text_parse.h"
 
 namespace reemit {
 
 namespace {
-
-std::string lower_case_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 /// A spectrum of the bands `from` in the bands of the room, where that needs no guess: equal bands, grey to
 /// any for a reflectance or to RGB, RGB to grey by luminance.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -168,15 +167,11 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tel
 fs::path find_library(const fs::path& folder, const std::string& name) {
   std::error_code ignored;
   if (fs::is_regular_file(folder / name, ignored)) return folder / name;
-  const auto lower = [](std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-  };
-  const std::string wanted = lower(fs::path(name).filename().string());
+  const std::string wanted = lower_case(fs::path(name).filename().string());
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored))
-    if (lower(entry.path().filename().string()) == wanted) found.push_back(folder / entry.path().filename());
+    if (lower_case(entry.path().filename().string()) == wanted)
+      found.push_back(folder / entry.path().filename());
   std::sort(found.begin(), found.end());  // folders are listed in any order
   return found.empty() ? fs::path() : found.front();
 }

@@ -1,8 +1,6 @@
 #include "scenes/io/scene_reader.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 
 #include <fmt/format.h>
 
@@ -11,6 +9,7 @@
 #include "scenes/io/native_reader.h"
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/text_file.h"
+#include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -27,9 +26,7 @@ constexpr std::array kReaders = {
 };
 
 const Reader& reader_for(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case_extension(file);
   for (const Reader& reader : kReaders)
     if (extension == reader.extension) return reader;
   std::string known;

@@ -1,5 +1,6 @@
 #include "scenes/io/text_parse.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -38,6 +39,17 @@ std::optional<double> parse_number(std::string_view word) {
 
 std::optional<std::int64_t> parse_integer(std::string_view word) {
   return parse_whole<std::int64_t>(word);
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
+std::string lower_case_extension(const std::filesystem::path& file) {
+  return lower_case(file.extension().string());
 }
 
 std::string at_line(const std::string& file, std::uint32_t line) {

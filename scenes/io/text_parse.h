@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,12 @@ std::optional<double> parse_number(std::string_view word);
 
 /// A whole word as a decimal integer; nothing if any character is left over or it does not fit.
 std::optional<std::int64_t> parse_integer(std::string_view word);
+
+/// Letters of ASCII alone, whatever the locale.
+std::string lower_case(std::string_view text);
+
+/// With its dot: ".glb" of "Room.GLB".
+std::string lower_case_extension(const std::filesystem::path& file);
 
 /// "file:line".
 std::string at_line(const std::string& file, std::uint32_t line);

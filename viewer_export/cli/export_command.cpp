@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -97,7 +98,10 @@ ExitCode run_export(const ExportOptions& options) {
       scene, solution, rays, options.vertex, [&progress](double done) { progress.update(done); },
       interrupt.requested());
   progress.finish();
-  data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map);
+  const bool shows_colours =
+      std::any_of(options.outputs.begin(), options.outputs.end(),
+                  [](const std::filesystem::path& output) { return export_format_of(output).shows_colours; });
+  if (shows_colours) data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map);
   for (const std::filesystem::path& output : options.outputs)
     write_output([&] {
       if (options.photometric)

@@ -92,9 +92,7 @@ class Renderer {
 
   void render(const Job& job) {
     const auto start = std::chrono::steady_clock::now();
-    const std::string badly_placed = eye_warning(job.camera, scene_, solution_, rays_);
-    if (!badly_placed.empty() && !options_.style.quiet)
-      print_warnings({fmt::format("camera '{}': {}", job.camera.name, badly_placed)});
+    if (!options_.style.quiet) warn_of_eye(job.camera);
     Progress progress("rendering " + job.camera.name,
                       progress_style(options_.style.quiet, options_.style.verbose));
     const auto on_progress = [&progress](const StillProgress& now) {
@@ -118,6 +116,11 @@ class Renderer {
   }
 
  private:
+  void warn_of_eye(const Camera& camera) const {
+    const std::string badly_placed = eye_warning(camera, scene_, solution_, rays_);
+    if (!badly_placed.empty()) print_warnings({fmt::format("camera '{}': {}", camera.name, badly_placed)});
+  }
+
   void explain_missed_target(const Job& job, const StillImage& image) const {
     if (image.limited_by_zones) {
       print_note(

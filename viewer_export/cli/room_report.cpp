@@ -114,9 +114,11 @@ Json counts_json(const KindCounts& counts) {
 }
 
 /// "3 faces, 1 textures", or what to say of none.
-std::string counts_text(const KindCounts& counts) {
+template <class Counts>
+std::string counts_text(const Counts& counts) {
   std::string text;
   for (const auto& [kind, count] : counts) {
+    if (count == 0) continue;
     std::string words = kind;
     std::replace(words.begin(), words.end(), '_', ' ');
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
@@ -139,14 +141,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
                       face_count(scene), input_area(meshed.report));
   text += fmt::format("mesh          {} base triangles, {} zones with default settings\n",
                       meshed.mesh.triangle_count(), meshed.mesh.zone_count());
-  std::string repaired;
-  for (const auto& [name, count] : repairs(meshed.report)) {
-    if (count == 0) continue;
-    std::string words = name;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    repaired += fmt::format("{}{} {}", repaired.empty() ? "" : ", ", count, words);
-  }
-  text += fmt::format("repairs       {}\n", repaired.empty() ? "none" : repaired);
+  text += fmt::format("repairs       {}\n", counts_text(repairs(meshed.report)));
   text += fmt::format("refused       {}\n", counts_text(scene.refused));
   text += fmt::format("not modelled  {}\n", counts_text(scene.not_modelled));
   text += '\n' + materials_text(scene) + '\n' + surfaces_text(scene, meshed.report) + '\n' +

@@ -10,6 +10,7 @@
 
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
+#include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
 #include "solver/solution/file_seal.h"
@@ -25,7 +26,6 @@
 #include "viewer_export/cli/run_log.h"
 #include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/text_table.h"
-#include "viewer_export/formats/file_extension.h"
 
 namespace reemit::cli {
 namespace {

@@ -10,9 +10,9 @@ namespace reemit {
 namespace {
 
 constexpr ExportFormat kFormats[] = {
-    {".ply", "polygons with all radiometric values (MeshLab, Blender, CloudCompare)", write_ply},
-    {".glb", "binary glTF 2.0, ready to view (Blender, three.js, any glTF viewer)", write_glb},
-    {".csv", "a table, one row per vertex (spreadsheets, pandas, R)", write_csv},
+    {".ply", "polygons with all radiometric values (MeshLab, Blender, CloudCompare)", true, write_ply},
+    {".glb", "binary glTF 2.0, ready to view (Blender, three.js, any glTF viewer)", true, write_glb},
+    {".csv", "a table, one row per vertex (spreadsheets, pandas, R)", false, write_csv},
 };
 
 }  // namespace

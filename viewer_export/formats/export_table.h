@@ -15,6 +15,7 @@ namespace reemit {
 struct ExportFormat {
   std::string_view extension;    ///< Lower case with the dot: ".ply".
   std::string_view description;  ///< For --help.
+  bool shows_colours;            ///< Displayable ones, for which the data needs its tone map.
   /// Writes all of the data; returns the tone map of the displayable colours if the format has such.
   std::optional<ToneMap> (*write)(const VertexData& data, OutputFile& file);
 };

@@ -1,20 +1,12 @@
 #pragma once
-#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
 
+#include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
-
-/// With its dot: ".glb" of "Room.GLB".
-inline std::string lower_case_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension;
-}
 
 /// The row of a format table whose `extension` is that of the file name (case is ignored). Throws InputError
 /// that lists the known ones.

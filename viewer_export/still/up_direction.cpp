@@ -1,10 +1,10 @@
 #include "viewer_export/still/up_direction.h"
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <string>
 #include <variant>
+
+#include "scenes/io/text_parse.h"
 
 namespace reemit {
 namespace {
@@ -15,9 +15,7 @@ constexpr double kMostlyDown = 0.8;
 constexpr double kAlongAxis = 0.9;
 
 std::string extension_of(const Scene& scene) {
-  std::string extension = std::filesystem::path(scene.source).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return lower_case_extension(scene.source);
 }
 
 /// Twice the area of a face times its normal.
