@@ -10,10 +10,13 @@
 #include "solver/progressive_solver.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/test_rooms.h"
+#include "tests/support/zone_irradiances.h"
 
 namespace reemit {
 namespace {
 
+using test::furnace_fit;
+using test::kFalseAlarm;
 using test::RoomBuilder;
 
 constexpr double kPi = std::numbers::pi;
@@ -29,20 +32,6 @@ Solution run(const Scene& scene, MeshResult mesh, SolveMethod method, std::uint6
   const std::atomic<bool> interrupt = false;
   return solve_zones(scene, std::move(mesh), settings, nullptr, interrupt);
 }
-
-/// Odds that the irradiances of all zones have this value but for their noise.
-double fit(const Solution& s, double truth) {
-  std::vector<test::Measured> measured;
-  std::vector<test::Measured> expected;
-  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
-    const Estimate e = s.irradiance(ZoneId(z), 0);
-    measured.push_back({e.mean, e.stderr_of_mean});
-    expected.push_back({truth, 0});
-  }
-  return test::agreement(measured, expected, static_cast<double>(s.sums.batches));
-}
-
-constexpr double kFalseAlarm = 1e-6;
 
 /// A box that holds a ball, a capped cylinder that stands on the floor, a truncated cone with caps and a
 /// ring: everything emits 1 W/m2 and reflects rho.
@@ -67,8 +56,8 @@ TEST(CurvedShapes, FurnaceHasItsClosedFormAndNothingEscapes) {
     const RoomBuilder room = curved_furnace(0.5);
     const Solution s = run(room.scene(), room.mesh(), method, 1'000'000);
     // Zones inside the closed bodies see a furnace too: both sides emit.
-    EXPECT_GT(fit(s, 2.0), kFalseAlarm);
-    EXPECT_LT(fit(s, 2.0 * 1.02), kFalseAlarm) << "a bias of 2 % went unnoticed";
+    EXPECT_GT(furnace_fit(s, 2.0), kFalseAlarm);
+    EXPECT_LT(furnace_fit(s, 2.0 * 1.02), kFalseAlarm) << "a bias of 2 % went unnoticed";
     EXPECT_EQ(s.audit.bands[0].total_escaped(), 0);
   }
 }
@@ -125,7 +114,7 @@ TEST(CurvedShapes, MeshedFromARoomTheirAreasAreExact) {
     if (result.mesh.zone_surface(ZoneId(z)).index() == 6) area += result.mesh.zone_area(ZoneId(z));
   EXPECT_NEAR(area, 2 * 4 * kPi * 0.36, 1e-9);  // both sides of the ball
   const Solution s = run(room.scene(), build_mesh(room.scene()), SolveMethod::kShooting, 1'000'000);
-  EXPECT_GT(fit(s, 2.0), kFalseAlarm);
+  EXPECT_GT(furnace_fit(s, 2.0), kFalseAlarm);
   EXPECT_EQ(s.audit.bands[0].total_escaped(), 0);
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 #include <array>
+#include <cstdint>
+#include <numeric>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,59 +41,27 @@ class RoomBuilder {
   /// Planar quad as a surface of its own, corners counter-clockwise from the front, two base triangles of n*n
   /// zones.
   RoomBuilder& quad(MaterialId material, const std::array<Vec3, 4>& corners, std::uint32_t divisions) {
-    Surface s;
-    s.name = "quad" + std::to_string(scene_.surfaces.size());
-    s.material = material;
-    s.positions.assign(corners.begin(), corners.end());
-    s.faces.push_back({{0, 1, 2, 3}, {}, {}, 0});
-    scene_.surfaces.push_back(s);
-    const auto first = static_cast<std::uint32_t>(base_.vertices.size());
-    base_.vertices.insert(base_.vertices.end(), corners.begin(), corners.end());
-    for (const std::array<std::uint32_t, 3> v : {std::array<std::uint32_t, 3>{0, 1, 2}, {0, 2, 3}}) {
-      BaseTriangle t;
-      t.vertex = {first + v[0], first + v[1], first + v[2]};
-      t.surface = SurfaceId(scene_.surfaces.size() - 1);
-      t.divisions = divisions;
-      t.two_sided = scene_.materials[material.index()].two_sided;
-      base_.triangles.push_back(t);
-    }
-    return *this;
+    return polygon("quad", material, corners, divisions);
   }
 
   /// A triangle as a surface of its own, corners counter-clockwise from the front.
   RoomBuilder& triangle(MaterialId material, const std::array<Vec3, 3>& corners, std::uint32_t divisions) {
-    Surface s;
-    s.name = "triangle" + std::to_string(scene_.surfaces.size());
-    s.material = material;
-    s.positions.assign(corners.begin(), corners.end());
-    s.faces.push_back({{0, 1, 2}, {}, {}, 0});
-    scene_.surfaces.push_back(s);
-    const auto first = static_cast<std::uint32_t>(base_.vertices.size());
-    base_.vertices.insert(base_.vertices.end(), corners.begin(), corners.end());
-    BaseTriangle t;
-    t.vertex = {first, first + 1, first + 2};
-    t.surface = SurfaceId(scene_.surfaces.size() - 1);
-    t.divisions = divisions;
-    t.two_sided = scene_.materials[material.index()].two_sided;
-    base_.triangles.push_back(t);
-    return *this;
+    return polygon("triangle", material, corners, divisions);
   }
 
   /// Inside of an axis-parallel box; materials of x0, x1, y0, y1, z0, z1. An invalid id leaves that side
   /// open.
   RoomBuilder& box(const Vec3& low, const Vec3& high, const std::array<MaterialId, 6>& m,
                    std::uint32_t divisions) {
-    const auto p = [&](int x, int y, int z) {
-      return Vec3(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z());
-    };
-    const std::array<std::array<Vec3, 4>, 6> faces{{{p(0, 0, 0), p(0, 1, 0), p(0, 1, 1), p(0, 0, 1)},
-                                                    {p(1, 0, 0), p(1, 0, 1), p(1, 1, 1), p(1, 1, 0)},
-                                                    {p(0, 0, 0), p(0, 0, 1), p(1, 0, 1), p(1, 0, 0)},
-                                                    {p(0, 1, 0), p(1, 1, 0), p(1, 1, 1), p(0, 1, 1)},
-                                                    {p(0, 0, 0), p(1, 0, 0), p(1, 1, 0), p(0, 1, 0)},
-                                                    {p(0, 0, 1), p(0, 1, 1), p(1, 1, 1), p(1, 0, 1)}}};
+    const std::array<std::array<Vec3, 4>, 6> faces = box_faces(low, high);
     for (std::size_t i = 0; i < 6; ++i)
       if (m[i].valid()) quad(m[i], faces[i], divisions);
+    return *this;
+  }
+
+  /// Outside of an axis-parallel box.
+  RoomBuilder& solid(const Vec3& low, const Vec3& high, MaterialId material, std::uint32_t divisions) {
+    for (const auto& [a, b, c, d] : box_faces(low, high)) quad(material, {a, d, c, b}, divisions);
     return *this;
   }
 
@@ -121,6 +92,41 @@ class RoomBuilder {
   }
 
  private:
+  RoomBuilder& polygon(const char* name, MaterialId material, std::span<const Vec3> corners,
+                       std::uint32_t divisions) {
+    Surface s;
+    s.name = name + std::to_string(scene_.surfaces.size());
+    s.material = material;
+    s.positions.assign(corners.begin(), corners.end());
+    s.faces.emplace_back().outer.resize(corners.size());
+    std::iota(s.faces[0].outer.begin(), s.faces[0].outer.end(), 0U);
+    scene_.surfaces.push_back(s);
+    const auto first = static_cast<std::uint32_t>(base_.vertices.size());
+    base_.vertices.insert(base_.vertices.end(), corners.begin(), corners.end());
+    for (std::uint32_t k = 1; k + 1 < corners.size(); ++k) {
+      BaseTriangle t;
+      t.vertex = {first, first + k, first + k + 1};
+      t.surface = SurfaceId(scene_.surfaces.size() - 1);
+      t.divisions = divisions;
+      t.two_sided = scene_.materials[material.index()].two_sided;
+      base_.triangles.push_back(t);
+    }
+    return *this;
+  }
+
+  /// Fronts inside.
+  static std::array<std::array<Vec3, 4>, 6> box_faces(const Vec3& low, const Vec3& high) {
+    const auto p = [&](int x, int y, int z) {
+      return Vec3(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z());
+    };
+    return {{{p(0, 0, 0), p(0, 1, 0), p(0, 1, 1), p(0, 0, 1)},
+             {p(1, 0, 0), p(1, 0, 1), p(1, 1, 1), p(1, 1, 0)},
+             {p(0, 0, 0), p(0, 0, 1), p(1, 0, 1), p(1, 0, 0)},
+             {p(0, 1, 0), p(1, 1, 0), p(1, 1, 1), p(0, 1, 1)},
+             {p(0, 0, 0), p(1, 0, 0), p(1, 1, 0), p(0, 1, 0)},
+             {p(0, 0, 1), p(0, 1, 1), p(1, 1, 1), p(1, 0, 1)}}};
+  }
+
   Scene scene_;
   BaseMesh base_;
   RoomShapes shapes_;

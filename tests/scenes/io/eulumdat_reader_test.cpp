@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/io/ies_reader.h"
-#include "scenes/model/error.h"
+#include "tests/support/refusal.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/temp_folder.h"
 
@@ -97,12 +97,7 @@ class EulumdatReader : public ::testing::Test {
     return read_luminaire_file(folder_.write("lamp.LDT", text));
   }
   std::string refusal(const std::string& text) {
-    try {
-      read(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal_of([&] { read(text); });
   }
   test::TempFolder folder_;
 };

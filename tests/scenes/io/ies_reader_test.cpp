@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/model/error.h"
+#include "tests/support/refusal.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/temp_folder.h"
 
@@ -41,13 +42,7 @@ class IesReader : public ::testing::Test {
  protected:
   MeasuredLuminaire read(const std::string& text) { return read_ies_file(folder_.write("lamp.ies", text)); }
   std::string refusal(const std::string& text) {
-    try {
-      read(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    ADD_FAILURE() << "was read: " << text;
-    return "";
+    return test::refusal_of([&] { read(text); });
   }
   static std::string source(const char* file) {
     return std::string(REEMIT_SOURCE_DIR "/bench/validation/luminaires/") + file;

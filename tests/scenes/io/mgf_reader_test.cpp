@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scenes/model/error.h"
 #include "tests/scenes/io/face_area.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 namespace reemit {
@@ -27,12 +27,7 @@ class MgfReader : public ::testing::Test {
  protected:
   Scene read(const std::string& text) const { return read_mgf_scene(folder_.write("room.mgf", text), {}); }
   std::string refusal(const std::string& text) const {
-    try {
-      read(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal_of([&] { read(text); });
   }
   test::TempFolder folder_;
 };

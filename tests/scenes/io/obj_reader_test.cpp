@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scenes/model/error.h"
 #include "tests/scenes/io/face_area.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 namespace reemit {
@@ -32,12 +32,7 @@ class ObjReader : public ::testing::Test {
     return read(kSquare + "f 1 2 3 4\n");
   }
   std::string refusal(const std::string& text) const {
-    try {
-      read(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal_of([&] { read(text); });
   }
   std::string mtl_refusal(const std::string& mtl) const {
     folder_.write("room.mtl", mtl);

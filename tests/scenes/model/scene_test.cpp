@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scenes/model/error.h"
+#include "tests/support/refusal.h"
 
 namespace reemit {
 namespace {
@@ -47,12 +47,7 @@ Scene small_room() {
 std::string refusal(const std::function<void(Scene&)>& spoil) {
   Scene scene = small_room();
   spoil(scene);
-  try {
-    finish_scene(scene);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_of([&] { finish_scene(scene); });
 }
 
 TEST(FinishScene, AcceptsASoundRoomWithoutWarnings) {

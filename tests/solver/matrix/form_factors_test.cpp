@@ -4,10 +4,11 @@
 #include <atomic>
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
-#include "scenes/model/error.h"
+#include "tests/support/refusal.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
@@ -38,15 +39,7 @@ RoomBuilder cube(std::uint32_t divisions) {
 RoomBuilder box_with_block(std::uint32_t divisions) {
   RoomBuilder room = cube(divisions);
   const MaterialId m = room.material("block", 0.5);
-  const auto p = [](int x, int y, int z) { return Vec3(0.3 + 0.35 * x, 0.25 + 0.4 * y, 0.35 + 0.3 * z); };
-  const std::array<std::array<Vec3, 4>, 6> faces{{{p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)},
-                                                  {p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)},
-                                                  {p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)},
-                                                  {p(0, 1, 0), p(0, 1, 1), p(1, 1, 1), p(1, 1, 0)},
-                                                  {p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)},
-                                                  {p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}}};
-  for (const auto& face : faces) room.quad(m, face, 2);
-  return room;
+  return room.solid(Vec3(0.3, 0.25, 0.35), Vec3(0.65, 0.65, 0.65), m, 2);
 }
 
 TEST(FormFactors, ConvexRoomIsExactWithoutShadowRays) {
@@ -198,12 +191,8 @@ TEST(FormFactors, SameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(FormFactors, TooManyZonesAreRefusedWithAdvice) {
-  try {
-    factors_of(cube(40));
-    FAIL() << "19200 zones were accepted";
-  } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("--zone-area"), std::string::npos) << e.what();
-  }
+  EXPECT_THAT(test::refusal_of([] { factors_of(cube(40)); }), testing::HasSubstr("--zone-area"))
+      << "19200 zones";
 }
 
 TEST(FormFactors, InterruptLeavesNothing) {

@@ -13,11 +13,13 @@
 #include "solver/progressive_solver.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/test_rooms.h"
+#include "tests/support/zone_irradiances.h"
 
 namespace reemit {
 namespace {
 
 using test::RoomBuilder;
+using test::zone_irradiances;
 
 Solution run(const RoomBuilder& room, SolveMethod method, std::uint64_t packets = 0, int threads = 2) {
   const std::atomic<bool> interrupt = false;
@@ -107,16 +109,6 @@ RoomBuilder room_with_screen(bool open, std::uint32_t divisions = 3) {
   return room;
 }
 
-std::vector<test::Measured> irradiances(const Solution& s) {
-  std::vector<test::Measured> all;
-  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)
-    for (std::size_t b = 0; b < s.bands.count(); ++b) {
-      const Estimate e = s.irradiance(ZoneId(z), b);
-      all.push_back({e.mean, e.stderr_of_mean});
-    }
-  return all;
-}
-
 TEST(MatrixSolve, ShootingAndWalkAgreeWithTheMatrixInAnOccludedRoom) {
   for (const bool open : {false, true}) {
     const RoomBuilder room = room_with_screen(open);
@@ -124,8 +116,8 @@ TEST(MatrixSolve, ShootingAndWalkAgreeWithTheMatrixInAnOccludedRoom) {
     ASSERT_GT(reference.form_factors->sampled_pairs, 100U);
     for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
       const Solution estimate = run(room, method, 1'600'000);
-      auto measured = irradiances(estimate);
-      const auto matrix = irradiances(reference);
+      auto measured = zone_irradiances(estimate);
+      const auto matrix = zone_irradiances(reference);
       EXPECT_GT(test::agreement(measured, matrix, 16), test::kFalseAlarm) << to_string(method) << open;
       for (auto& m : measured) m.mean *= 1.02;
       EXPECT_LT(test::agreement(measured, matrix, 16), test::kFalseAlarm) << "a bias of 2 % went unseen";
@@ -137,12 +129,12 @@ TEST(MatrixSolve, StatedErrorsCoverWhatOtherRaysGive) {
   // Two independent sets of shadow rays. Errors may be stated too large: closure and stratification make the
   // factors better than their rays alone.
   const RoomBuilder room = room_with_screen(true);
-  const auto first = irradiances(run(room, SolveMethod::kMatrix));
+  const auto first = zone_irradiances(run(room, SolveMethod::kMatrix));
   const std::atomic<bool> interrupt = false;
   SolverSettings settings;
   settings.method = SolveMethod::kMatrix;
   settings.seed = 78;
-  auto second = irradiances(solve_zones(room.scene(), room.mesh(), settings, nullptr, interrupt));
+  auto second = zone_irradiances(solve_zones(room.scene(), room.mesh(), settings, nullptr, interrupt));
   EXPECT_GT(test::agreement(first, second, 16), test::kFalseAlarm);
   double differences = 0;
   double variances = 0;
@@ -253,8 +245,8 @@ TEST(MatrixSolve, LightsWithoutAreaDeliverTheirPower) {
   const BandAudit& band = s.audit.bands[0];
   EXPECT_NEAR(s.audit.watts(band, band.emitted), power, 1e-9);
   EXPECT_NEAR(s.audit.watts(band, band.total_absorbed()), power, 1e-8);
-  const auto matrix = irradiances(s);
-  EXPECT_GT(test::agreement(irradiances(run(room, SolveMethod::kShooting, 800'000)), matrix, 16),
+  const auto matrix = zone_irradiances(s);
+  EXPECT_GT(test::agreement(zone_irradiances(run(room, SolveMethod::kShooting, 800'000)), matrix, 16),
             test::kFalseAlarm);
 
   PhotometricLight measured;
@@ -270,8 +262,9 @@ TEST(MatrixSolve, LightsWithoutAreaDeliverTheirPower) {
   s = run(room, SolveMethod::kMatrix);
   EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].emitted), 2 * measured.table->total_flux(),
               1e-9);
-  EXPECT_GT(test::agreement(irradiances(run(room, SolveMethod::kShooting, 800'000)), irradiances(s), 16),
-            test::kFalseAlarm);
+  EXPECT_GT(
+      test::agreement(zone_irradiances(run(room, SolveMethod::kShooting, 800'000)), zone_irradiances(s), 16),
+      test::kFalseAlarm);
 
   RoomBuilder slab;
   const MaterialId black = slab.material("black", 0.0);

@@ -9,11 +9,14 @@
 #include "solver/progressive_solver.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/test_rooms.h"
+#include "tests/support/zone_irradiances.h"
 
 namespace reemit {
 namespace {
 
+using test::furnace_fit;
 using test::RoomBuilder;
+using test::zone_irradiances;
 
 Solution run(const RoomBuilder& room, SolverSettings settings) {
   const std::atomic<bool> interrupt = false;
@@ -55,18 +58,6 @@ RoomBuilder coloured_box(bool open = false, std::uint32_t divisions = 4) {
   return room;
 }
 
-/// Mean over zones of the squared deviation from `truth` in standard errors, tested as chi-square.
-double furnace_fit(const Solution& s, double truth) {
-  std::vector<test::Measured> measured;
-  std::vector<test::Measured> expected;
-  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
-    const Estimate e = s.irradiance(ZoneId(z), 0);
-    measured.push_back({e.mean, e.stderr_of_mean});
-    expected.push_back({truth, 0});
-  }
-  return test::agreement(measured, expected, static_cast<double>(s.sums.batches));
-}
-
 TEST(Methods, FurnaceHasItsClosedForm) {
   for (const SolveMethod method : kMethods)
     for (const SamplingKind sampling : {SamplingKind::kRandom, SamplingKind::kSobol})
@@ -84,21 +75,11 @@ TEST(Methods, FurnaceHarnessRejectsTwoPercentBias) {
   }
 }
 
-std::vector<test::Measured> irradiances(const Solution& s) {
-  std::vector<test::Measured> all;
-  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)
-    for (std::size_t b = 0; b < s.bands.count(); ++b) {
-      const Estimate e = s.irradiance(ZoneId(z), b);
-      all.push_back({e.mean, e.stderr_of_mean});
-    }
-  return all;
-}
-
 TEST(Methods, ShootingAndWalkAgreeZoneByZone) {
   for (const bool open : {false, true}) {
     const RoomBuilder room = coloured_box(open);
-    const auto shooting = irradiances(run(room, settings_of(SolveMethod::kShooting, 1'600'000)));
-    auto walk = irradiances(run(room, settings_of(SolveMethod::kWalk, 1'600'000)));
+    const auto shooting = zone_irradiances(run(room, settings_of(SolveMethod::kShooting, 1'600'000)));
+    auto walk = zone_irradiances(run(room, settings_of(SolveMethod::kWalk, 1'600'000)));
     EXPECT_GT(test::agreement(shooting, walk, 32), test::kFalseAlarm) << (open ? "open" : "closed");
     for (auto& w : walk) w.mean *= 1.02;
     EXPECT_LT(test::agreement(shooting, walk, 32), test::kFalseAlarm) << "a bias of 2 % went unseen";

@@ -6,9 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/refusal.h"
+
 namespace reemit::cli {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(OptionValues, ShareAsPercentOrFraction) {
@@ -78,13 +81,8 @@ TEST(OptionValues, PictureSizes) {
 }
 
 TEST(OptionValues, MessagesNameTheTextAndShowARightOne) {
-  try {
-    parse_share("two");
-    FAIL() << "accepted";
-  } catch (const std::invalid_argument& problem) {
-    EXPECT_THAT(problem.what(), HasSubstr("'two'"));
-    EXPECT_THAT(problem.what(), HasSubstr("1%"));
-  }
+  EXPECT_THAT(test::refusal_of<std::invalid_argument>([] { parse_share("two"); }),
+              AllOf(HasSubstr("'two'"), HasSubstr("1%")));
 }
 
 }  // namespace

@@ -59,16 +59,7 @@ TEST(DefaultCameras, StayOutOfFurniture) {
   room.box(Vec3(0, 0, 0), Vec3(6, 3, 6), all(wall), 2);
   const Vec3 block_low(1.5, 0.001, 1.5);
   const Vec3 block_high(4.5, 2.8, 4.5);
-  const auto p = [&](int x, int y, int z) {
-    return Vec3(x ? block_high.x() : block_low.x(), y ? block_high.y() : block_low.y(),
-                z ? block_high.z() : block_low.z());
-  };
-  room.quad(wall, {p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)}, 1);
-  room.quad(wall, {p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)}, 1);
-  room.quad(wall, {p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)}, 1);
-  room.quad(wall, {p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}, 1);
-  room.quad(wall, {p(0, 1, 0), p(0, 1, 1), p(1, 1, 1), p(1, 1, 0)}, 1);
-  room.quad(wall, {p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)}, 1);
+  room.solid(block_low, block_high, wall, 1);
   const MeshResult meshed = room.mesh();
   const RayScene rays(meshed.mesh);
   for (const Camera& camera : default_cameras(room.scene(), rays)) {

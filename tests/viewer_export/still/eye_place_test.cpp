@@ -12,7 +12,7 @@ using test::RoomBuilder;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Faces [first, last) of a closed box of 4 x 3 x 5 m, fronts inside, with an opening where it has no face.
+/// A box of 4 x 3 x 5 m, fronts inside, closed or open towards +z.
 RoomBuilder room_of(MaterialId (*wall)(RoomBuilder&), bool open) {
   RoomBuilder room;
   const MaterialId m = wall(room);
@@ -67,17 +67,7 @@ TEST(EyePlace, OutsideOfTheRoomIsSaid) {
 TEST(EyePlace, InsideOfASolidIsSaid) {
   RoomBuilder room = room_of(two_sided, false);
   const MaterialId m = room.material("block", 0.5, 0, true);
-  const Vec3 low(1, 0.5, 1);
-  const Vec3 high(2, 1.5, 2);
-  const auto p = [&](int x, int y, int z) {
-    return Vec3(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z());
-  };
-  room.quad(m, {p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)}, 1);
-  room.quad(m, {p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)}, 1);
-  room.quad(m, {p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)}, 1);
-  room.quad(m, {p(0, 1, 0), p(0, 1, 1), p(1, 1, 1), p(1, 1, 0)}, 1);
-  room.quad(m, {p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)}, 1);
-  room.quad(m, {p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}, 1);
+  room.solid(Vec3(1, 0.5, 1), Vec3(2, 1.5, 2), m, 1);
   EXPECT_THAT(warning(room, Vec3(1.5, 1, 1.5), Vec3(3, 1, 3)), HasSubstr("inside of a wall or a solid"));
   EXPECT_THAT(warning(room, Vec3(3, 1, 3), Vec3(1.5, 1, 1.5)), IsEmpty());
 }
