@@ -100,9 +100,9 @@ void GatherBatch::flush() {
 }
 
 // Puts a ray back into the queue, turned a little, where it costs no block of its own.
-void GatherBatch::keep_for_second_look(std::size_t lane) {
+void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
   const int ray = static_cast<int>(lane);
-  rays_.set(count_, rays_.origin(ray), RayScene::nudged(rays_.direction(ray)));
+  rays_.set(count_, rays_.origin(ray), gather_->rays().second_direction(rays_.direction(ray), hits, ray));
   const auto to = static_cast<std::size_t>(count_++);
   second_look_[to] = true;
   keys_[to] = keys_[lane];
@@ -118,10 +118,11 @@ void GatherBatch::trace() {
   const auto count = static_cast<std::size_t>(std::exchange(count_, 0));
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t t = hits.triangle[i];
-    if (rays.is_doubtful(t, hits.front[i])) {
-      if (!second_look_[i]) keep_for_second_look(i);
+    if (!second_look_[i] && rays.is_doubtful(t, hits.u[i], hits.v[i], hits.front[i])) {
+      keep_for_second_look(i, hits);
       continue;
     }
+    if (t == RayScene::kMiss) continue;
     float* weight = &weights_[i * bands_];
     const std::size_t zone = field.zone_number(t, hits.u[i], hits.v[i], hits.front[i]);
     if (zone == RadianceField::kNoZone) continue;

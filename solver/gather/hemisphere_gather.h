@@ -66,7 +66,7 @@ class GatherBatch {
   static constexpr int kWidth = 16;
 
   void trace();
-  void keep_for_second_look(std::size_t lane);
+  void keep_for_second_look(std::size_t lane, const Hit16& hits);
 
   const HemisphereGather* gather_;
   std::size_t bands_;

@@ -13,7 +13,7 @@ namespace {
 
 /// Tilts in `kTurns` directions about the ray, opposite ones `kTurns / 2` apart.
 constexpr std::size_t kTurns = 8;
-/// Tangent of the smallest tilt: above that of the second look (RayScene::nudged).
+/// Tangent of the smallest tilt: above that of the second look (RayScene::second_direction).
 constexpr float kLeastTilt = 1e-5F;
 constexpr float kMostTilt = 4;
 constexpr float kStep = 2;

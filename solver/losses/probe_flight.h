@@ -18,17 +18,13 @@ struct ProbeRay {
   bool met = false;  ///< Else the packet left the room, and `hit` says nothing.
 };
 
-/// Second look at the rays that met nothing, by blocks as the solver takes it.
-void look_again(const RayScene& scene, const Ray16& rays, int count, Hit16& hits);
-
-/// Traces up to 16 rays as packets are traced, with a second look where they meet nothing, and calls
-/// visit(lane, ProbeRay) for each; `source` is left 0.
+/// Traces up to 16 rays as packets are traced, second looks included, and calls visit(lane, ProbeRay) for
+/// each; `source` is left 0.
 template <class Visit>
 void trace_probes(const RayScene& scene, const Ray16& rays, int count, const Visit& visit) {
   Hit16 hits;
   scene.closest16(rays, count, hits);
-  if (std::count(hits.triangle, hits.triangle + count, RayScene::kMiss) > 0)
-    look_again(scene, rays, count, hits);
+  scene.look_again16(rays, count, hits);
   for (int lane = 0; lane < count; ++lane) {
     ProbeRay probe;
     probe.origin = rays.origin(lane);

@@ -49,26 +49,27 @@ struct PacketBlock {
   std::vector<std::int64_t> power;  ///< [lane * bands + band]
 };
 
-/// Packets whose rays met nothing or a back, waiting for their second look until there are enough for a
-/// block: traced one by one beside rays that hit, they would cost as much as a whole block.
-class MissedPackets {
+/// Packets whose rays ended in doubt (RayScene::is_doubtful), waiting for their second look until there are
+/// enough for a block: traced one by one beside others, they would cost as much as a whole block.
+class DoubtfulPackets {
  public:
-  explicit MissedPackets(std::size_t bands) : bands_(bands) {}
+  explicit DoubtfulPackets(std::size_t bands) : bands_(bands) {}
 
   std::size_t count() const { return id_.size(); }
 
-  void add(const Ray16& rays, int lane, std::uint32_t id, const std::int64_t* power) {
+  void add(const RayScene& scene, const Ray16& rays, const Hit16& hits, int lane, std::uint32_t id,
+           const std::int64_t* power) {
     origin_.push_back(rays.origin(lane));
-    direction_.push_back(rays.direction(lane));
+    direction_.push_back(scene.second_direction(rays.direction(lane), hits, lane));
     id_.push_back(id);
     power_.insert(power_.end(), power, power + bands_);
   }
 
-  /// Moves the last 16 packets, or as many as there are, into `block`, with their rays turned a little.
+  /// Moves the last 16 packets, or as many as there are, into `block`, with the rays of their second look.
   void take(PacketBlock& block) {
     block.count = static_cast<int>(std::min<std::size_t>(16, count()));
     for (int lane = 0; lane < block.count; ++lane) {
-      block.rays.set(lane, origin_.back(), RayScene::nudged(direction_.back()));
+      block.rays.set(lane, origin_.back(), direction_.back());
       block.id[lane] = id_.back();
       std::copy(power_.end() - static_cast<std::ptrdiff_t>(bands_), power_.end(),
                 block.power.begin() + lane * static_cast<std::ptrdiff_t>(bands_));

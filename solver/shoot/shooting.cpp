@@ -40,6 +40,7 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
     accounts[lane] = {};
     if (t == RayScene::kMiss) continue;
     const ZoneId zone = transport.zone_of(t, hits.u[lane], hits.v[lane], hits.front[lane]);
+    if (!second_look && (!zone.valid() || transport.is_at_edge(t, hits.u[lane], hits.v[lane]))) continue;
     if (zone.valid()) {
       accounts[lane] = {&incident.quanta[zone.index() * bands], shared, nullptr};
       incident.touch(zone.index());
@@ -47,7 +48,7 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
         accounts[lane].place = arrivals->place(zone, bits[lane]);
         __builtin_prefetch(accounts[lane].place, 1);
       }
-    } else if (second_look) {
+    } else {
       const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
       accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true, nullptr};
     }
@@ -71,7 +72,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     LocalBooks local(books);
     SweepAccounts::Incident& incident = sweep.mine();
-    MissedPackets missed(bands);
+    DoubtfulPackets doubtful(bands);
     PacketBlock second(bands);
     std::vector<std::int64_t> power(16 * bands);
     Hit16 hits;
@@ -86,7 +87,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
       for (int lane = 0; lane < count; ++lane, quanta += bands) {
         const Account& account = accounts[lane];
         if (account.quanta == nullptr && !second_look) {
-          missed.add(rays, lane, id[lane], quanta);
+          doubtful.add(transport.rays(), rays, hits, lane, id[lane], quanta);
           continue;
         }
         if (account.place != nullptr)
@@ -99,7 +100,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
       }
     };
     const auto look_again = [&] {
-      missed.take(second);
+      doubtful.take(second);
       trace_and_book(second.rays, second.count, second.id, second.power.data(), true);
     };
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
@@ -119,7 +120,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
         if (batch.ray_observer != nullptr) (*batch.ray_observer)(rays, count);
         std::iota(id, id + 16, first);
         trace_and_book(rays, count, id, power.data(), false);
-        if (missed.count() >= 16) look_again();
+        if (doubtful.count() >= 16) look_again();
       }
     }
     look_again();

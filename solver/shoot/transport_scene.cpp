@@ -24,7 +24,8 @@ TransportScene::TransportScene(const Scene& scene, const ZoneMesh& mesh, const R
     const Vec3f e2 = rays.corner(t, 2) - p0;
     const auto scale = 1.0F / static_cast<float>(n);
     patches_.push_back({p0, scale * e1, scale * e2, p0 + (e1 + e2) / 3.0F, Frame(rays.normal(t)), n,
-                        mesh.triangle(t).two_sided, rays.is_foot(t), mesh.first_zone(t, true).index()});
+                        mesh.triangle(t).two_sided, rays.is_foot(t), rays.edge_share(t),
+                        mesh.first_zone(t, true).index()});
   }
 }
 

@@ -111,6 +111,10 @@ class TransportScene {
     const std::size_t back = front ? 0 : std::size_t{p.divisions} * p.divisions;
     return ZoneId(p.first_zone + back + zone_in_triangle(p.divisions, u, v));
   }
+  /// RayScene::is_at_edge, from the record that zone_of has read.
+  bool is_at_edge(std::uint32_t triangle, float u, float v) const {
+    return std::min({u, v, 1 - u - v}) < patches_[triangle].edge_share && rays_->is_at_edge(triangle, u, v);
+  }
 
  private:
   static std::uint32_t lane_bits(int first, int last) { return ((1U << last) - 1) & ~((1U << first) - 1); }
@@ -145,6 +149,7 @@ class TransportScene {
     std::uint32_t divisions;
     bool two_sided;
     bool is_foot;
+    float edge_share;
     std::size_t first_zone;
   };
 

@@ -66,7 +66,7 @@ class WalkTask {
         observer_(task.ray_observer),
         books_(books),
         local_(books),
-        missed_(bands_),
+        doubtful_(bands_),
         second_(bands_),
         zones_(zones),
         absorbed_(absorbed),
@@ -137,11 +137,11 @@ class WalkTask {
     if (observer_ != nullptr) (*observer_)(rays_, count);
     ray_count_ += static_cast<std::uint64_t>(count);
     arrive(rays_, count, id, power, incident, bounce, false);
-    if (missed_.count() >= 16) look_again(incident, bounce);
+    if (doubtful_.count() >= 16) look_again(incident, bounce);
   }
 
   void look_again(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
-    missed_.take(second_);
+    doubtful_.take(second_);
     arrive(second_.rays, second_.count, second_.id, second_.power.data(), incident, bounce, true);
   }
 
@@ -160,8 +160,9 @@ class WalkTask {
     rng_.bits4x16(id, batch_, bounce, bits);
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
-      if (!zone[lane].valid() && !second_look) {
-        missed_.add(rays, lane, id[lane], quanta);
+      if (!second_look && (!zone[lane].valid() ||
+                           transport_.is_at_edge(hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
+        doubtful_.add(transport_.rays(), rays, hits_, lane, id[lane], quanta);
         continue;
       }
       if (hits_.triangle[lane] == RayScene::kMiss) {
@@ -219,7 +220,7 @@ class WalkTask {
   const RayObserver* observer_;
   BatchBooks& books_;
   LocalBooks local_;
-  MissedPackets missed_;
+  DoubtfulPackets doubtful_;
   PacketBlock second_;
   WalkAccounts& zones_;
   std::vector<std::int64_t>& absorbed_;  // of this thread alone

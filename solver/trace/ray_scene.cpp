@@ -10,6 +10,11 @@ namespace reemit {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Distances of two faces along a ray are told apart where they are this far from their common edge
+/// [normalised units]; the wrong one was met up to 3e-7 from edges.
+constexpr float kEdgeWidth = 2e-6F;
+/// By how much rays are turned for the second look.
+constexpr float kTurn = 3e-6F;
 
 void intersect1(RTCScene scene, RTCRayHit& ray) {
 #if RTC_VERSION_MAJOR >= 4
@@ -55,6 +60,10 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float f
   return ray;
 }
 
+Vec3f turned(const Vec3f& d) {
+  return Vec3f(d.x() + kTurn * d.y(), d.y() + kTurn * d.z(), d.z() - kTurn * d.x()).normalized();
+}
+
 }  // namespace
 
 RayScene::RayScene(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_unique<EmbreeScene>()) {
@@ -85,6 +94,13 @@ RayScene::RayScene(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_uniqu
   }
   Eigen::Affine3d to_normalised = Eigen::Affine3d::Identity();
   to_normalised.scale(1 / metres_per_unit_).translate(-centre_);
+  edge_shares_.assign(base.triangles.size(), -kInfinity);
+  for (std::size_t t = 0; t < flat_count_; ++t)
+    for (int k = 0; k < 3; ++k) {
+      float height = 0;
+      into_triangle(TriangleId(t), k, height);
+      edge_shares_[t] = std::max(edge_shares_[t], kEdgeWidth / std::max(height, kEdgeWidth));
+    }
   std::vector<CurvedShape> shapes;
   for (const CurvedShape& shape : base.shapes) {
     shapes.push_back(transformed(shape, to_normalised));
@@ -180,14 +196,13 @@ bool RayScene::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) co
     read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, d, found);
     return true;
   };
-  const auto is_certain = [&](const Hit& found) {
-    return !is_doubtful(static_cast<std::uint32_t>(found.triangle.index()), found.front);
-  };
+  const auto number = [](const Hit& found) { return static_cast<std::uint32_t>(found.triangle.index()); };
   const bool any = trace(direction, hit);
-  if (any && is_certain(hit)) return true;
+  const std::uint32_t met = any ? number(hit) : kMiss;
+  if (!is_doubtful(met, hit.u, hit.v, hit.front)) return true;
   Hit second;
-  if (!trace(nudged(direction), second)) return any;
-  if (!any || is_certain(second)) hit = second;
+  if (!trace(second_direction(direction, met, hit.u, hit.v), second)) return any;
+  if (!any || !is_lost(number(second), second.front)) hit = second;
   return true;
 }
 
@@ -201,11 +216,11 @@ bool RayScene::closest_for_camera(const Vec3f& origin, const Vec3f& direction, H
       intersect1(embree_->scene(), query);
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
       read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, d, hit);
-      if (!is_doubtful(static_cast<std::uint32_t>(hit.triangle.index()), hit.front)) return true;
+      if (!is_lost(static_cast<std::uint32_t>(hit.triangle.index()), hit.front)) return true;
       near = std::max(query.ray.tfar * (1 + 1e-6F), std::nextafter(query.ray.tfar, kInfinity));
     }
   };
-  return look(direction) || look(nudged(direction));
+  return look(direction) || look(turned(direction));
 }
 
 void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
@@ -229,11 +244,19 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.hit.primID[i] = kMiss;
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
+  // Lanes without a ray may hold anything, and Embree's checks look at them.
+  for (int i = count; i < 16; ++i) {
+    query.ray.org_x[i] = query.ray.org_y[i] = query.ray.org_z[i] = 0;
+    query.ray.dir_x[i] = query.ray.dir_y[i] = query.ray.dir_z[i] = 0;
+  }
   intersect16(valid, embree_->scene(), query);
   for (int i = 0; i < count; ++i) {
     const std::uint32_t t = query.hit.primID[i];
     hits.triangle[i] = t;
-    if (t == kMiss) continue;
+    if (t == kMiss) {
+      hits.u[i] = hits.v[i] = 0;
+      continue;
+    }
     if (query.hit.geomID[i] != EmbreeScene::kTriangles) {
       Hit hit;
       read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i], rays.origin(i),
@@ -253,10 +276,46 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
   }
 }
 
-Vec3f RayScene::nudged(const Vec3f& direction) {
-  constexpr float kTurn = 3e-6F;
-  const Vec3f& d = direction;
-  return Vec3f(d.x() + kTurn * d.y(), d.y() + kTurn * d.z(), d.z() - kTurn * d.x()).normalized();
+/// Unit direction in the plane of a flat triangle from the edge opposite to a corner towards it, and how far
+/// the corner is from that edge. A triangle without area has neither.
+Vec3f RayScene::into_triangle(TriangleId t, int corner_number, float& height) const {
+  const Vec3f& from = corner(t, (corner_number + 1) % 3);
+  const Vec3f edge = corner(t, (corner_number + 2) % 3) - from;
+  const Vec3f up = corner(t, corner_number) - from;
+  const float length2 = edge.squaredNorm();
+  const Vec3f across = length2 > 0 ? Vec3f(up - (up.dot(edge) / length2) * edge) : up;
+  height = across.norm();
+  return height > 0 ? Vec3f(across / height) : Vec3f(Vec3f::Zero());
+}
+
+unsigned RayScene::edges_near(std::uint32_t triangle, float u, float v) const {
+  const float weight[3] = {1 - u - v, u, v};
+  unsigned edges = 0;
+  for (int k = 0; k < 3; ++k) {
+    float height = 0;
+    into_triangle(TriangleId(triangle), k, height);
+    if (weight[k] * height < kEdgeWidth) edges |= 1U << k;
+  }
+  return edges;
+}
+
+Vec3f RayScene::second_direction(const Vec3f& direction, std::uint32_t triangle, float u, float v) const {
+  if (triangle == kMiss || !is_at_edge(triangle, u, v)) return turned(direction);
+  const unsigned edges = edges_near(triangle, u, v);
+  Vec3f turn = Vec3f::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if ((edges >> k & 1U) == 0) continue;
+    float height = 0;
+    const Vec3f inwards = into_triangle(TriangleId(triangle), k, height);
+    // Across the edge as the ray sees it, however flat it comes.
+    const Vec3f across = direction.cross(inwards.cross(normals_[triangle]));
+    const float length = across.norm();
+    if (length > 0) turn += (across.dot(inwards) < 0 ? -1 : 1) / length * across;
+  }
+  // Where all edges are near there is no inside.
+  constexpr float kNowhere = 0.1F;
+  if (turn.norm() < kNowhere) return turned(direction);
+  return (direction + kTurn * turn).normalized();
 }
 
 void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
@@ -264,8 +323,8 @@ void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   int lanes[16];
   int doubtful_count = 0;
   for (int i = 0; i < count; ++i) {
-    if (!is_doubtful(hits.triangle[i], hits.front[i])) continue;
-    doubtful.set(doubtful_count, rays.origin(i), nudged(rays.direction(i)));
+    if (!is_doubtful(hits.triangle[i], hits.u[i], hits.v[i], hits.front[i])) continue;
+    doubtful.set(doubtful_count, rays.origin(i), second_direction(rays.direction(i), hits, i));
     lanes[doubtful_count++] = i;
   }
   if (doubtful_count == 0) return;
@@ -273,8 +332,8 @@ void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   closest16(doubtful, doubtful_count, again);
   for (int k = 0; k < doubtful_count; ++k) {
     const int i = lanes[k];
-    // A back is believed when it is met again.
-    if (hits.triangle[i] != kMiss && is_doubtful(again.triangle[k], again.front[k])) continue;
+    // A back is believed when it is met again, and an edge when the ray would get lost.
+    if (hits.triangle[i] != kMiss && is_lost(again.triangle[k], again.front[k])) continue;
     hits.triangle[i] = again.triangle[k];
     hits.u[i] = again.u[k];
     hits.v[i] = again.v[k];
@@ -296,7 +355,7 @@ bool RayScene::escapes(const Vec3f& origin, const Vec3f& direction) const {
   RTCRay ray = make_ray(origin, direction, 0, kInfinity);
   occluded1(embree_->scene(), ray);
   if (ray.tfar < 0) return false;
-  ray = make_ray(origin, nudged(direction), 0, kInfinity);
+  ray = make_ray(origin, turned(direction), 0, kInfinity);
   occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -99,20 +100,34 @@ class RayScene {
   /// Nearest hit that is not the back of a one-sided triangle: what a camera sees.
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hits of the first `count` rays, count <= 16. Unlike closest() it does not look twice: the caller
-  /// does, with look_again16 or, cheaper, with full blocks of nudged() rays.
+  /// does, with look_again16 or, cheaper, with full blocks of such rays.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
-  /// True if a ray that ended so deserves a second look: it met nothing, or the back of a one-sided triangle.
-  bool is_doubtful(std::uint32_t triangle, bool front) const {
-    return triangle == kMiss || (!front && !mesh_->triangle(TriangleId(triangle)).two_sided);
+  /// True if a ray that ended so deserves a second look: it met nothing, the back of a one-sided triangle, or
+  /// an edge.
+  bool is_doubtful(std::uint32_t triangle, float u, float v, bool front) const {
+    return is_lost(triangle, front) || is_at_edge(triangle, u, v);
   }
+  /// True if (u,v) is so near an edge of a flat triangle that rounding decides which of the faces that meet
+  /// there a ray seems to meet first.
+  bool is_at_edge(std::uint32_t triangle, float u, float v) const {
+    return std::min({u, v, 1 - u - v}) < edge_shares_[triangle] && edges_near(triangle, u, v) != 0;
+  }
+  /// Smallest barycentric coordinate below which a point of the triangle may be at an edge; nothing is below
+  /// that of a curved patch.
+  float edge_share(TriangleId t) const { return edge_shares_[t.index()]; }
   /// Second look at the doubtful ones of `hits`.
   void look_again16(const Ray16& rays, int count, Hit16& hits) const;
-  /// Direction of the second look. A ray that meets nothing may have slipped through the hairline where
-  /// triangles with different vertices meet; one that meets a back may have passed by an edge within
-  /// rounding, where the front that hides the back is equally far. Either is traced once more, turned by a
-  /// few millionths, and what it meets then is true. Closed rooms so lose no light; where rays do leave, or
-  /// do come to backs, they do so again, at the cost of one more ray each.
-  static Vec3f nudged(const Vec3f& direction);
+  /// Direction of the second look at a ray that ended so; (u,v) say nothing if it met nothing. A ray that
+  /// meets nothing may have slipped through the hairline where triangles with different vertices meet, and
+  /// one that meets a back through another to get there. One that meets an edge may have passed another face
+  /// there: seen from outside, the near and the far face of a box are equally far at its rim, and where
+  /// rounding prefers the far one, light comes to the inside of a closed box. All are traced once more,
+  /// turned by a few millionths, at edges towards the inside of the triangle, and what they meet then is
+  /// true.
+  Vec3f second_direction(const Vec3f& direction, std::uint32_t triangle, float u, float v) const;
+  Vec3f second_direction(const Vec3f& direction, const Hit16& hits, int lane) const {
+    return second_direction(direction, hits.triangle[lane], hits.u[lane], hits.v[lane]);
+  }
   /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
   /// eye).
   bool visible(const Vec3f& from, const Vec3f& to) const;
@@ -125,6 +140,12 @@ class RayScene {
   std::uint32_t shape_of(TriangleId t) const { return mesh_->triangle(t).shape; }
   Vec3 curved_point(TriangleId t, float u, float v) const;
   Vec3f curved_normal(TriangleId t, float u, float v) const;
+  bool is_lost(std::uint32_t triangle, bool front) const {
+    return triangle == kMiss || (!front && !mesh_->triangle(TriangleId(triangle)).two_sided);
+  }
+  /// Edges within kEdgeWidth of (u,v), as bits: bit k is the edge opposite to corner k.
+  unsigned edges_near(std::uint32_t triangle, float u, float v) const;
+  Vec3f into_triangle(TriangleId t, int corner, float& height) const;
   void read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
                 const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
 
@@ -133,6 +154,7 @@ class RayScene {
   Vec3 centre_{0, 0, 0};
   std::vector<Vec3f> corners_;
   std::vector<Vec3f> normals_;
+  std::vector<float> edge_shares_;
   std::size_t flat_count_ = 0;
   std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
   ShapeFeet feet_;

@@ -96,7 +96,7 @@ TEST(RayScene, AWedgeShowsFewBacksAtItsEdge) {
     Hit16 hits;
     const auto backs = [&] {
       int count = 0;
-      for (int i = 0; i < 16; ++i) count += scene.is_doubtful(hits.triangle[i], hits.front[i]) ? 1 : 0;
+      for (int i = 0; i < 16; ++i) count += hits.triangle[i] == RayScene::kMiss || !hits.front[i] ? 1 : 0;
       return count;
     };
     scene.closest16(rays, 16, hits);
@@ -105,8 +105,61 @@ TEST(RayScene, AWedgeShowsFewBacksAtItsEdge) {
     second_look += backs();
   }
   EXPECT_GT(first_look, 1000) << "rays aimed at the edge itself meet backs";
-  // What remains are rays that the turn moves along the edge instead of across it.
-  EXPECT_LT(second_look, first_look / 10);
+  // What remains are rays that come flat to both faces.
+  EXPECT_LE(second_look, first_look / 1000);
+}
+
+// From outside, the near and the far face of a rim are equally far; which of them a ray meets first was
+// decided by rounding, so that a few packets of 1e8 lit the insides of closed boxes.
+TEST(RayScene, RimsHideTheInsidesOfTwoSidedBoxes) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5, 0, true);
+  room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
+  const Vec3 low(-0.3, -0.5, -0.1);
+  const Vec3 high(0.1, 0.2, 0.3);
+  room.solid(low, high, m, 1);
+  const MeshResult built = room.mesh();
+  const RayScene scene(built.mesh);
+  constexpr std::uint32_t kHullTriangles = 12;  // those of the box follow
+  const CounterRng rng(6, RngPurpose::kProbe);
+  const auto is_inside = [](std::uint32_t t, bool front) {
+    return t != RayScene::kMiss && t >= kHullTriangles && !front;
+  };
+  int first_look = 0;
+  int second_look = 0;
+  int alone = 0;
+  for (std::uint32_t block = 0; block < 20'000; ++block) {
+    Ray16 rays;
+    for (int i = 0; i < 16; ++i) {
+      const auto u = rng.uniform4(block, 0, static_cast<std::uint32_t>(i));
+      const auto v = rng.uniform4(block, 1, static_cast<std::uint32_t>(i));
+      const Vec3f from(0.2F + 0.7F * u[0], -0.9F + 1.8F * u[1], -0.9F + 1.8F * u[2]);
+      const int axis = static_cast<int>(3 * u[3]);
+      Vec3 at;
+      for (int k = 0; k < 3; ++k) at[k] = v[static_cast<std::size_t>(k)] < 0.5F ? low[k] : high[k];
+      at[axis] = low[axis] + (high[axis] - low[axis]) * static_cast<double>(v[3]);
+      rays.set(i, from, (at.cast<float>() - from).normalized());
+    }
+    Hit16 hits;
+    const auto insides = [&] {
+      int count = 0;
+      for (int i = 0; i < 16; ++i) count += is_inside(hits.triangle[i], hits.front[i]) ? 1 : 0;
+      return count;
+    };
+    scene.closest16(rays, 16, hits);
+    first_look += insides();
+    scene.look_again16(rays, 16, hits);
+    second_look += insides();
+    for (int i = 0; i < 16; ++i) {
+      Hit hit;
+      if (scene.closest({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, hit))
+        alone += is_inside(static_cast<std::uint32_t>(hit.triangle.index()), hit.front) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(first_look, 1000) << "rays aimed at the rims themselves meet insides";
+  // What remains passes by corners.
+  EXPECT_LE(second_look, first_look / 1000);
+  EXPECT_LE(alone, first_look / 1000);
 }
 
 TEST(RayScene, VisibilityStopsAtWallsAndNotAtItsEnds) {
