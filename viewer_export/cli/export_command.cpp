@@ -97,7 +97,8 @@ ExitCode run_export(const ExportOptions& options) {
       scene, solution, rays, options.vertex, [&progress](double done) { progress.update(done); },
       interrupt.requested());
   progress.finish();
-  data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map);
+  data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map, options.vertex.threads,
+                                   interrupt.requested());
   for (const std::filesystem::path& output : options.outputs)
     write_output([&] {
       if (options.photometric)
