@@ -1,5 +1,7 @@
 #include "solver/trace/ray_scene.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "solver/sampling/counter_rng.h"
@@ -61,6 +63,7 @@ TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
       rays.dy[i] = d.y();
       rays.dz[i] = d.z();
     }
+    for (int i = 13; i < 16; ++i) rays.ox[i] = rays.dy[i] = std::nanf("");  // lanes that do not count
     scene.closest16(rays, 13, hits);
     for (int i = 0; i < 13; ++i) {
       Hit hit;
