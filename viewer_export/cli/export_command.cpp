@@ -183,7 +183,7 @@ void add_export_command(CLI::App& program, Action& action) {
   form_factors->excludes(
       add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
                         "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
-                        "(default: as stills of the room's cameras together)"));
+                        "(default: as the still from the first camera)"));
 
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);
