@@ -67,7 +67,7 @@ double median(std::vector<double> values) {
 
 std::vector<BlockSums> trace_reference(const Scene& scene, const Camera& camera,
                                        const ComparisonSettings& settings) {
-  const HitPathTracer tracer(scene, camera, settings.width, settings.height);
+  const HitPathTracer tracer(scene, camera, settings.width, settings.height, settings.photometry);
   const std::size_t bands = scene.bands.count();
   const auto count = static_cast<std::size_t>((settings.width / kBlock) * (settings.height / kBlock));
   std::vector<BlockSums> blocks(count, {std::vector<double>(bands), std::vector<double>(bands), 0});
@@ -193,7 +193,9 @@ Comparison compare_blocks(const Scene& scene, const Camera& camera, const Compar
     variance_of_reference += standard_error * standard_error;
     if (worst_errors < 0) continue;  // black in both
     out.blocks.push_back(worst);
-    const double error = worst_error(reference[i]);
+    const bool found =
+        std::any_of(reference[i].sum.begin(), reference[i].sum.end(), [](double sum) { return sum > 0; });
+    const double error = found ? worst_error(reference[i]) : 1.0;  // one path would be as uncertain
     errors.push_back(error);
     out.largest_reference_error = std::max(out.largest_reference_error, error);
     out.paths += static_cast<std::uint64_t>(reference[i].passes) * kBlock * kBlock;

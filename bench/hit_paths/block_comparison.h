@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct ComparisonSettings {
   double planted_bias = 0;  ///< Added to the checked picture as a share, to see whether it would be noticed.
   bool by_walks = false;    ///< Solve the zones by walks instead of shooting.
   bool by_path = false;     ///< Check the path tracer instead of gathering.
+  std::filesystem::path photometry;  ///< IES file that the reference reads anew for measured luminaires.
 };
 
 /// One block of pixels in its worst band.

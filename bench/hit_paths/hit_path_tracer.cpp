@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 
@@ -50,21 +53,43 @@ struct Arrive {
     return {l.position, share * share * l.intensity / way.squaredNorm()};
   }
   Arriving operator()(const DirectionalLight& l) const { return {x - far * l.direction, l.irradiance}; }
-  Arriving operator()(const PhotometricLight& l) const {
-    const Vec3 way = x - l.position;
-    return {l.position, l.table->intensity(l.orientation.transpose() * way) * l.intensity_per_candela /
-                            way.squaredNorm()};
+  Arriving operator()(const PhotometricLight& l) const {  // apart from the others
+    return {l.position, Spectrum::Zero(l.intensity_per_candela.size())};
   }
 };
 
+/// Light leaves openings that far off them, as a share of the room, so that one in the plane of a ceiling
+/// shines out of it.
+constexpr double kClearance = 1e-5;
+
+/// The sizes of an opening are those of its file but for the scale of the room. A size of 0 may stand for the
+/// diameter of what is round.
+void check_size(const Vec3& opening, const Vec3& file) {
+  const Vec3 stated = (file.array() > 0).select(opening, Vec3::Zero());
+  constexpr double kRounding = 1e-9;
+  if (stated.norm() > 0 && (stated.normalized() - file.normalized()).norm() > kRounding)
+    throw std::invalid_argument("an opening is not as its IES file says");
+}
+
 }  // namespace
 
-HitPathTracer::HitPathTracer(const Scene& scene, const Camera& camera, int width, int height)
-    : scene_(&scene), room_(scene), eye_(camera.eye) {
+HitPathTracer::HitPathTracer(const Scene& scene, const Camera& camera, int width, int height,
+                             const std::filesystem::path& photometry)
+    : scene_(&scene),
+      room_(scene),
+      clearance_(kClearance * bounds(scene).size().maxCoeff()),
+      eye_(camera.eye) {
+  std::map<const IntensityTable*, std::shared_ptr<const Photometry>> tables;
+  std::shared_ptr<const Photometry> file;
+  if (!photometry.empty()) file = std::make_shared<Photometry>(photometry);
   for (const PunctualLight& light : scene.lights) {
     const auto* measured = std::get_if<PhotometricLight>(&light);
-    if (measured != nullptr && measured->opening.shape != LuminousOpening::Shape::kPoint)
-      throw std::invalid_argument("measured luminaires with an opening are not in the reference");
+    if (measured == nullptr) continue;
+    if (file) check_size(measured->opening.size(), file->size());
+    std::shared_ptr<const Photometry>& table = tables[measured->table.get()];
+    if (!table) table = file ? file : std::make_shared<Photometry>(*measured->table);
+    const OpeningHit opening(*measured, table, clearance_);
+    (opening.can_be_hit() ? openings_ : lines_).push_back({opening, &measured->intensity_per_candela});
   }
   const Vec3 forward = (camera.look_at - camera.eye).normalized();
   const Vec3 right = forward.cross(camera.up).normalized();
@@ -83,15 +108,32 @@ void HitPathTracer::add_emission(const RoomHit& hit, const Vec3& direction, cons
   for (Eigen::Index b = 0; b < weight.size(); ++b) sum[b] += weight[b] * shape * m.emitted_radiance[b];
 }
 
-void HitPathTracer::add_lights(const RoomHit& hit, const Spectrum& weight, double* sum) const {
-  for (const PunctualLight& light : scene_->lights) {
-    const Arriving arriving = std::visit(Arrive{hit.point, 10 * room_.diagonal()}, light);
+void HitPathTracer::add_openings(const RayStart& start, const Vec3& direction, double far,
+                                 const Spectrum& weight, double* sum) const {
+  for (const Measured& m : openings_) {
+    const double radiance = m.opening.radiance(start.point, direction, far);
+    if (!(radiance > 0)) continue;
+    for (Eigen::Index b = 0; b < weight.size(); ++b) sum[b] += weight[b] * radiance * (*m.per_candela)[b];
+  }
+}
+
+void HitPathTracer::add_lights(const RoomHit& hit, const Spectrum& weight, Random& random,
+                               double* sum) const {
+  const auto add = [&](const Arriving& arriving, double clearance) {
     const Vec3 way = arriving.from - hit.point;
-    const double cosine = hit.normal.dot(way.normalized());
-    if (!(cosine > 0) || !(arriving.irradiance > 0).any()) continue;
-    if (!room_.visible({hit.point, hit.part}, arriving.from)) continue;
+    const double distance = way.norm();
+    const double cosine = hit.normal.dot(way) / distance;
+    if (!(cosine > 0) || !(arriving.irradiance > 0).any()) return;
+    const double share = 1 - std::min(0.5, clearance / distance);
+    if (!room_.visible({hit.point, hit.part}, hit.point + share * way)) return;
     for (Eigen::Index b = 0; b < weight.size(); ++b)
       sum[b] += weight[b] * hit.material->reflectance[b] / kPi * cosine * arriving.irradiance[b];
+  };
+  for (const PunctualLight& light : scene_->lights)
+    add(std::visit(Arrive{hit.point, 10 * room_.diagonal()}, light), 0);
+  for (const Measured& m : lines_) {
+    const Vec3 from = m.opening.random_point(random);
+    add({from, m.opening.irradiance(from, hit.point) * *m.per_candela}, clearance_);
   }
 }
 
@@ -103,10 +145,13 @@ void HitPathTracer::add_path(int x, int y, Random& random, double* sum) const {
   Spectrum weight = Spectrum::Ones(static_cast<Eigen::Index>(scene_->bands.count()));
   for (int bounce = 0;; ++bounce) {
     const auto hit = room_.closest(start, direction, bounce == 0);
+    if (bounce > 0)
+      add_openings(start, direction, hit ? hit->distance : std::numeric_limits<double>::infinity(), weight,
+                   sum);
     if (!hit) return;
     add_emission(*hit, direction, weight, sum);
     if (!hit->front && !hit->material->two_sided) return;
-    add_lights(*hit, weight, sum);
+    add_lights(*hit, weight, random, sum);
     weight *= hit->material->reflectance;
     const double largest = weight.maxCoeff();
     if (!(largest > 0)) return;

@@ -1,6 +1,9 @@
 #pragma once
+#include <filesystem>
 #include <random>
+#include <vector>
 
+#include "bench/hit_paths/opening_hit.h"
 #include "bench/hit_paths/polygon_room.h"
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
@@ -8,25 +11,40 @@
 namespace reemit::hit_paths {
 
 /// Radiance of pixels by paths that go on by cosine-distributed chance until they leave or are absorbed, and
-/// count emission where they hit it: no luminaire is ever sampled. Only lights that no path can hit (points,
-/// spots, parallel light) are asked for with one shadow ray each. Slow, and without anything in common with
-/// what it checks.
+/// count emission where they hit it: no luminaire is ever sampled. Openings of measured luminaires, which are
+/// not seen, count where a path crosses them. Only lights that no path can hit (points, lines, spots,
+/// parallel light) are asked for with one shadow ray each. Slow, and without anything in common with what it
+/// checks.
 class HitPathTracer {
  public:
   using Random = std::mt19937_64;
 
-  /// Throws std::invalid_argument for luminaires it does not know: measured ones with an opening.
-  HitPathTracer(const Scene& scene, const Camera& camera, int width, int height);
+  /// `photometry`: IES file of all measured luminaires, which is read anew by a reader of the reference; if
+  /// it is empty, the tables of the scene. Throws std::invalid_argument for what the reference does not know,
+  /// or if an opening is not as large as the file says.
+  HitPathTracer(const Scene& scene, const Camera& camera, int width, int height,
+                const std::filesystem::path& photometry = {});
 
   /// Adds the radiance [W/(m2 sr)] of one path through a uniform point of pixel (x, y) to sum[band].
   void add_path(int x, int y, Random& random, double* sum) const;
 
  private:
   void add_emission(const RoomHit& hit, const Vec3& direction, const Spectrum& weight, double* sum) const;
-  void add_lights(const RoomHit& hit, const Spectrum& weight, double* sum) const;
+  void add_openings(const RayStart& start, const Vec3& direction, double far, const Spectrum& weight,
+                    double* sum) const;
+  void add_lights(const RoomHit& hit, const Spectrum& weight, Random& random, double* sum) const;
+
+  /// A measured luminaire and what one candela of its file stands for.
+  struct Measured {
+    OpeningHit opening;
+    const Spectrum* per_candela;
+  };
 
   const Scene* scene_;
   PolygonRoom room_;
+  double clearance_;                  // of light off openings [m]
+  std::vector<Measured> openings_;    // those that paths can hit
+  std::vector<Measured> lines_;       // points and lines
   Vec3 eye_, corner_, right_, down_;  // a pixel (x, y) looks along corner_ + x right_ + y down_
 };
 

@@ -244,10 +244,10 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.hit.primID[i] = kMiss;
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  // Lanes without a ray may hold anything, and Embree's checks look at them.
+  // Embree demands sound numbers even of lanes that it is not to trace.
   for (int i = count; i < 16; ++i) {
     query.ray.org_x[i] = query.ray.org_y[i] = query.ray.org_z[i] = 0;
-    query.ray.dir_x[i] = query.ray.dir_y[i] = query.ray.dir_z[i] = 0;
+    query.ray.dir_x[i] = query.ray.dir_y[i] = query.ray.dir_z[i] = 1;
   }
   intersect16(valid, embree_->scene(), query);
   for (int i = 0; i < count; ++i) {

@@ -1,11 +1,15 @@
 // Stills against paths that sample no luminaire and share neither mesh nor rays with the program, in short:
 // the long form is bench_hit_paths.
+#include <filesystem>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "bench/hit_paths/block_comparison.h"
+#include "bench/hit_paths/photometry_file.h"
 #include "bench/hit_paths/touching_lamps.h"
+#include "scenes/io/ies_reader.h"
 #include "scenes/io/scene_reader.h"
 #include "tests/support/temp_folder.h"
 
@@ -13,7 +17,7 @@ namespace reemit::hit_paths {
 namespace {
 
 /// Limits of a whole picture, in standard errors: odds of a false alarm 6e-7 (normal; a picture's reference
-/// has over 10^5 paths) for each of the five comparisons here. Blocks: kMostErrors and kMostDeviation.
+/// has over 10^5 paths) for each of the eight comparisons here. Blocks: kMostErrors and kMostDeviation.
 constexpr double kLimit = 5;
 
 ComparisonSettings quick(bool by_path) {
@@ -62,16 +66,53 @@ TEST(HitPaths, lamps_may_touch_what_is_around_them) {
   expect_same_picture(touching_lamps_room(107));
 }
 
-TEST(HitPaths, a_bias_of_2_percent_is_noticed) {
-  const test::TempFolder folder;
-  const Scene scene = lamp_with_plinth(folder);
+const std::filesystem::path kRooms = std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/hit_paths/rooms";
+
+/// The reference reads the files itself and turns directions into angles in its own way.
+TEST(HitPaths, intensities_of_files_are_those_of_the_tables) {
+  const std::filesystem::path source = REEMIT_SOURCE_DIR;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (const auto& file :
+       {kRooms / "troffer.ies", kRooms / "pendant.ies", kRooms / "drum.ies", kRooms / "globe.ies",
+        source / "bench/validation/luminaires/planes.ies", source / "bench/validation/luminaires/axial.ies",
+        source / "docs/examples/downlight.ies"}) {
+    const MeasuredLuminaire luminaire = read_ies_file(file);
+    const Photometry read_anew(file);
+    const Photometry from_table(*luminaire.table);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 direction(normal(random), normal(random), normal(random));
+      const double expected = luminaire.table->intensity(direction);
+      EXPECT_NEAR(read_anew.candela(direction), expected, 1e-6 * luminaire.table->greatest_intensity())
+          << file << " " << direction.transpose();
+      EXPECT_NEAR(from_table.candela(direction), expected, 1e-6 * luminaire.table->greatest_intensity())
+          << file << " " << direction.transpose();
+    }
+  }
+}
+
+TEST(HitPaths, openings_of_measured_luminaires_of_every_shape_light_the_room) {
+  expect_same_picture(read_scene(kRooms / "measured_luminaires.json"));
+}
+
+void expect_bias_is_noticed(const Scene& scene, int passes) {
   ComparisonSettings settings = quick(false);
+  settings.passes = passes;
   const Comparison sound = compare_blocks(scene, scene.cameras[0], settings);
   EXPECT_LE(std::abs(sound.mean_deviation), kLimit * sound.mean_error);
   settings.planted_bias = 0.02;
   const Comparison biased = compare_blocks(scene, scene.cameras[0], settings);
   EXPECT_GT(std::abs(biased.mean_deviation), kLimit * biased.mean_error)
       << biased.mean_deviation << " +- " << biased.mean_error;
+}
+
+TEST(HitPaths, a_bias_of_2_percent_is_noticed) {
+  const test::TempFolder folder;
+  expect_bias_is_noticed(lamp_with_plinth(folder), 256);
+}
+
+TEST(HitPaths, a_bias_of_2_percent_is_noticed_under_measured_luminaires) {
+  expect_bias_is_noticed(read_scene(kRooms / "measured_luminaires.json"), 768);
 }
 
 }  // namespace

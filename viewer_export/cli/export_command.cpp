@@ -101,7 +101,9 @@ ExitCode run_export(const ExportOptions& options) {
   const bool shows_colours =
       std::any_of(options.outputs.begin(), options.outputs.end(),
                   [](const std::filesystem::path& output) { return export_format_of(output).shows_colours; });
-  if (shows_colours) data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map);
+  if (shows_colours)
+    data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map, options.vertex.threads,
+                                     interrupt.requested());
   for (const std::filesystem::path& output : options.outputs)
     write_output([&] {
       if (options.photometric)
@@ -186,7 +188,7 @@ void add_export_command(CLI::App& program, Action& action) {
   form_factors->excludes(
       add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
                         "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
-                        "(default: as stills of the room's cameras together)"));
+                        "(default: as the still from the first camera)"));
 
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);

@@ -14,19 +14,6 @@ constexpr ImageFormat kFormats[] = {
     {".png", "8-bit sRGB, tone-mapped", true, write_png},
 };
 
-std::vector<float> rgb_of(const StillImage& image) {
-  const std::size_t bands = image.bands.count();
-  std::vector<float> rgb;
-  rgb.reserve(3 * image.pixel_count());
-  Spectrum value(static_cast<Eigen::Index>(bands));
-  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
-    for (std::size_t band = 0; band < bands; ++band)
-      value[static_cast<Eigen::Index>(band)] = image.radiance[pixel * bands + band];
-    for (const double c : image.bands.to_rgb(value)) rgb.push_back(static_cast<float>(c));
-  }
-  return rgb;
-}
-
 }  // namespace
 
 std::span<const ImageFormat> image_formats() {

@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+
 #include "scenes/model/scene.h"
 #include "solver/solution/solution.h"
 #include "solver/trace/ray_scene.h"
@@ -7,10 +9,11 @@
 namespace reemit {
 
 /// The tone map for pictures of a room that are not taken from one place, such as exported vertices: that of
-/// a still which shows side by side what the room's cameras see, or the default ones if it has none. So an
-/// export is as bright as the stills, and surfaces that nobody sees, inside and under things, do not count.
-/// Reads the zones as they are, some thousand rays per camera. Throws as make_tone_map and RadianceField.
+/// the room's first still, which `reemit render` makes unless told otherwise, gathered small and with a few
+/// samples. So an export is as bright as that picture, and surfaces that it does not show, inside and under
+/// things or in the dark next door, do not count. `threads`, `interrupt` and exceptions as of render_still
+/// and make_tone_map.
 ToneMap tone_map_of_room(const Scene& scene, const Solution& solution, const RayScene& rays,
-                         const ToneMapSettings& settings);
+                         const ToneMapSettings& settings, int threads, const std::atomic<bool>& interrupt);
 
 }  // namespace reemit

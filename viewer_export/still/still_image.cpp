@@ -20,4 +20,17 @@ void check_consistent(const StillImage& image) {
   check(image.normal, 3 * pixels, true);
 }
 
+std::vector<float> rgb_of(const StillImage& image) {
+  const std::size_t bands = image.bands.count();
+  std::vector<float> rgb;
+  rgb.reserve(3 * image.pixel_count());
+  Spectrum value(static_cast<Eigen::Index>(bands));
+  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
+    for (std::size_t band = 0; band < bands; ++band)
+      value[static_cast<Eigen::Index>(band)] = image.radiance[pixel * bands + band];
+    for (const double c : image.bands.to_rgb(value)) rgb.push_back(static_cast<float>(c));
+  }
+  return rgb;
+}
+
 }  // namespace reemit

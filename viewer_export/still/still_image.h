@@ -36,4 +36,7 @@ struct StillImage {
 /// Throws std::invalid_argument when a layer's size does not fit the picture.
 void check_consistent(const StillImage& image);
 
+/// The picture in linear Rec.709, 3 values per pixel.
+std::vector<float> rgb_of(const StillImage& image);
+
 }  // namespace reemit

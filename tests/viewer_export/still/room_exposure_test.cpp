@@ -1,10 +1,17 @@
 #include "viewer_export/still/room_exposure.h"
 
+#include <algorithm>
 #include <atomic>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
+#include "mesh/build_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "solver/progressive_solver.h"
 #include "tests/support/hand_made_solution.h"
+#include "viewer_export/cli/camera_choice.h"
+#include "viewer_export/still/default_cameras.h"
 #include "viewer_export/still/render_still.h"
 
 namespace reemit {
@@ -39,34 +46,69 @@ Solution darker_in_the_cupboard(const RoomBuilder& room) {
   return solution;
 }
 
-TEST(RoomExposure, IsThatOfAStillFromTheCameraOfTheRoom) {
-  const RoomBuilder room = room_with_a_dark_cupboard();
-  const Solution solution = darker_in_the_cupboard(room);
-  const RayScene rays(solution.mesh);
-  const std::atomic<bool> never{false};
+const std::atomic<bool> kNever{false};
+
+ToneMap of_still(const Scene& scene, const Solution& solution, const RayScene& rays, const Camera& camera) {
   StillSettings settings;
-  settings.width = 64;
-  settings.height = 64;
-  settings.spp = 1;
-  settings.integrator = Integrator::kZones;
-  const StillImage still =
-      render_still(room.scene(), solution, rays, room.scene().cameras.front(), settings, {}, never);
-  std::vector<float> rgb;
-  for (const float grey : still.radiance) rgb.insert(rgb.end(), 3, grey);
-  const ToneMap of_still = make_tone_map(rgb);
-  const ToneMap of_room = tone_map_of_room(room.scene(), solution, rays, {});
-  EXPECT_NEAR(of_room.exposure_ev(), of_still.exposure_ev(), 0.1);
-  EXPECT_NEAR(of_room.white(), of_still.white(), 0.1 * of_still.white());
+  settings.width = 160;
+  settings.height = std::max(1, 160 * camera.height / camera.width);
+  settings.spp = 16;
+  return make_tone_map(rgb_of(render_still(scene, solution, rays, camera, settings, {}, kNever)));
 }
 
-TEST(RoomExposure, WithoutCamerasIsWhatTheAutomaticOnesSee) {
+TEST(RoomExposure, IsThatOfTheStillFromTheFirstCamera) {
   RoomBuilder room = room_with_a_dark_cupboard();
+  Camera cupboard = room.scene().cameras.front();
+  cupboard.name = "cupboard";
+  cupboard.eye = Vec3(5.5, 1.6, 4.5);
+  cupboard.look_at = Vec3(5.5, 1, 1);
+  room.scene().cameras.push_back(cupboard);
   const Solution solution = darker_in_the_cupboard(room);
   const RayScene rays(solution.mesh);
+  const ToneMap still = of_still(room.scene(), solution, rays, room.scene().cameras.front());
+  const ToneMap of_room = tone_map_of_room(room.scene(), solution, rays, {}, 0, kNever);
+  EXPECT_NEAR(of_room.exposure_ev(), still.exposure_ev(), 0.1);
+  EXPECT_NEAR(of_room.white(), still.white(), 0.1 * still.white());
+}
+
+TEST(RoomExposure, WithoutCamerasIsThatOfTheFirstAutomaticOne) {
+  RoomBuilder room = room_with_a_dark_cupboard();
   room.scene().lights.push_back(PointLight{"bulb", Vec3(2, 2.5, 2), room.flat(10)});
-  const double with_camera = tone_map_of_room(room.scene(), solution, rays, {}).exposure_ev();
   room.scene().cameras.clear();
-  EXPECT_NEAR(tone_map_of_room(room.scene(), solution, rays, {}).exposure_ev(), with_camera, 0.1);
+  const Solution solution = darker_in_the_cupboard(room);
+  const RayScene rays(solution.mesh);
+  const ToneMap still = of_still(room.scene(), solution, rays, default_cameras(room.scene(), rays).front());
+  const ToneMap of_room = tone_map_of_room(room.scene(), solution, rays, {}, 0, kNever);
+  EXPECT_NEAR(of_room.exposure_ev(), still.exposure_ev(), 0.1);
+}
+
+/// Of rooms as they are: an export and the still that is made without asking for a camera.
+void expect_an_export_as_bright_as_the_still(const std::filesystem::path& file) {
+  const Scene scene = read_scene(file);
+  const MeshResult mesh = build_mesh(scene);
+  SolverSettings settings;
+  settings.packets = 400'000;
+  const Solution solution = solve_zones(scene, mesh, settings, {}, kNever);
+  const RayScene rays(solution.mesh);
+  const Camera camera = cli::cameras_of(scene, rays).front();
+  const double still = of_still(scene, solution, rays, camera).exposure_ev();
+  EXPECT_NEAR(tone_map_of_room(scene, solution, rays, {}, 0, kNever).exposure_ev(), still, 0.2) << file;
+}
+
+const std::filesystem::path kSource = REEMIT_SOURCE_DIR;
+
+TEST(RoomExposure, OfTheCornellBoxIsThatOfItsStill) {
+  expect_an_export_as_bright_as_the_still(kSource / "scenes/library/cornell_box.json");
+}
+
+TEST(RoomExposure, OfTheOfficeIsThatOfItsStill) {
+  expect_an_export_as_bright_as_the_still(kSource / "scenes/library/office.json");
+}
+
+TEST(RoomExposure, OfTheConferenceRoomIsThatOfItsStill) {
+  const std::filesystem::path room = kSource / "../shared/scenes/mgf/conference_1994/conf.mgf";
+  if (!std::filesystem::exists(room)) GTEST_SKIP() << room << " is not here";
+  expect_an_export_as_bright_as_the_still(room);
 }
 
 TEST(RoomExposure, AFixedExposureStays) {
@@ -75,7 +117,7 @@ TEST(RoomExposure, AFixedExposureStays) {
   const RayScene rays(solution.mesh);
   ToneMapSettings settings;
   settings.exposure_ev = -2;
-  const ToneMap tone_map = tone_map_of_room(room.scene(), solution, rays, settings);
+  const ToneMap tone_map = tone_map_of_room(room.scene(), solution, rays, settings, 0, kNever);
   EXPECT_EQ(tone_map.exposure_ev(), -2);
   EXPECT_EQ(tone_map.white(), ToneMapSettings::kFixedWhite);
 }
