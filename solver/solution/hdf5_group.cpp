@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <mutex>
 
 #include <tbb/parallel_for.h>
 
@@ -111,9 +112,19 @@ void write_chunks(hid_t dataset, const unsigned char* bytes, const Hdf5Shape& sh
   const std::size_t row_bytes = value_count(shape) / shape[0] * value_size;
   const std::size_t chunk_bytes = chunk[0] * row_bytes;
   const std::size_t chunks = (shape[0] + chunk[0] - 1) / chunk[0];
+  // Of short runs most is 0, in chunks that are all alike.
+  std::once_flag once;
+  PackedChunk zeros;
   const auto pack = [&](std::size_t i) {
     const std::size_t begin = i * chunk_bytes;
     const std::size_t size = std::min(chunk_bytes, shape[0] * row_bytes - begin);
+    if (std::all_of(bytes + begin, bytes + begin + size, [](unsigned char byte) { return byte == 0; })) {
+      std::call_once(once, [&] {
+        const std::vector<unsigned char> nothing(chunk_bytes, 0);
+        zeros = pack_chunk(nothing.data(), chunk_bytes, value_size, kDeflateLevel);
+      });
+      return zeros;
+    }
     if (size == chunk_bytes) return pack_chunk(bytes + begin, size, value_size, kDeflateLevel);
     std::vector<unsigned char> padded(chunk_bytes, 0);
     std::copy_n(bytes + begin, size, padded.begin());
