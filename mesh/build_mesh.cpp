@@ -20,6 +20,7 @@
 #include "mesh/triangulate_groups.h"
 #include "mesh/zone_sizing.h"
 #include "scenes/model/error.h"
+#include "scenes/model/memory.h"
 
 namespace reemit {
 namespace {
@@ -66,7 +67,7 @@ class BaseMeshBuilder {
       BaseTriangle t;
       for (std::size_t k = 0; k < 3; ++k) {
         t.vertex[k] = vertex(raw.vertex[k]);
-        if (piece.smooth) t.normal[k] = normal(piece.shading_normal(vertices_[raw.vertex[k]]));
+        if (piece.smooth) t.normal[k] = normal(piece.shading_normal(vertices_, vertices_[raw.vertex[k]]));
       }
       t.surface = piece.surface;
       t.face = piece.face;
@@ -98,11 +99,22 @@ class BaseMeshBuilder {
   BaseMesh mesh_;
 };
 
+// Before minutes are spent on a room that ends without memory.
+void check_memory_for(const Scene& room) {
+  // Triangles that touch nothing take this much until they are base triangles, others more.
+  constexpr double kLeastBytesPerFace = 500;
+  std::size_t faces = 0;
+  for (const Surface& surface : room.surfaces) faces += surface.faces.size();
+  check_memory(fmt::format("{}: meshing {} faces", room.source.empty() ? "room" : room.source, faces),
+               kLeastBytesPerFace * static_cast<double>(faces), available_memory());
+}
+
 }  // namespace
 
 MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const WorkWatch& watch) {
   watch.at(0);
   check_faces(room);
+  check_memory_for(room);
   if (!(settings.smallest_angle_deg >= 0 && settings.smallest_angle_deg <= 30))
     throw InputError("smallest angle", fmt::format("{} degrees is out of range", settings.smallest_angle_deg),
                      "use a value from 0 to 30");

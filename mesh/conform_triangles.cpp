@@ -1,16 +1,11 @@
 #include "mesh/conform_triangles.h"
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "mesh/edge_points.h"
 
 namespace reemit {
 namespace {
-
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-}
 
 // A triangle with vertices on its sides; side k runs from corner k to corner k+1.
 struct Studded {
@@ -44,21 +39,14 @@ void split(const Studded& s, std::size_t piece, std::vector<RawTriangle>& out) {
 }  // namespace
 
 void conform_triangles(const VertexTable& vertices, double weld, std::vector<RawTriangle>& triangles) {
-  std::vector<VertexEdge> edges;
-  std::unordered_map<std::uint64_t, std::size_t> edge_index;
-  edge_index.reserve(2 * triangles.size());
-  std::vector<std::uint32_t> ends;
-  ends.reserve(3 * triangles.size());
-  for (const RawTriangle& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(t.vertex[k], t.vertex[(k + 1) % 3]);
-      if (edge_index.try_emplace(edge_key(a, b), edges.size()).second) edges.push_back({a, b});
-      ends.push_back(t.vertex[k]);
-    }
-  }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  const EdgePoints between = vertices_on_edges(vertices, edges, ends, weld);
+  const EdgeSet edges(vertices.size(), [&](const auto& visit) {
+    for (const RawTriangle& t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) visit(t.vertex[k], t.vertex[(k + 1) % 3]);
+  });
+  std::vector<bool> is_end(vertices.size(), false);
+  for (const RawTriangle& t : triangles)
+    for (const std::uint32_t v : t.vertex) is_end[v] = true;
+  const EdgePoints between = vertices_on_edges(vertices, edges.edges(), numbers_of(is_end), weld);
 
   std::vector<RawTriangle> out;
   out.reserve(triangles.size());
@@ -67,7 +55,7 @@ void conform_triangles(const VertexTable& vertices, double weld, std::vector<Raw
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t.vertex[k];
       const std::uint32_t b = t.vertex[(k + 1) % 3];
-      const auto on_side = between.on(edge_index.at(edge_key(a, b)));
+      const auto on_side = between.on(edges.index(a, b));
       studded.on_side[k].assign(on_side.begin(), on_side.end());
       if (a > b) std::reverse(studded.on_side[k].begin(), studded.on_side[k].end());
       std::erase(studded.on_side[k], t.vertex[(k + 2) % 3]);  // of a needle lower than the weld distance

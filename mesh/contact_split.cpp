@@ -182,7 +182,7 @@ class ContactSearch {
   /// In ascending order.
   void candidates(std::size_t g, double diameter, std::vector<std::size_t>& out) {
     out.clear();
-    const PieceGroup& group = groups_.groups[g];
+    const PieceGroup group = groups_[g];
     // One weld distance more than needed, so that rounding loses nothing.
     const double widest = reach(diameter, diameter) + tolerances_.weld;
     for (const std::size_t p : group.pieces) {
@@ -217,15 +217,15 @@ ContactCuts find_contact_cuts(const Scene& scene, const std::vector<FacePiece>& 
                               const WorkStep& step, VertexTable& vertices,
                               std::span<const CurvedShape> shapes) {
   ContactCuts out;
-  out.segments.resize(groups.groups.size());
+  out.segments.resize(groups.size());
   ContactSearch search(scene, pieces, groups, tolerances, vertices, shapes);
   std::vector<std::size_t> others;
   std::vector<std::size_t> near;
   std::vector<PlanarSegment> sections;
   std::vector<PlanarSegment> raw;
-  for (std::size_t g = 0; g < groups.groups.size(); ++g) {
-    step.at(g, groups.groups.size());
-    const PieceGroup& group = groups.groups[g];
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    step.at(g, groups.size());
+    const PieceGroup group = groups[g];
     double diameter = 0;
     for (const std::size_t p : group.pieces) diameter = std::max(diameter, pieces[p].diameter);
     search.candidates(g, diameter, others);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -199,20 +200,24 @@ PieceGroups OverlapSearch::run(const WorkStep& step) {
       refuse(i, kMostPlaneCrossings, "crossings of outlines of overlapping faces lie");
   }
   out.group_of.resize(pieces_.size());
-  std::vector<std::size_t> group_of_root(pieces_.size());
-  std::vector<std::size_t> largest;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+  std::vector<std::uint32_t> largest;
+  for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
     const std::size_t root = sets.find(i);
     if (root == i) {
-      group_of_root[i] = out.groups.size();
-      out.groups.emplace_back();
+      out.group_of[i] = static_cast<std::uint32_t>(largest.size());
       largest.push_back(i);
     }
-    const std::size_t g = out.group_of[i] = group_of_root[root];
-    out.groups[g].pieces.push_back(i);
+    const std::uint32_t g = out.group_of[i] = out.group_of[root];
     if (pieces_[i].area > pieces_[largest[g]].area) largest[g] = i;
   }
-  for (std::size_t g = 0; g < out.groups.size(); ++g) out.groups[g].plane = pieces_[largest[g]].plane;
+  out.plane.reserve(largest.size());
+  for (const std::uint32_t i : largest) out.plane.push_back(&pieces_[i].plane);
+  out.first.assign(largest.size() + 1, 0);
+  for (const std::uint32_t g : out.group_of) ++out.first[g + 1];
+  std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
+  out.pieces.resize(pieces_.size());
+  std::vector<std::uint32_t> next(out.first.begin(), out.first.end() - 1);
+  for (std::uint32_t i = 0; i < pieces_.size(); ++i) out.pieces[next[out.group_of[i]]++] = i;
   return out;
 }
 

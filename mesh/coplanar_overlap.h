@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/box_tree.h"
@@ -13,14 +14,22 @@ namespace reemit {
 
 /// Pieces that lie in one plane and overlap, to be triangulated together; mostly a single piece.
 struct PieceGroup {
-  PlaneFrame plane;  ///< Of the largest piece.
-  std::vector<std::size_t> pieces;
+  const PlaneFrame& plane;  ///< Of the largest piece.
+  std::span<const std::uint32_t> pieces;
 };
 
+/// Most groups are a single piece of millions, so they share their lists. The pieces must outlive the groups.
 struct PieceGroups {
-  std::vector<PieceGroup> groups;
-  std::vector<std::size_t> group_of;     ///< By piece.
+  std::vector<std::uint32_t> pieces;     ///< Of one group after the other.
+  std::vector<std::uint32_t> first;      ///< In `pieces`, by group, and one past the last.
+  std::vector<const PlaneFrame*> plane;  ///< By group.
+  std::vector<std::uint32_t> group_of;   ///< By piece.
   std::vector<std::uint32_t> crossings;  ///< Vertices where outlines of overlapping pieces cross.
+
+  std::size_t size() const { return plane.size(); }
+  PieceGroup operator[](std::size_t g) const {
+    return {*plane[g], std::span(pieces).subspan(first[g], first[g + 1] - first[g])};
+  }
 };
 
 /// Bounding box of a piece, enlarged by `margin` [m] on all sides.

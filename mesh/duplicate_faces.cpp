@@ -1,7 +1,8 @@
 #include "mesh/duplicate_faces.h"
 
 #include <algorithm>
-#include <map>
+#include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -37,28 +38,65 @@ Outline outline_of(const FacePiece& piece) {
   return out;
 }
 
+std::uint64_t hash_of(const std::vector<Loop>& loops) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  const auto add = [&hash](std::uint64_t x) {
+    hash = (hash ^ x) * 0x9e3779b97f4a7c15ULL;
+    hash ^= hash >> 29;
+  };
+  for (const Loop& loop : loops) {
+    add(loop.size());
+    for (const std::uint32_t v : loop) add(v);
+  }
+  return hash;
+}
+
+// By piece, the first one with the same corners, which mostly is the piece itself. Only what looks alike by a
+// number is compared, so that next to nothing is kept of millions of faces.
+std::vector<std::uint32_t> first_alike(const std::vector<FacePiece>& pieces) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(pieces.size());
+  for (std::uint32_t i = 0; i < pieces.size(); ++i)
+    order.emplace_back(hash_of(outline_of(pieces[i]).loops), i);
+  std::sort(order.begin(), order.end());
+  std::vector<std::uint32_t> first(pieces.size());
+  for (auto begin = order.begin(); begin != order.end();) {
+    const auto end = std::find_if(begin, order.end(), [&](const auto& x) { return x.first != begin->first; });
+    std::vector<std::pair<std::uint32_t, std::vector<Loop>>> different;
+    for (auto it = begin; it != end; ++it) {
+      first[it->second] = it->second;
+      if (end - begin == 1) break;
+      std::vector<Loop> loops = outline_of(pieces[it->second]).loops;
+      const auto known =
+          std::find_if(different.begin(), different.end(), [&](const auto& x) { return x.second == loops; });
+      if (known != different.end())
+        first[it->second] = known->first;
+      else
+        different.emplace_back(it->second, std::move(loops));
+    }
+    begin = end;
+  }
+  return first;
+}
+
 }  // namespace
 
 void drop_duplicate_faces(const Scene& scene, std::vector<FacePiece>& pieces, MeshReport& report) {
-  struct Kept {
-    std::size_t piece;
-    bool reversed;
-  };
-  std::map<std::vector<Loop>, Kept> seen;
+  const std::vector<std::uint32_t> first_of = first_alike(pieces);
+  std::unordered_map<std::size_t, std::size_t>
+      kept;  // by first piece with the same corners, where it is another
   std::vector<bool> dropped(pieces.size(), false);
   const auto material = [&](std::size_t i) { return scene.surfaces[pieces[i].surface.index()].material; };
   FaceNotes notes;
   double area = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    Outline outline = outline_of(pieces[i]);
-    const auto [it, is_new] = seen.try_emplace(std::move(outline.loops), Kept{i, outline.reversed});
-    if (is_new) continue;
-    const std::size_t first = it->second.piece;
-    const bool opposite = outline.reversed != it->second.reversed;
+    if (first_of[i] == i) continue;
+    const std::size_t first = kept.try_emplace(first_of[i], first_of[i]).first->second;
+    const bool opposite = outline_of(pieces[i]).reversed != outline_of(pieces[first]).reversed;
     const bool replace = pieces[i].emits && !pieces[first].emits;
     const std::size_t loser = replace ? first : i;
     const std::size_t winner = replace ? i : first;
-    if (replace) it->second = {i, outline.reversed};
+    if (replace) kept[first_of[i]] = i;
     if (opposite && material(i) == material(first) && !pieces[i].emits) pieces[winner].two_sided = true;
     dropped[loser] = true;
     ++report.duplicate_faces;

@@ -1,7 +1,6 @@
 #include "mesh/edge_points.h"
 
 #include <algorithm>
-#include <unordered_map>
 #include <utility>
 
 #include "mesh/box_tree.h"
@@ -25,19 +24,27 @@ EdgePoints vertices_on_edges(const VertexTable& vertices, const std::vector<Vert
     const Vec3 along = vertices[edge.to] - from;
     const double length = along.norm();
     const auto region = ConvexRegion::of_edge(from, vertices[edge.to], weld);
+    const Vec3 edge_low = from.cwiseMin(vertices[edge.to]).array() - weld;
+    const Vec3 edge_high = from.cwiseMax(vertices[edge.to]).array() + weld;
+    // Beside the box around the edge, the region only tells boxes apart that are smaller than the edge, and
+    // single points are looked at below.
+    const auto admit = [&](const Vec3& low, const Vec3& high) {
+      if ((low.array() > edge_high.array()).any() || (high.array() < edge_low.array()).any()) return false;
+      const double size = (high - low).maxCoeff();
+      return size == 0 || size >= length || region.touches(low, high);
+    };
     found.clear();
-    tree.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
-               [&](std::uint32_t v) {
-                 if (v == edge.from || v == edge.to) return;
-                 const Vec3 offset = vertices[v] - from;
-                 const double t = offset.dot(along) / (length * length);
-                 if (t * length <= weld || (1 - t) * length <= weld) return;
-                 // Short edges would be bent visibly by the weld distance, and the area of their face
-                 // changed.
-                 constexpr double kMostBend = 1e-4;
-                 if ((offset - t * along).norm() > std::min(weld, kMostBend * length)) return;
-                 found.emplace_back(t, v);
-               });
+    tree.visit(admit, [&](std::uint32_t v) {
+      if (v == edge.from || v == edge.to) return;
+      const Vec3 offset = vertices[v] - from;
+      const double t = offset.dot(along) / (length * length);
+      if (t * length <= weld || (1 - t) * length <= weld) return;
+      // Short edges would be bent visibly by the weld distance, and the area of their face
+      // changed.
+      constexpr double kMostBend = 1e-4;
+      if ((offset - t * along).norm() > std::min(weld, kMostBend * length)) return;
+      found.emplace_back(t, v);
+    });
     std::sort(found.begin(), found.end());
     for (const auto& [t, v] : found) out.vertices.push_back(v);
     out.first.push_back(out.vertices.size());
@@ -45,26 +52,26 @@ EdgePoints vertices_on_edges(const VertexTable& vertices, const std::vector<Vert
   return out;
 }
 
+std::vector<std::uint32_t> numbers_of(const std::vector<bool>& chosen) {
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    if (chosen[i]) numbers.push_back(static_cast<std::uint32_t>(i));
+  return numbers;
+}
+
 void insert_vertices_on_edges(const VertexTable& vertices, const std::vector<std::uint32_t>& extra,
                               double weld, std::vector<FacePiece>& pieces) {
-  std::vector<VertexEdge> edges;
-  std::unordered_map<std::uint64_t, std::size_t> edge_index;
-  std::vector<std::uint32_t> candidates(extra);
-  const auto key = [](std::uint32_t a, std::uint32_t b) {
-    return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-  };
-  for (const FacePiece& piece : pieces) {
-    for (const Loop& loop : piece.loops) {
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const auto [a, b] = std::minmax(loop[i], loop[(i + 1) % loop.size()]);
-        if (edge_index.try_emplace(key(a, b), edges.size()).second) edges.push_back({a, b});
-        candidates.push_back(loop[i]);
-      }
-    }
-  }
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-  const EdgePoints inserted = vertices_on_edges(vertices, edges, candidates, weld);
+  const EdgeSet edges(vertices.size(), [&](const auto& visit) {
+    for (const FacePiece& piece : pieces)
+      for (const Loop& loop : piece.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) visit(loop[i], loop[(i + 1) % loop.size()]);
+  });
+  std::vector<bool> is_candidate(vertices.size(), false);
+  for (const std::uint32_t v : extra) is_candidate[v] = true;
+  for (const FacePiece& piece : pieces)
+    for (const Loop& loop : piece.loops)
+      for (const std::uint32_t v : loop) is_candidate[v] = true;
+  const EdgePoints inserted = vertices_on_edges(vertices, edges.edges(), numbers_of(is_candidate), weld);
 
   for (FacePiece& piece : pieces) {
     for (Loop& loop : piece.loops) {
@@ -72,7 +79,7 @@ void insert_vertices_on_edges(const VertexTable& vertices, const std::vector<std
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const std::uint32_t a = loop[i];
         const std::uint32_t b = loop[(i + 1) % loop.size()];
-        const auto between = inserted.on(edge_index.at(key(a, b)));
+        const auto between = inserted.on(edges.index(a, b));
         longer.push_back(a);
         if (a < b)
           longer.insert(longer.end(), between.begin(), between.end());

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh/edge_set.h"
 #include "mesh/face_piece.h"
 #include "mesh/vertex_table.h"
 
@@ -15,12 +16,6 @@ namespace reemit {
 void insert_vertices_on_edges(const VertexTable& vertices, const std::vector<std::uint32_t>& extra,
                               double weld, std::vector<FacePiece>& pieces);
 
-/// A straight edge between two vertices.
-struct VertexEdge {
-  std::uint32_t from;
-  std::uint32_t to;
-};
-
 /// Vertices on edges, edge by edge.
 struct EdgePoints {
   std::vector<std::size_t> first;       ///< By edge, and one past the last: where its vertices begin.
@@ -30,6 +25,9 @@ struct EdgePoints {
     return std::span(vertices).subspan(first[edge], first[edge + 1] - first[edge]);
   }
 };
+
+/// The places of a list that hold true, in ascending order.
+std::vector<std::uint32_t> numbers_of(const std::vector<bool>& chosen);
 
 /// For each edge the candidate vertices, each given once, that lie on it within `weld` metres (less on short
 /// edges) and clear of its ends.

@@ -23,13 +23,14 @@ void FacePiece::flip() {
   for (Vec3& n : corner_normal) n = -n;
 }
 
-Vec3 FacePiece::shading_normal(const Vec3& p) const {
-  const Vec3 e1 = corner[1] - corner[0];
-  const Vec3 e2 = corner[2] - corner[0];
+Vec3 FacePiece::shading_normal(const VertexTable& vertices, const Vec3& p) const {
+  const Vec3& a = vertices[corner[0]];
+  const Vec3 e1 = vertices[corner[1]] - a;
+  const Vec3 e2 = vertices[corner[2]] - a;
   const Vec3 n = e1.cross(e2);
   const double scale = 1 / n.squaredNorm();
-  const double u = n.dot((p - corner[0]).cross(e2)) * scale;
-  const double v = n.dot(e1.cross(p - corner[0])) * scale;
+  const double u = n.dot((p - a).cross(e2)) * scale;
+  const double v = n.dot(e1.cross(p - a)) * scale;
   const Vec3 sum = (1 - u - v) * corner_normal[0] + u * corner_normal[1] + v * corner_normal[2];
   const double length = sum.norm();
   return length > 1e-6 ? Vec3(sum / length) : plane.normal;

@@ -40,8 +40,8 @@ struct FacePiece {
   double diameter = 0;  ///< Diagonal of the bounding box [m].
   double area = 0;      ///< Net of holes, of the polygon as read [m2].
   bool smooth = false;  ///< Has shading normals; only triangles have.
-  std::array<Vec3, 3> corner;         ///< If smooth: the triangle the normals belong to.
-  std::array<Vec3, 3> corner_normal;  ///< If smooth: unit.
+  std::array<std::uint32_t, 3> corner;  ///< If smooth: the triangle the normals belong to, as vertices.
+  std::array<Vec3, 3> corner_normal;    ///< If smooth: unit.
   bool two_sided = false;
   bool emits = false;
   bool emits_both_sides = false;
@@ -51,7 +51,7 @@ struct FacePiece {
   /// Turns the front to the other side.
   void flip();
   /// Interpolated shading normal at a point of the plane. Pre: smooth.
-  Vec3 shading_normal(const Vec3& p) const;
+  Vec3 shading_normal(const VertexTable& vertices, const Vec3& p) const;
 };
 
 /// Half the sum of cross products around a loop: its length is the area, its direction the normal (Newell).

@@ -1,7 +1,10 @@
 #include "mesh/orientation.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -11,23 +14,75 @@
 namespace reemit {
 namespace {
 
-struct EdgeUse {
-  std::size_t piece;
-  bool forward;  // runs from the smaller to the larger vertex index
-};
-
-// Edges of the pieces of one material.
-using EdgeMap = std::unordered_map<std::uint64_t, std::vector<EdgeUse>>;
-
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-}
-
 template <class Visit>
 void for_each_edge(const FacePiece& piece, Visit visit) {
   for (const Loop& loop : piece.loops)
     for (std::size_t i = 0; i < loop.size(); ++i) visit(loop[i], loop[(i + 1) % loop.size()]);
 }
+
+struct EdgeUse {
+  std::uint32_t to;  // the larger vertex
+  std::uint32_t piece;
+  bool forward;  // runs from the smaller to the larger vertex
+};
+
+// Edges of the pieces of one material, by their smaller vertex.
+class EdgeUses {
+ public:
+  // `number` holds kNone for all vertices, and does so again when the object goes.
+  EdgeUses(const std::vector<FacePiece>& pieces, const std::vector<std::size_t>& group,
+           std::vector<std::uint32_t>& number)
+      : number_(number) {
+    const auto number_of = [&](std::uint32_t v) {
+      if (number_[v] == kNone) {
+        number_[v] = static_cast<std::uint32_t>(numbered_.size());
+        numbered_.push_back(v);
+        first_.push_back(0);
+      }
+      return number_[v];
+    };
+    first_.push_back(0);
+    for (const std::size_t i : group)
+      for_each_edge(pieces[i],
+                    [&](std::uint32_t a, std::uint32_t b) { ++first_[number_of(std::min(a, b)) + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    uses_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (const std::size_t i : group)
+      for_each_edge(pieces[i], [&](std::uint32_t a, std::uint32_t b) {
+        uses_[next[number_of(std::min(a, b))]++] = {std::max(a, b), static_cast<std::uint32_t>(i), a < b};
+      });
+    for (std::size_t v = 0; v < numbered_.size(); ++v)
+      std::stable_sort(begin_of(v), begin_of(v + 1),
+                       [](const EdgeUse& x, const EdgeUse& y) { return x.to < y.to; });
+  }
+  ~EdgeUses() {
+    for (const std::uint32_t v : numbered_) number_[v] = kNone;
+  }
+  EdgeUses(const EdgeUses&) = delete;
+  EdgeUses& operator=(const EdgeUses&) = delete;
+
+  // Of an edge that some piece has.
+  std::span<const EdgeUse> of(std::uint32_t a, std::uint32_t b) const {
+    const auto [from, to] = std::minmax(a, b);
+    const std::size_t v = number_[from];
+    const auto uses = std::span(uses_).subspan(first_[v], first_[v + 1] - first_[v]);
+    const auto range = std::ranges::equal_range(uses, to, {}, &EdgeUse::to);
+    return {range.begin(), range.end()};
+  }
+
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+ private:
+  std::vector<EdgeUse>::iterator begin_of(std::size_t v) {
+    return uses_.begin() + static_cast<std::ptrdiff_t>(first_[v]);
+  }
+
+  std::vector<std::uint32_t>& number_;   // by vertex, its place in numbered_
+  std::vector<std::uint32_t> numbered_;  // the vertices of these pieces
+  std::vector<std::size_t> first_;       // of uses_, by place in numbered_, and one past the last
+  std::vector<EdgeUse> uses_;
+};
 
 struct Shell {
   std::vector<std::size_t> pieces;
@@ -44,7 +99,9 @@ class Orientation {
         vertices_(vertices),
         pieces_(pieces),
         report_(report),
-        in_shell_(pieces.size(), false) {}
+        in_shell_(pieces.size(), false),
+        turned_(pieces.size(), false),
+        number_(vertices.size(), EdgeUses::kNone) {}
 
   void run() {
     std::vector<std::vector<std::size_t>> by_material(scene_.materials.size());
@@ -56,11 +113,7 @@ class Orientation {
 
  private:
   void orient_group(const std::vector<std::size_t>& group) {
-    EdgeMap edges;
-    for (const std::size_t i : group)
-      for_each_edge(pieces_[i], [&](std::uint32_t a, std::uint32_t b) {
-        edges[edge_key(a, b)].push_back({i, a < b});
-      });
+    const EdgeUses edges(pieces_, group, number_);
     for (const std::size_t i : group) {
       if (in_shell_[i]) continue;
       const Shell shell = collect_shell(i, edges);
@@ -71,19 +124,18 @@ class Orientation {
     }
   }
 
-  Shell collect_shell(std::size_t start, const EdgeMap& edges) {
+  Shell collect_shell(std::size_t start, const EdgeUses& edges) {
     Shell shell;
-    std::unordered_map<std::size_t, bool> turned{{start, false}};
     std::vector<std::size_t> stack{start};
     in_shell_[start] = true;
     while (!stack.empty()) {
       const std::size_t i = stack.back();
       stack.pop_back();
-      const bool turned_i = turned.at(i);
+      const bool turned_i = turned_[i];
       shell.pieces.push_back(i);
       shell.turned.push_back(turned_i);
       for_each_edge(pieces_[i], [&](std::uint32_t a, std::uint32_t b) {
-        const std::vector<EdgeUse>& uses = edges.at(edge_key(a, b));
+        const std::span<const EdgeUse> uses = edges.of(a, b);
         if (uses.size() != 2) {
           shell.closed = false;
           return;
@@ -91,11 +143,11 @@ class Orientation {
         const EdgeUse& other = uses[0].piece == i ? uses[1] : uses[0];
         if (other.piece == i) return;  // a seam
         const bool turned_other = turned_i != (other.forward == (a < b));
-        const auto [it, is_new] = turned.try_emplace(other.piece, turned_other);
-        if (is_new) {
+        if (!in_shell_[other.piece]) {
           in_shell_[other.piece] = true;
+          turned_[other.piece] = turned_other;
           stack.push_back(other.piece);
-        } else if (it->second != turned_other) {
+        } else if (turned_[other.piece] != turned_other) {
           shell.orientable = false;
         }
       });
@@ -163,6 +215,8 @@ class Orientation {
   std::vector<FacePiece>& pieces_;
   MeshReport& report_;
   std::vector<bool> in_shell_;
+  std::vector<bool> turned_;           // by piece in a shell, against the first of the shell
+  std::vector<std::uint32_t> number_;  // for EdgeUses
   FaceNotes notes_;
   double flipped_area_ = 0;
 };

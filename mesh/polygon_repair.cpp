@@ -248,7 +248,7 @@ void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner,
   }
   piece.smooth = false;
   for (std::size_t k = 0; k < 3; ++k) {
-    piece.corner[k] = vertices_[corners[k].vertex];
+    piece.corner[k] = corners[k].vertex;
     Vec3 n = corners[k].normal;
     const double length = n.norm();
     n = length > 0 ? Vec3(n / length) : piece.plane.normal;

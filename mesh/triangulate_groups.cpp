@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numeric>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -18,6 +21,39 @@ namespace reemit {
 namespace {
 
 using Segment = std::array<std::uint32_t, 2>;
+
+// A region of a group that no segment cuts.
+struct Region {
+  static constexpr std::size_t kNobody = ~std::size_t{0};
+  std::size_t winner = kNobody;  // the piece that keeps it
+  std::size_t first_loser = 0;   // of the others that cover it, in one list for all regions
+  std::size_t end_of_losers = 0;
+  double area = 0;  // [m2]
+};
+
+// Numbers of points, neighbours close together: along strips. What one point touched in memory is still near
+// when the next comes.
+std::vector<std::uint32_t> order_by_place(const std::vector<Vec2>& points) {
+  constexpr double kStrips = 64;
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  if (points.size() < 2) return order;
+  double low = points[0].y();
+  double high = low;
+  for (const Vec2& p : points) {
+    low = std::min(low, p.y());
+    high = std::max(high, p.y());
+  }
+  if (!(high > low)) return order;
+  std::vector<std::pair<int, double>> place;
+  place.reserve(points.size());
+  for (const Vec2& p : points)
+    place.emplace_back(static_cast<int>((p.y() - low) / (high - low) * kStrips), p.x());
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return place[a] != place[b] ? place[a] < place[b] : a < b;
+  });
+  return order;
+}
 
 class GroupTriangulation {
  public:
@@ -91,7 +127,7 @@ std::vector<std::uint32_t> GroupTriangulation::lift(const PieceGroup& group, con
 // Triangulates a group; returns false, leaving no trace but unused vertices, if area was lost.
 bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
                               const TriangleQuality& quality) {
-  const PieceGroup& group = groups_.groups[g];
+  const PieceGroup group = groups_[g];
   std::vector<Vec2> points;
   std::vector<std::uint32_t> ids;
   std::vector<Segment> segments;
@@ -118,41 +154,48 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
   const PlanarTriangulation cut = triangulate_planar(points, segments, inside, limited);
   ids = lift(group, cut, std::move(ids));
 
-  std::vector<std::vector<std::size_t>> covering(cut.region_point.size());
-  std::vector<std::size_t> winner(cut.region_point.size());
-  for (std::size_t r = 0; r < covering.size(); ++r) {
-    if (group.pieces.size() == 1) {
-      covering[r] = group.pieces;
-    } else {
-      outlines.covering(cut.region_point[r], covering[r]);
-      for (std::size_t& k : covering[r]) k = group.pieces[k];
+  std::vector<Region> regions(cut.region_point.size());
+  std::vector<std::size_t> losers;  // of one region after the other
+  std::vector<std::size_t> covering(group.pieces.begin(), group.pieces.end());
+  for (const std::uint32_t r : order_by_place(cut.region_point)) {
+    if (group.pieces.size() > 1) {
+      outlines.covering(cut.region_point[r], covering);
+      if (covering.empty()) continue;
+      for (std::size_t& k : covering) k = group.pieces[k];
     }
-    if (!covering[r].empty()) winner[r] = winner_of(pieces_, covering[r], room_centre_);
+    regions[r].winner = winner_of(pieces_, covering, room_centre_);
+    regions[r].first_loser = losers.size();
+    std::copy_if(covering.begin(), covering.end(), std::back_inserter(losers),
+                 [&](std::size_t p) { return p != regions[r].winner; });
+    regions[r].end_of_losers = losers.size();
   }
+  const auto losers_of = [&](const Region& region) {
+    return std::span(losers).subspan(region.first_loser, region.end_of_losers - region.first_loser);
+  };
   const std::size_t before = out_.size();
-  std::unordered_map<std::uint64_t, double> overlap;  // area by winner and loser
   for (const std::size_t p : group.pieces) meshed_[p] = covered_[p] = 0;
   for (std::size_t i = 0; i < cut.triangles.size(); ++i) {
-    const std::size_t r = cut.region[i];
-    if (covering[r].empty()) continue;
+    Region& region = regions[cut.region[i]];
+    if (region.winner == Region::kNobody) continue;
     std::array<std::uint32_t, 3> t{ids[cut.triangles[i][0]], ids[cut.triangles[i][1]],
                                    ids[cut.triangles[i][2]]};
     const double area = area_of(t);
-    for (const std::size_t p : covering[r]) {
-      if (p == winner[r]) continue;
-      covered_[p] += area;
-      overlap[(std::uint64_t{winner[r]} << 32) | p] += area;
-    }
+    region.area += area;
+    for (const std::size_t p : losers_of(region)) covered_[p] += area;
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    if (pieces_[winner[r]].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
-    meshed_[winner[r]] += area;
-    out_.push_back({t, winner[r]});
+    if (pieces_[region.winner].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
+    meshed_[region.winner] += area;
+    out_.push_back({t, region.winner});
   }
   if (!std::all_of(group.pieces.begin(), group.pieces.end(),
                    [&](std::size_t p) { return conserves_area(p); })) {
     out_.resize(before);
     return false;
   }
+  std::unordered_map<std::uint64_t, double> overlap;  // area by winner and loser
+  for (const Region& region : regions)
+    for (const std::size_t p : losers_of(region))
+      overlap[(std::uint64_t{region.winner} << 32) | p] += region.area;
   for (const auto& [pair, area] : overlap) overlap_[{pair >> 32, pair & 0xffffffff}] = area;
   return true;
 }
@@ -168,7 +211,7 @@ bool GroupTriangulation::conserves_area(std::size_t piece) const {
 }
 
 void GroupTriangulation::triangulate(std::size_t g) {
-  const PieceGroup& group = groups_.groups[g];
+  const PieceGroup group = groups_[g];
   const std::vector<Segment>& cuts = cuts_.segments[g];
   if (group.pieces.size() == 1 && cuts.empty() && pieces_[group.pieces[0]].is_triangle()) {
     const Loop& t = pieces_[group.pieces[0]].loops[0];
@@ -189,7 +232,7 @@ void GroupTriangulation::triangulate(std::size_t g) {
 }
 
 void GroupTriangulation::count_cut_pieces(std::size_t g) {
-  const PieceGroup& group = groups_.groups[g];
+  const PieceGroup group = groups_[g];
   if (cuts_.segments[g].empty()) return;
   std::vector<Vec2> middles;
   std::vector<IndexedBox> boxes;
@@ -236,8 +279,8 @@ void GroupTriangulation::report_overlaps() {
 }
 
 GroupTriangles GroupTriangulation::run(const WorkStep& step) {
-  for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
-    step.at(g, groups_.groups.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    step.at(g, groups_.size());
     triangulate(g);
     count_cut_pieces(g);
   }

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/interrupted.h"
 #include "scenes/model/stop_token.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/small_zones.h"
@@ -133,7 +136,8 @@ class BatchRun {
     books_.clear();
     const bool whole =
         settings.method == SolveMethod::kShooting ? shoot_batch(task, books_) : walk_batch(task, books_);
-    if (whole || state_.batches == 0) {
+    const bool counts = whole || state_.batches == 0;
+    if (counts) {
       add_batch(solution_.mesh, books_, emission_.watts_per_quantum, weight, solution_.sums);
       add_batch(books_, weight, solution_.audit);
       record.packets += books_.packets;
@@ -141,9 +145,11 @@ class BatchRun {
       state_.weight += weight;
       state_.batches = solution_.sums.batches;
     }
-    record.error = zone_rms_error(transport_.scene(), solution_.mesh, solution_.sums);
-    state_.error = record.error;
-    look_at_bound();
+    if (counts) {
+      record.error = zone_rms_error(transport_.scene(), solution_.mesh, solution_.sums);
+      state_.error = record.error;
+      look_at_bound();
+    }
     state_.unshot_share = solution_.audit.worst_unshot_share();
     const double before = std::exchange(state_.seconds, seconds_since(schedule_.start));
     state_.batch_seconds = (state_.seconds - before) / static_cast<double>(weight);
@@ -194,7 +200,7 @@ class BatchRun {
 /// Light on small zones, which follows the batches and takes time of its own.
 void gather_what_is_small(const Scene& scene, const RayScene& rays, const Schedule& schedule,
                           const std::atomic<bool>& interrupt, Solution& solution) {
-  if (!gathers_small_zones(solution)) return;
+  if (interrupt || !gathers_small_zones(solution)) return;
   SolveRecord& record = solution.record;
   SmallZoneLimits limits;
   limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
@@ -217,12 +223,37 @@ void compare_points_with_zones(const Scene& scene, const RayScene& rays, const S
   constexpr double kMoment = 0.5;
   const StopToken stop = schedule.token(schedule.limit_s + kMoment, interrupt);
   record.discretisation = discretisation_error(scene, rays, solution, stop);
-  // It begins with a look at every zone that cannot be cut short.
-  constexpr double kLookSeconds = 2e-6;
-  const double left = schedule.limit_s + kMoment - seconds_since(schedule.start);
-  const bool in_time = left > kLookSeconds * static_cast<double>(solution.mesh.zone_count());
-  if (!(schedule.limit_s > 0) || in_time)
-    record.gather_bias = estimate_zone_bias(scene, rays, solution, stop);
+  record.gather_bias = estimate_zone_bias(scene, rays, solution, stop);
+}
+
+void tell_of_examination(const Solution& solution, const ProgressCallback& progress) {
+  SolveProgress now;
+  now.fraction = 1;
+  now.error = solution.record.error;
+  now.error_bound = kUnknown;
+  now.unshot_share = solution.audit.worst_unshot_share();
+  now.seconds = solution.record.seconds;
+  now.seconds_left = kUnknown;
+  now.rays = solution.record.rays;
+  now.packets = solution.record.packets;
+  now.batches = solution.sums.batches;
+  now.examines = true;
+  progress(now);
+}
+
+/// Where light is lost, or that nobody looked.
+void look_for_lost_light(const TransportScene& transport, const Emission& emission,
+                         const std::atomic<bool>& interrupt, Solution& solution) {
+  const StopToken stop(interrupt);
+  std::vector<std::string>& warnings = solution.light_warnings;
+  try {
+    warnings = luminaire_warnings(transport, emission, &stop);
+    for (std::string& warning : lost_light_warnings(transport, emission, solution, &stop))
+      warnings.push_back(std::move(warning));
+  } catch (const Interrupted&) {
+    warnings.push_back(
+        "the run was interrupted before it had looked for light that is lost; solve again to know");
+  }
 }
 
 void run_matrix(const TransportScene& transport, const Emission& emission, Solution& solution,
@@ -243,9 +274,11 @@ void run_matrix(const TransportScene& transport, const Emission& emission, Solut
 
 /// `examine`: find out how good the solution is, beyond its noise, and where light is lost.
 Solution solve_room(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
-                    const ProgressCallback& progress, const std::atomic<bool>& interrupt, bool examine) {
+                    const ProgressCallback& progress, const std::atomic<bool>& interrupt,
+                    const WorkWatch& preparing, bool examine) {
   const auto start = Clock::now();
   Solution solution = empty_solution(scene, std::move(mesh), settings);
+  preparing.at(0);
   const RayScene rays(solution.mesh);
   const TransportScene transport(scene, solution.mesh, rays);
   const Emission emission = collect_emission(transport);
@@ -257,6 +290,7 @@ Solution solve_room(const Scene& scene, MeshResult mesh, const SolverSettings& s
     return solution;
   }
   refuse_closed_perfect_reflector(transport, emission, settings.seed);
+  preparing.at(1);
 
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
@@ -268,6 +302,7 @@ Solution solve_room(const Scene& scene, MeshResult mesh, const SolverSettings& s
       BatchRun(transport, emission, schedule, solution).run(progress, interrupt);
       gather_what_is_small(scene, rays, schedule, interrupt, solution);
     }
+    if (examine && progress && !interrupt) tell_of_examination(solution, progress);
     if (examine) compare_points_with_zones(scene, rays, schedule, interrupt, solution);
     const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
     solution.record.error = error.rms;
@@ -277,22 +312,21 @@ Solution solve_room(const Scene& scene, MeshResult mesh, const SolverSettings& s
     solution.record.seconds = seconds_since(start);
   });
   if (!examine) return solution;
-  solution.light_warnings = luminaire_warnings(transport, emission);
-  for (std::string& warning : lost_light_warnings(transport, emission, solution))
-    solution.light_warnings.push_back(std::move(warning));
+  look_for_lost_light(transport, emission, interrupt, solution);
   return solution;
 }
 
 }  // namespace
 
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
-               const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
-  return solve_room(scene, std::move(mesh), settings, progress, interrupt, true);
+               const ProgressCallback& progress, const std::atomic<bool>& interrupt,
+               const WorkWatch& preparing) {
+  return solve_room(scene, std::move(mesh), settings, progress, interrupt, preparing, true);
 }
 
 Solution solve_zones(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
                      const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
-  return solve_room(scene, std::move(mesh), settings, progress, interrupt, false);
+  return solve_room(scene, std::move(mesh), settings, progress, interrupt, {}, false);
 }
 
 }  // namespace reemit

@@ -4,6 +4,7 @@
 
 #include "mesh/build_mesh.h"
 #include "scenes/model/scene.h"
+#include "scenes/model/work_watch.h"
 #include "solver/solution/solution.h"
 #include "solver/solver_settings.h"
 
@@ -20,6 +21,8 @@ struct SolveProgress {
   std::uint64_t rays = 0;
   std::uint64_t packets = 0;
   std::int64_t batches = 0;
+  bool examines =
+      false;  ///< The last batch is done: how good the solution is and where light is lost comes next.
 };
 using ProgressCallback = std::function<void(const SolveProgress&)>;
 
@@ -30,9 +33,13 @@ using ProgressCallback = std::function<void(const SolveProgress&)>;
 /// when the run stops by error or packets. Fills everything in Solution except room_path, read_options and
 /// mesh_settings. Throws InputError when a luminaire shines into a sealed part of the room that reflects
 /// everything in some band: it has no solution. The matrix method has no stopping rules and nothing to return
-/// when it is interrupted: it throws Interrupted, and what compute_form_factors throws.
+/// when it is interrupted: it throws Interrupted, and what compute_form_factors throws. `preparing` is told
+/// 0 before the tree for rays is built and 1 right before the first batch; Interrupted is thrown when it asks
+/// for it there. An interrupt after the last batch cuts the examination of the solution short: what is not
+/// known then is empty in SolveRecord, and Solution::light_warnings says so of lost light.
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
-               const ProgressCallback& progress, const std::atomic<bool>& interrupt);
+               const ProgressCallback& progress, const std::atomic<bool>& interrupt,
+               const WorkWatch& preparing = {});
 
 /// The same without what `solve` then finds out about the solution: SolveRecord::discretisation and
 /// gather_bias and Solution::light_warnings stay empty. For studies that solve a small room many times, of

@@ -77,7 +77,8 @@ Reference path_reference(const Room& room, const MeshResult& mesh, const std::ve
   settings.seed = kReferenceSeed;
   const PinholeCamera camera(room.camera, room.picture_size, room.picture_size, rays);
   constexpr std::size_t kReplicates = Film::kReplicates;
-  const TileRenderer renderer(room.scene, solution, rays, camera, settings, kReplicates);
+  const StopToken stop(never);
+  const TileRenderer renderer(room.scene, solution, rays, camera, settings, kReplicates, stop);
   Film film(room.scene.bands, room.picture_size, room.picture_size, kReplicates, renderer.parts());
   const int samples = reference_samples(room, options) / static_cast<int>(kReplicates);
   const int log2_samples = std::bit_width(static_cast<unsigned>(samples - 1));

@@ -65,7 +65,8 @@ Reference gather_reference(const Room& room, const Solution& solution, const Ray
   settings.gather_rays = kReferenceGatherRays / (options.quick ? 4 : 1);
   settings.light_samples = kReferenceLightSamples / (options.quick ? 4 : 1);
   const int points = settings.points_per_replicate();
-  const VertexGatherer gatherer(room.scene, solution, rays, rings, settings, points);
+  const std::atomic<bool> never{false};
+  const VertexGatherer gatherer(room.scene, solution, rays, rings, settings, points, StopToken(never));
   const std::size_t bands = room.scene.bands.count();
   VertexData data;
   for (auto* values : {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance})

@@ -12,6 +12,7 @@
 #include "scenes/io/gltf_nodes.h"
 #include "scenes/io/surface_geometry.h"
 #include "scenes/model/error.h"
+#include "scenes/model/memory.h"
 
 namespace reemit {
 
@@ -35,6 +36,20 @@ class NodeReader {
     if (light != node.extensions.end()) read_light(placed, light->second);
     if (node.extensions.contains("EXT_lights_ies")) ++measured_;
     if (node.skin >= 0) ++skins_;
+  }
+
+  /// Faces with all instances, which may be far more than the file has.
+  std::size_t count_faces(const std::vector<GltfPlacedNode>& placed) {
+    std::size_t count = 0;
+    for (const GltfPlacedNode& p : placed) {
+      node_ = p.node;
+      const int index = gltf_.model.nodes[p.node].mesh;
+      if (index < 0) continue;
+      std::size_t faces = 0;
+      for (const GltfPrimitive& primitive : mesh(index)) faces += primitive.faces.size();
+      count += faces * gltf_instances(gltf_, accessors_, p.node).size();
+    }
+    return count;
   }
 
   void report() {
@@ -223,7 +238,12 @@ Scene read_gltf_scene(const std::filesystem::path& file, const ReadOptions& opti
   const GltfUnits units = gltf_units(gltf.model.asset.generator, options);
   read_gltf_materials(gltf, accessors, units, scene);
   NodeReader reader(gltf, accessors, units, scene);
-  for (const GltfPlacedNode& node : place_gltf_nodes(gltf, scene)) reader.read(node);
+  const std::vector<GltfPlacedNode> nodes = place_gltf_nodes(gltf, scene);
+  const std::size_t faces = reader.count_faces(nodes);
+  if (faces <= kMostFaces)
+    check_memory(fmt::format("{}: {} triangles with all instances", scene.source, faces),
+                 kLeastBytesPerFace * static_cast<double>(faces), available_memory());
+  for (const GltfPlacedNode& node : nodes) reader.read(node);
   reader.report();
   state_conversions(units, scene);
   return scene;

@@ -7,6 +7,8 @@ namespace reemit {
 
 /// Largest number of faces that a room may have after arrays and instances are expanded.
 inline constexpr std::size_t kMostFaces = 10'000'000;
+/// What a triangle of a room takes at least [bytes].
+inline constexpr double kLeastBytesPerFace = 120;
 
 /// Area of all faces [m2], holes taken off: half the length of the vector area, which for a polygon that is
 /// not planar is the area of its projection along its mean normal.

@@ -13,12 +13,12 @@ namespace {
 
 /// By zone, the distance within which a hit is continued [normalised units].
 std::vector<float> reach_of_zones(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
-                                  const GatherSettings& settings) {
+                                  const GatherSettings& settings, const StopToken* stop) {
   const ZoneMesh& mesh = rays.mesh();
   std::vector<float> reach(mesh.zone_count(), 0.0F);
   if (settings.close_hit == 0) return reach;
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
-  if (settings.continue_uneven) uneven = uneven_zones(rays, field, direct, settings.seed);
+  if (settings.continue_uneven) uneven = uneven_zones(rays, field, direct, settings.seed, stop);
   for (std::size_t z = 0; z < reach.size(); ++z)
     reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
                               : static_cast<float>(settings.close_hit) *
@@ -29,11 +29,12 @@ std::vector<float> reach_of_zones(const RayScene& rays, const RadianceField& fie
 }  // namespace
 
 HemisphereGather::HemisphereGather(const RayScene& rays, const RadianceField& field,
-                                   const DirectLight& direct, const GatherSettings& settings)
+                                   const DirectLight& direct, const GatherSettings& settings,
+                                   const StopToken* stop)
     : rays_(&rays),
       field_(&field),
       direct_(&direct),
-      reach_(reach_of_zones(rays, field, direct, settings)),
+      reach_(reach_of_zones(rays, field, direct, settings, stop)),
       most_bounces_(settings.most_bounces),
       rng_(settings.seed, RngPurpose::kHemisphere) {}
 

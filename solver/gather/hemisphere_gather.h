@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scenes/model/stop_token.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/radiance_field.h"
 #include "solver/gather/surface_point.h"
@@ -28,8 +29,10 @@ struct GatherSettings {
 /// one more cosine-distributed ray to z. Const members may be called from any thread.
 class HemisphereGather {
  public:
+  /// When `stop` (may be null) is requested, the look for uneven zones ends early, and what is gathered means
+  /// little.
   HemisphereGather(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
-                   const GatherSettings& settings);
+                   const GatherSettings& settings, const StopToken* stop = nullptr);
 
   const RayScene& rays() const { return *rays_; }
   std::size_t band_count() const { return field_->band_count(); }

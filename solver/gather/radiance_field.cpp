@@ -4,6 +4,9 @@
 #include <bit>
 #include <cmath>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
 
@@ -69,7 +72,7 @@ void RadianceField::read_zones(const Solution& solution) {
   std::vector<double> part_weight(parts_, 0.0);
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
     part_weight[g % parts_] += static_cast<double>(sums.group_weight[g]);
-  for (std::size_t z = 0; z < zones; ++z) {
+  const auto read = [&](std::size_t z) {
     const std::size_t surface = solution.mesh.zone_surface(ZoneId(z)).index();
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = z * bands_ + b;
@@ -87,7 +90,10 @@ void RadianceField::read_zones(const Solution& solution) {
         reflected_[p * values_ + k] = lambert_reflected_radiance(reflectance, irradiance);
       }
     }
-  }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, zones, 4096), [&](const auto& range) {
+    for (std::size_t z = range.begin(); z != range.end(); ++z) read(z);
+  });
 }
 
 }  // namespace reemit

@@ -133,18 +133,20 @@ bool exceeds(const Spread& spread, double share) {
 }  // namespace
 
 std::vector<std::uint8_t> uneven_zones(const RayScene& rays, const RadianceField& field,
-                                       const DirectLight& direct, std::uint64_t seed) {
+                                       const DirectLight& direct, std::uint64_t seed, const StopToken* stop) {
   const ZoneMesh& mesh = rays.mesh();
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
-  if (direct.empty()) return uneven;
+  const auto is_to_stop = [stop] { return stop != nullptr && stop->requested(); };
+  if (direct.empty() || is_to_stop()) return uneven;
   const Looker looker(rays, field, direct, seed);
   std::vector<double> harm(mesh.zone_count(), 0.0);
   tbb::parallel_for(std::size_t{0}, mesh.zone_count(), [&](std::size_t z) {
-    if (!exceeds(looker.look(ZoneId(z), kFirstLook), kDoubt)) return;
+    if (is_to_stop() || !exceeds(looker.look(ZoneId(z), kFirstLook), kDoubt)) return;
     const Spread spread = looker.look(ZoneId(z), kSecondLook);
     if (exceeds(spread, 1))
       harm[z] = std::max(spread.variance, 0.0) + spread.mean * spread.mean / (kBright * kBright);
   });
+  if (is_to_stop()) return uneven;
 
   std::vector<std::size_t> order;
   double area_left = 0;

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scenes/model/stop_token.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/radiance_field.h"
 #include "solver/trace/ray_scene.h"
@@ -14,8 +15,10 @@ namespace reemit {
 /// hides their bright or their dark part. Found with shadow rays of its own: the choice does not follow the
 /// noise of the zones, so that continuing gather rays there favours no side. The zones with the largest
 /// differences come first where they would make up more than a twentieth of the area. Eight shadow rays per
-/// zone, more on the candidates; the same for any number of threads.
+/// zone, more on the candidates; the same for any number of threads. When `stop` (may be null) is requested
+/// it returns early, and what it returns means nothing.
 std::vector<std::uint8_t> uneven_zones(const RayScene& rays, const RadianceField& field,
-                                       const DirectLight& direct, std::uint64_t seed);
+                                       const DirectLight& direct, std::uint64_t seed,
+                                       const StopToken* stop = nullptr);
 
 }  // namespace reemit

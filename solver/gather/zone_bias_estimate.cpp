@@ -60,8 +60,8 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
   const std::size_t of_point = kReplicates * bands;
   std::vector<float> differences(points.size() * of_point, 0.0F);  // by point, replicate, band
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-    if (stop != nullptr && stop->requested()) return;
     for (std::size_t r = 0; r < kReplicates; ++r) {
+      if (stop != nullptr && stop->requested()) return;
       const PointSampler sampler(seed, RngPurpose::kZoneBias, i, static_cast<int>(r),
                                  std::countr_zero(std::bit_ceil(rays)));
       const PathKey key{i, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % parts)};
@@ -103,7 +103,8 @@ std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& r
   if (probes.size() < ZoneBiasEffort::kPoints) return std::nullopt;
   const RadianceField field(scene, solution, rays, ZoneSums::kGroups);
   const DirectLight direct(scene, rays);
-  const HemisphereGather gather(rays, field, direct, GatherSettings{.seed = seed});
+  const HemisphereGather gather(rays, field, direct, GatherSettings{.seed = seed}, &stop);
+  if (stop.requested()) return std::nullopt;
   const PathTracer path(rays, field, direct, seed);
 
   // Probes stand for areas of their own, and their sum is the mean radiance times the area.

@@ -85,14 +85,16 @@ ProbeSet reflected_probes(const Solution& solution) {
 /// Shows every probe with its power [W] and the surface it left; no surface for lights without area.
 template <class Visit>
 void visit_probes(const TransportScene& transport, const Emission& emission, const Solution& solution,
-                  const Visit& visit) {
+                  const StopToken* stop, const Visit& visit) {
   std::uint32_t stream = 1;
-  for (const ProbeSet& probes : {emitted_probes(transport, emission), reflected_probes(solution)})
-    trace_probes(transport, probes.flight, stream++, [&](const ProbeRay& probe) {
+  for (const ProbeSet& probes : {emitted_probes(transport, emission), reflected_probes(solution)}) {
+    const auto visit_one = [&](const ProbeRay& probe) {
       const ZoneId zone = probes.flight.sources[probe.source].zone;
       const double watts = probes.watts[probe.source];
       if (watts > 0) visit(probe, watts, zone.valid() ? transport.mesh().zone_surface(zone) : SurfaceId());
-    });
+    };
+    trace_probes(transport, probes.flight, stream++, visit_one, stop);
+  }
 }
 
 /// Something lost, before those in one place are put together.
@@ -181,13 +183,13 @@ bool has_directional(const Scene& scene) {
 }
 
 void warn_of_escapes(const TransportScene& transport, const Emission& emission, const Solution& solution,
-                     std::vector<std::string>& warnings) {
+                     const StopToken* stop, std::vector<std::string>& warnings) {
   const EnergyAudit& audit = solution.audit;
   double escaped = 0;
   for (const BandAudit& band : audit.bands) escaped += audit.watts(band, band.total_escaped());
   const double share = escaped / emitted_watts(audit);
   if (!(share > kLeastShare)) return;
-  const EscapedLight found = find_escapes(transport, emission, solution);
+  const EscapedLight found = find_escapes(transport, emission, solution, stop);
   const bool by_gaps = 2 * found.through_gaps > share && found.through_openings < kMostlyClosedShare;
   const bool closed =
       found.through_openings < kClosedShare && share < kOutdoorShare && !has_directional(transport.scene());
@@ -202,7 +204,7 @@ void warn_of_escapes(const TransportScene& transport, const Emission& emission, 
 }
 
 void warn_of_backs(const TransportScene& transport, const Emission& emission, const Solution& solution,
-                   std::vector<std::string>& warnings) {
+                   const StopToken* stop, std::vector<std::string>& warnings) {
   const Scene& scene = transport.scene();
   const EnergyAudit& audit = solution.audit;
   std::vector<double> watts(scene.surfaces.size(), 0.0);
@@ -218,7 +220,7 @@ void warn_of_backs(const TransportScene& transport, const Emission& emission, co
   if (order.size() > kMostPlaces) order.resize(kMostPlaces);
 
   std::vector<std::vector<Loss>> hits(order.size());
-  visit_probes(transport, emission, solution, [&](const ProbeRay& probe, double power, SurfaceId from) {
+  visit_probes(transport, emission, solution, stop, [&](const ProbeRay& probe, double power, SurfaceId from) {
     if (!probe.met || !is_back(transport, probe.hit)) return;
     const auto at =
         std::find(order.begin(), order.end(), transport.mesh().triangle(probe.hit.triangle).surface.index());
@@ -255,15 +257,15 @@ void warn_of_backs(const TransportScene& transport, const Emission& emission, co
 
 }  // namespace
 
-EscapedLight find_escapes(const TransportScene& transport, const Emission& emission,
-                          const Solution& solution) {
+EscapedLight find_escapes(const TransportScene& transport, const Emission& emission, const Solution& solution,
+                          const StopToken* stop) {
   struct Escape {
     Vec3f origin, direction;
     double watts;
     SurfaceId from;
   };
   std::vector<Escape> escapes;
-  visit_probes(transport, emission, solution, [&](const ProbeRay& probe, double watts, SurfaceId from) {
+  visit_probes(transport, emission, solution, stop, [&](const ProbeRay& probe, double watts, SurfaceId from) {
     if (!probe.met) escapes.push_back({probe.origin, probe.direction, watts, from});
   });
   const RayScene& rays = transport.rays();
@@ -273,6 +275,7 @@ EscapedLight find_escapes(const TransportScene& transport, const Emission& emiss
   EscapedLight found;
   std::vector<Loss> losses;
   for (const Escape& escape : escapes) {
+    end_if_requested(stop);
     const ExitPlace exit = find_exit(rays, escape.origin, escape.direction);
     Loss loss{escape.watts, exit.point, exit.width, LightLoss::Way::kGap, {}};
     if (exit.found && exit.width < kNarrow * diagonal) {
@@ -292,11 +295,12 @@ EscapedLight find_escapes(const TransportScene& transport, const Emission& emiss
 }
 
 std::vector<std::string> lost_light_warnings(const TransportScene& transport, const Emission& emission,
-                                             const Solution& solution) {
+                                             const Solution& solution, const StopToken* stop) {
+  end_if_requested(stop);
   std::vector<std::string> warnings;
   if (!(emitted_watts(solution.audit) > 0)) return warnings;
-  warn_of_escapes(transport, emission, solution, warnings);
-  warn_of_backs(transport, emission, solution, warnings);
+  warn_of_escapes(transport, emission, solution, stop, warnings);
+  warn_of_backs(transport, emission, solution, stop, warnings);
   return warnings;
 }
 

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/model/stop_check.h"
 #include "solver/shoot/emission.h"
 #include "solver/solution/solution.h"
 
@@ -22,21 +23,22 @@ struct LightLoss {
 };
 
 /// Places where light leaves the room, by probes that leave luminaires and zones as their light does; largest
-/// first. Deterministic.
+/// first. Deterministic. Throws Interrupted when `stop` (may be null) is requested.
 struct EscapedLight {
   std::vector<LightLoss> places;
   double through_gaps = 0;      ///< Share of the emitted power [0,1], by probes.
   double through_openings = 0;  ///< Share of the emitted power [0,1], by probes.
 };
-EscapedLight find_escapes(const TransportScene& transport, const Emission& emission,
-                          const Solution& solution);
+EscapedLight find_escapes(const TransportScene& transport, const Emission& emission, const Solution& solution,
+                          const StopToken* stop = nullptr);
 
 /// Warnings about light that a room loses although its faces close, with share, place and surfaces: light
 /// that escapes, and light that ends on backs of one-sided faces. Faces count as closed when at most 1 % of
 /// the light leaves through openings, or 5 % if most of what leaves does so through gaps. A room with an
 /// opening (the Cornell box) loses light by intent and gets no warning, nor does one that is mostly outdoors.
-/// Where directional lights shine in from outside, only gaps count. Reads Solution::audit and sums.
+/// Where directional lights shine in from outside, only gaps count. Reads Solution::audit and sums. Throws
+/// Interrupted when `stop` (may be null) is requested.
 std::vector<std::string> lost_light_warnings(const TransportScene& transport, const Emission& emission,
-                                             const Solution& solution);
+                                             const Solution& solution, const StopToken* stop = nullptr);
 
 }  // namespace reemit

@@ -38,11 +38,12 @@ std::string warning_of(const OpeningLoss& loss, const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> luminaire_warnings(const TransportScene& transport, const Emission& emission) {
+std::vector<std::string> luminaire_warnings(const TransportScene& transport, const Emission& emission,
+                                            const StopToken* stop) {
   const Scene& scene = transport.scene();
   std::vector<std::string> warnings;
-  for (const OpeningLoss& loss : opening_losses(transport)) warnings.push_back(warning_of(loss, scene));
-  for (const SelfLitLuminaire& lamp : self_lit_luminaires(transport, emission))
+  for (const OpeningLoss& loss : opening_losses(transport, stop)) warnings.push_back(warning_of(loss, scene));
+  for (const SelfLitLuminaire& lamp : self_lit_luminaires(transport, emission, stop))
     warnings.push_back(fmt::format(
         "luminaire {}{}: {} of its power shines onto the lamp itself; a closed lamp should emit from its "
         "outer side only",

@@ -206,13 +206,14 @@ OpeningLoss loss_of(const TransportScene& transport, std::uint32_t light, const 
 
 }  // namespace
 
-std::vector<OpeningLoss> opening_losses(const TransportScene& transport) {
+std::vector<OpeningLoss> opening_losses(const TransportScene& transport, const StopToken* stop) {
   const std::vector<PunctualLight>& lights = transport.scene().lights;
   std::vector<OpeningLoss> losses;
   if (lights.empty()) return losses;
   const auto packets = std::clamp(static_cast<std::uint32_t>(kMostPackets / lights.size()),
                                   kLeastPacketsPerLight, kPacketsPerLight);
   for (std::size_t l = 0; l < lights.size(); ++l) {
+    end_if_requested(stop);
     const std::optional<Vec3f> mouth = std::visit(MouthOf{transport.rays()}, lights[l]);
     if (!mouth) continue;
     const OpeningLoss loss = loss_of(transport, static_cast<std::uint32_t>(l), *mouth, packets);

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scenes/model/stop_check.h"
 #include "solver/shoot/transport_scene.h"
 
 namespace reemit {
@@ -21,7 +22,7 @@ struct OpeningLoss {
 
 /// Of all luminaires without area but directional ones, those that lose more than one part in 1000 or lie in
 /// a surface. The error of a share is 1 % at most (4096 packets each; at least 64 where there are very many
-/// luminaires).
-std::vector<OpeningLoss> opening_losses(const TransportScene& transport);
+/// luminaires). Throws Interrupted when `stop` (may be null) is requested.
+std::vector<OpeningLoss> opening_losses(const TransportScene& transport, const StopToken* stop = nullptr);
 
 }  // namespace reemit

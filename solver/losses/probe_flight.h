@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/model/stop_check.h"
 #include "solver/shoot/flight.h"
 #include "solver/trace/ray_scene.h"
 
@@ -38,10 +39,11 @@ void trace_probes(const RayScene& scene, const Ray16& rays, int count, const Vis
 }
 
 /// Traces the packets of `flight` in one thread and shows each to `visit`, in order. The same room gives the
-/// same rays always: the random numbers are fixed. `stream` tells flights apart.
+/// same rays always: the random numbers are fixed. `stream` tells flights apart. Throws Interrupted when
+/// `stop` (may be null) is requested.
 template <class Visit>
 void trace_probes(const TransportScene& transport, const Flight& flight, std::uint32_t stream,
-                  const Visit& visit) {
+                  const Visit& visit, const StopToken* stop = nullptr) {
   constexpr std::uint64_t kSeed = 0;
   const FlightNumbers numbers(SamplingKind::kSobol, kSeed, 0, stream);
   std::vector<std::int64_t> quanta(16 * transport.bands());
@@ -49,6 +51,8 @@ void trace_probes(const TransportScene& transport, const Flight& flight, std::ui
   FlightCursor cursor(transport, flight, 0);
   std::size_t source = 0;
   for (std::uint32_t first = 0; first < flight.packets(); first += 16) {
+    constexpr std::uint32_t kNowAndThen = 4096;
+    if (first % kNowAndThen == 0) end_if_requested(stop);
     const int count = static_cast<int>(std::min<std::uint32_t>(16, flight.packets() - first));
     Ray16 rays;
     cursor.start16(first, count, numbers, rays, quanta.data());

@@ -22,11 +22,13 @@ Box box_of(const Surface& surface) {
 /// its first surface.
 class LampGroups {
  public:
-  LampGroups(const Scene& scene, const std::vector<bool>& emits) : sets_(scene.surfaces.size()) {
+  LampGroups(const Scene& scene, const std::vector<bool>& emits, const StopToken* stop)
+      : sets_(scene.surfaces.size()) {
     const Vec3 slack = Vec3::Constant(1e-6 * bounds(scene).size().norm());
     std::vector<Box> boxes;
     for (std::size_t s = 0; s < emits.size(); ++s) {
       if (!emits[s]) continue;
+      end_if_requested(stop);
       const Box box = box_of(scene.surfaces[s]);
       for (std::size_t k = 0; k < luminous_.size(); ++k) {
         const bool touch = ((box.min - slack - boxes[k].max).array() <= 0).all() &&
@@ -61,7 +63,8 @@ class LampGroups {
 
 }  // namespace
 
-std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission) {
+std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission,
+                                                  const StopToken* stop) {
   const Scene& scene = transport.scene();
   const ZoneMesh& mesh = transport.mesh();
   const std::size_t bands = transport.bands();
@@ -79,14 +82,14 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transpor
     watts.push_back(power);
     emits[mesh.zone_surface(emission.sources[s].zone).index()] = true;
   }
-  LampGroups lamps(scene, emits);
+  LampGroups lamps(scene, emits, stop);
   if (lamps.extents().empty()) return {};
   const auto packets =
       static_cast<std::uint32_t>(std::clamp<std::size_t>(1024 * lamps.extents().size(), 4096, 65536));
   const Flight flight = plan_emission_flight(surfaces, bands, packets, 0.5);
   std::map<std::size_t, double> sent;
   std::map<std::size_t, double> kept;
-  trace_probes(transport, flight, 0, [&](const ProbeRay& probe) {
+  const auto visit = [&](const ProbeRay& probe) {
     const std::size_t lamp = lamps.of(mesh.zone_surface(flight.sources[probe.source].zone).index());
     const double power = watts[probe.source] / static_cast<double>(flight.first_packet[probe.source + 1] -
                                                                    flight.first_packet[probe.source]);
@@ -94,7 +97,8 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transpor
     if (!probe.met) return;
     const std::size_t to = mesh.triangle(probe.hit.triangle).surface.index();
     if (emits[to] && lamps.of(to) == lamp) kept[lamp] += power;
-  });
+  };
+  trace_probes(transport, flight, 0, visit, stop);
   const double room = bounds(scene).size().norm();
   std::vector<SelfLitLuminaire> found;
   for (const auto& [lamp, box] : lamps.extents())

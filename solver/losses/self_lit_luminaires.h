@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "scenes/model/stop_check.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
 
@@ -13,7 +14,9 @@ struct SelfLitLuminaire {
 };
 
 /// Lamps smaller than the room that send a quarter of their power or more onto themselves: closed ones whose
-/// inner side emits. A room whose walls emit is none. The error of a share is 2 % at most.
-std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission);
+/// inner side emits. A room whose walls emit is none. The error of a share is 2 % at most. Throws Interrupted
+/// when `stop` (may be null) is requested.
+std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission,
+                                                  const StopToken* stop = nullptr);
 
 }  // namespace reemit

@@ -179,18 +179,20 @@ void find_percentile(const ZoneSums& sums, std::size_t bands, ZoneError& result)
     for (std::size_t i = first; i < first + bands; ++i) reached = reached || total(i) > 0;
     if (!reached) ++result.unreached;
   }
+  if (sums.batches < 2) return;
   const auto w = static_cast<double>(sums.weight());
-  std::vector<float> lit;
-  for (std::size_t b = 0; b < bands; ++b) {
-    lit.clear();
+  std::vector<double> percentiles(bands, 0.0);
+  tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t b) {
+    std::vector<float> lit;
     for (std::size_t i = b; i < values; i += bands)
       if (total(i) > 0)
         lit.push_back(static_cast<float>(std::sqrt(variance_of_mean(sums, i)) * w / total(i)));
-    if (lit.empty()) continue;
+    if (lit.empty()) return;
     const auto at = lit.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(lit.size() - 1));
     std::nth_element(lit.begin(), at, lit.end());
-    result.percentile_95 = std::max(result.percentile_95, static_cast<double>(*at));
-  }
+    percentiles[b] = static_cast<double>(*at);
+  });
+  for (const double p : percentiles) result.percentile_95 = std::max(result.percentile_95, p);
 }
 
 }  // namespace

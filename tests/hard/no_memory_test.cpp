@@ -36,6 +36,35 @@ TEST(NoMemory, EndsWithCode3) {
   }
 }
 
+/// A mesh of one strip of triangles, whose corners are in strip.bin, and `copies` nodes that place it.
+std::string instanced_gltf(std::size_t corners, std::size_t copies) {
+  const std::string bytes = std::to_string(corners * 3 * sizeof(float));
+  std::string file =
+      R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "strip.bin", "byteLength": )" + bytes +
+      R"(}], "bufferViews": [{"buffer": 0, "byteLength": )" + bytes +
+      R"(}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" +
+      std::to_string(corners) +
+      R"(}], "meshes": [{"primitives": [{"mode": 5, "attributes": {"POSITION": 0}}]}], "nodes": [)";
+  for (std::size_t i = 0; i < copies; ++i) file += (i == 0 ? "" : ",") + std::string(R"({"mesh": 0})");
+  return file + "]}";
+}
+
+TEST(NoMemory, InstancesThatCannotFitAreRefusedBeforeTheyAreMade) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs the address space that this test takes away";
+#endif
+  const TempFolder folder;
+  constexpr std::size_t kTriangles = 1900;
+  folder.write("room.gltf", instanced_gltf(kTriangles + 2, 5000));
+  folder.write("strip.bin", std::string((kTriangles + 2) * 3 * sizeof(float), '\0'));
+  RunOptions options;
+  options.most_memory = 1'200'000'000;
+  const ProgramRun run = run_reemit({"info", (folder / "room.gltf").string()}, options);
+  EXPECT_EQ(run.exit_code, 3) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("9500000 triangles with all instances: takes at least"));
+  EXPECT_THAT(run.err, HasSubstr("GB are free"));
+}
+
 TEST(NoMemory, AbsurdlySmallZonesAreRefusedAtOnce) {
   const TempFolder folder;
   folder.write("room.json", small_json_room());

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 
 #include "mesh/build_mesh.h"
 #include "mesh/convex_region.h"
+#include "mesh/edge_set.h"
 #include "mesh/loop_bins.h"
 #include "tests/mesh/test_room.h"
 #include "tests/support/refusal.h"
@@ -150,6 +152,71 @@ TEST(LargeRooms, MeshingTellsHowFarItIsAndStopsWhenAsked) {
   std::atomic<bool> interrupt{false};
   const auto stop_half_way = [&](double done) { interrupt = done > 0.5; };
   EXPECT_THROW(build_mesh(room.scene(), {}, WorkWatch(stop_half_way, StopToken(interrupt))), Interrupted);
+}
+
+TEST(LargeRooms, ManySquaresInOnePlaneKeepTheAreaOfTheirUnion) {
+  TestRoom room;
+  const MaterialId grey = room.material();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(0, 4);
+  constexpr int kSquares = 400;
+  constexpr double kSide = 0.5;
+  std::vector<Vec2> corners;
+  std::vector<double> xs;
+  std::vector<double> ys;
+  for (int i = 0; i < kSquares; ++i) {
+    const Vec2 p = corners.emplace_back(anywhere(random), anywhere(random));
+    room.polygon("square", grey, floor_rectangle(p.x(), p.y(), p.x() + kSide, p.y() + kSide));
+    for (const double shift : {0.0, kSide}) {
+      xs.push_back(p.x() + shift);
+      ys.push_back(p.y() + shift);
+    }
+  }
+  std::sort(xs.begin(), xs.end());
+  std::sort(ys.begin(), ys.end());
+  double covered = 0;
+  for (std::size_t i = 0; i + 1 < xs.size(); ++i)
+    for (std::size_t k = 0; k + 1 < ys.size(); ++k) {
+      const Vec2 middle(0.5 * (xs[i] + xs[i + 1]), 0.5 * (ys[k] + ys[k + 1]));
+      if (std::any_of(corners.begin(), corners.end(), [&](const Vec2& c) {
+            return (middle - c).minCoeff() > 0 && (middle - c).maxCoeff() < kSide;
+          }))
+        covered += (xs[i + 1] - xs[i]) * (ys[k + 1] - ys[k]);
+    }
+  const MeshResult r = build_mesh(room.scene());
+  double meshed = 0;
+  double removed = 0;
+  for (const SurfaceAreas& areas : r.report.surfaces) {
+    meshed += areas.meshed;
+    removed += areas.removed;
+  }
+  EXPECT_NEAR(meshed, covered, 1e-5 * covered);
+  EXPECT_NEAR(meshed + removed, kSquares * kSide * kSide, 1e-5 * covered);
+  EXPECT_THAT(r.report.warnings, testing::ElementsAre(HasSubstr("lie in one plane")));
+}
+
+TEST(LargeRooms, EdgesOfPolygonsAreNumberedOnce) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<std::uint32_t> vertex(0, 60);
+  std::vector<std::array<std::uint32_t, 2>> given;
+  std::set<std::array<std::uint32_t, 2>> expected;
+  for (int i = 0; i < 500; ++i) {
+    const std::uint32_t a = vertex(random);
+    const std::uint32_t b = vertex(random);
+    if (a == b) continue;
+    given.push_back({a, b});
+    expected.insert({std::min(a, b), std::max(a, b)});
+  }
+  const EdgeSet edges(61, [&](const auto& visit) {
+    for (const auto& [a, b] : given) visit(a, b);
+  });
+  ASSERT_EQ(edges.edges().size(), expected.size());
+  for (const auto& [a, b] : given) {
+    const VertexEdge& edge = edges.edges()[edges.index(a, b)];
+    EXPECT_EQ(edge.from, std::min(a, b));
+    EXPECT_EQ(edge.to, std::max(a, b));
+    EXPECT_EQ(edges.index(b, a), edges.index(a, b));
+  }
 }
 
 }  // namespace

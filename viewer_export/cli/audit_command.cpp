@@ -6,13 +6,12 @@
 
 #include "scenes/model/interrupted.h"
 #include "solver/gather/direct_audit.h"
-#include "solver/solution/room_of_solution.h"
-#include "solver/solution/solution_file.h"
 #include "viewer_export/cli/audit_report.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/direct_audit_report.h"
 #include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/progress.h"
 
@@ -29,8 +28,8 @@ struct AuditOptions {
 
 /// Throws Interrupted.
 DirectAudit compare_direct_light(const AuditOptions& options, const Solution& solution) {
-  const Scene scene = read_room_of(solution, options.solution, options.room);
-  const RayScene rays(solution.mesh);
+  const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
+  const RayScene rays = build_rays(solution.mesh, options.style);
   const InterruptGuard interrupt;
   Progress progress("comparing direct light", progress_style(options.style.quiet, options.style.verbose));
   DirectAudit audit = audit_direct_light(
@@ -42,7 +41,7 @@ DirectAudit compare_direct_light(const AuditOptions& options, const Solution& so
 }
 
 ExitCode run_audit(const AuditOptions& options) {
-  const Solution solution = load_solution(options.solution);
+  const Solution solution = load_solution(options.solution, options.style);
   std::optional<DirectAudit> direct;
   if (options.direct) direct = compare_direct_light(options, solution);
   if (options.style.json) {

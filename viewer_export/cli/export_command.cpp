@@ -11,13 +11,12 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
-#include "solver/solution/room_of_solution.h"
-#include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/form_factor_export.h"
 #include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
@@ -85,15 +84,16 @@ ExitCode run_export(const ExportOptions& options) {
                                 options.vertex.threads, options.style});
   }
   check_outputs(options);
-  const Solution solution = load_solution(options.solution);
-  const Scene scene = read_room_of(solution, options.solution, options.room);
+  const Solution solution = load_solution(options.solution, options.style);
+  const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs)
     check_output_file(output, scene.source);  // a .glb may be the room
-  const RayScene rays(solution.mesh);
+  const RayScene rays = build_rays(solution.mesh, options.style);
 
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;
   Progress progress("gathering", progress_style(options.style.quiet, options.style.verbose));
+  if (!options.vertex.average_zones) progress.begin_step(0, "looking at the zones");
   VertexData data = gather_vertices(
       scene, solution, rays, options.vertex, [&progress](double done) { progress.update(done); },
       interrupt.requested());

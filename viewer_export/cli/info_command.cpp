@@ -7,18 +7,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mesh/build_mesh.h"
-#include "scenes/io/scene_reader.h"
 #include "scenes/model/error.h"
 #include "solver/losses/luminaire_warnings.h"
-#include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/light_report.h"
+#include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/luminaire_list.h"
 #include "viewer_export/cli/messages.h"
-#include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/room_report.h"
 #include "viewer_export/cli/solution_report.h"
 
@@ -42,10 +39,11 @@ struct RoomOfSolution {
   std::vector<LuminaireRow> luminaires;
 };
 
-RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& file) {
+RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& file,
+                         const OutputStyle& style) {
   RoomOfSolution room;
   try {
-    room.luminaires = list_luminaires(read_room_of(solution, file), solution.mesh_report);
+    room.luminaires = list_luminaires(load_room_of(solution, file, {}, style), solution.mesh_report);
   } catch (const InputError& problem) {
     const std::string message = problem.what();
     room.status = message.substr(0, message.find('\n'));
@@ -56,8 +54,8 @@ RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& 
 
 ExitCode show_solution(const InfoOptions& options) {
   const std::filesystem::path& file = options.files.front();
-  const Solution solution = load_solution(file);
-  const RoomOfSolution room = find_room(solution, file);
+  const Solution solution = load_solution(file, options.style);
+  const RoomOfSolution room = find_room(solution, file, options.style);
   if (options.style.json) {
     nlohmann::ordered_json json = solution_json(solution, file, room.status);
     add_light(json, solution, room.luminaires);
@@ -72,10 +70,8 @@ ExitCode show_solution(const InfoOptions& options) {
 }
 
 ExitCode show_room(const InfoOptions& options) {
-  const Scene scene = read_scene(options.files, options.read);
-  Progress meshing("meshing", progress_style(options.style.quiet, options.style.verbose));
-  const MeshResult meshed = build_mesh(scene, {}, WorkWatch([&](double done) { meshing.update(done); }));
-  meshing.finish();
+  const Scene scene = load_room(options.files, options.read, options.style);
+  const MeshResult meshed = mesh_room(scene, {}, options.style);
   const std::vector<std::string> light_warnings = luminaire_warnings(scene, meshed.mesh);
   if (options.style.json) {
     print_json(room_json(scene, meshed, light_warnings));

@@ -43,7 +43,7 @@ void end_on_signals() {
   if (std::signal(SIGHUP, handle_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
-InterruptGuard::InterruptGuard() {
+void InterruptGuard::begin() {
   stop_requested = false;
   stops_by_asking = true;
 }

@@ -12,11 +12,15 @@ void end_on_signals();
 /// once. At most one may live at a time: signals belong to the process.
 class InterruptGuard {
  public:
-  InterruptGuard();
+  InterruptGuard() { begin(); }
+  /// Of work that begins later: until begin(), signals end the program as if there were no guard.
+  enum Later { kLater };
+  explicit InterruptGuard(Later /*later*/) {}
   ~InterruptGuard();
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
+  void begin();
   /// Becomes true at the first signal.
   const std::atomic<bool>& requested() const;
 };

@@ -13,13 +13,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "solver/solution/room_of_solution.h"
-#include "solver/solution/solution_file.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
@@ -95,6 +94,7 @@ class Renderer {
     if (!options_.style.quiet) warn_of_eye(job.camera);
     Progress progress("rendering " + job.camera.name,
                       progress_style(options_.style.quiet, options_.style.verbose));
+    progress.begin_step(0, "looking at the zones");
     const auto on_progress = [&progress](const StillProgress& now) {
       progress.update(now.fraction, fmt::format("error {}", percent_text(now.error)));
     };
@@ -172,9 +172,9 @@ ExitCode run_render(RenderOptions options) {
     image_format_of(options.output);  // refuses an unknown one before the work
     check_output_file(options.output, options.solution);
   }
-  const Solution solution = load_solution(options.solution);
-  const Scene scene = read_room_of(solution, options.solution, options.room);
-  const RayScene rays(solution.mesh);
+  const Solution solution = load_solution(options.solution, options.style);
+  const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
+  const RayScene rays = build_rays(solution.mesh, options.style);
   const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, scene, rays, into_folder));
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) check_output_file(job.file, options.solution);

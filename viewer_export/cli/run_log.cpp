@@ -64,6 +64,7 @@ RunLog::RunLog(const std::filesystem::path& file, const Run& run)
 }
 
 void RunLog::add(const SolveProgress& now) {
+  if (now.examines) return;
   if (matrix_) {
     const int hundredths = static_cast<int>(100 * now.fraction);
     if (hundredths <= hundredths_) return;

@@ -8,8 +8,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "mesh/build_mesh.h"
-#include "scenes/io/scene_reader.h"
 #include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
@@ -19,6 +17,7 @@
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/interrupt.h"
+#include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
@@ -66,6 +65,10 @@ ProgressCallback progress_callback(Progress& progress, SolveMethod method) {
       progress.update(now.fraction, "form factors", now.seconds_left);
     };
   return [&progress](const SolveProgress& now) {
+    if (now.examines) {
+      progress.begin_step(1, "looking at how good it is");
+      return;
+    }
     progress.update(
         now.fraction,
         fmt::format("error {}, {:.3g} Mrays/s", percent_text(now.error), now.rays_per_second * 1e-6),
@@ -92,7 +95,7 @@ ExitCode run_solve(const SolveOptions& options) {
     check_solution_output(options.output, file);
     if (!options.log.empty()) RunLog::check(options.log, file, options.output);
   }
-  const Scene scene = read_scene(options.room, options.read);
+  const Scene scene = load_room(options.room, options.read, options.style);
   if (!options.style.quiet) {
     print_warnings(scene.warnings);
     for (const std::string& note : scene.notes) print_note(note);
@@ -102,9 +105,7 @@ ExitCode run_solve(const SolveOptions& options) {
     mesh_settings.default_zone_count = kMatrixZoneCount;
     mesh_settings.exact_shapes = false;  // form factors are those of flat zones
   }
-  Progress meshing("meshing", progress_style(options.style.quiet, options.style.verbose));
-  MeshResult meshed = build_mesh(scene, mesh_settings, WorkWatch([&](double done) { meshing.update(done); }));
-  meshing.finish();
+  MeshResult meshed = mesh_room(scene, mesh_settings, options.style);
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
 
   SolverSettings settings = options.solver;
@@ -118,14 +119,27 @@ ExitCode run_solve(const SolveOptions& options) {
   if (!options.log.empty())
     log.emplace(options.log, RunLog::Run{options.room.front(), options.output, settings,
                                          meshed.mesh.zone_count(), scene.bands});
-  const InterruptGuard interrupt;
-  Progress progress("solving", progress_style(options.style.quiet, options.style.verbose));
+  // Before the first batch there is nothing to keep.
+  InterruptGuard interrupt(InterruptGuard::kLater);
+  const ProgressStyle style = progress_style(options.style.quiet, options.style.verbose);
+  std::optional<WaitingLine> preparation;
+  Progress progress("solving", style);
+  const WorkWatch preparing([&](double done) {
+    if (done < 1) {
+      preparation.emplace("building the tree for rays", style);
+      return;
+    }
+    preparation.reset();
+    interrupt.begin();
+    progress.begin_step(0, matrix ? "form factors" : "first batch");
+  });
   const ProgressCallback show = progress_callback(progress, settings.method);
   const ProgressCallback report = [&](const SolveProgress& now) {
     show(now);
     if (log) log->add(now);
   };
-  Solution solution = solve(scene, std::move(meshed), settings, report, interrupt.requested());
+  Solution solution = solve(scene, std::move(meshed), settings, report, interrupt.requested(), preparing);
+  preparation.reset();
   progress.finish();
   if (log) log->finish(solution);
   const auto stored = [](const std::filesystem::path& file) {
@@ -136,7 +150,10 @@ ExitCode run_solve(const SolveOptions& options) {
     solution.more_room_paths.push_back(stored(options.room[i]));
   solution.read_options = options.read;
   solution.mesh_settings = mesh_settings;
-  write_output([&] { save_solution(solution, options.output); });
+  {
+    const WaitingLine saving("saving " + options.output.filename().string(), style);
+    write_output([&] { save_solution(solution, options.output); });
+  }
 
   if (!options.style.quiet) print_warnings(solution.light_warnings);
   if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {

@@ -13,6 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/stop_token.h"
 #include "viewer_export/still/tile_renderer.h"
 
 namespace reemit {
@@ -147,13 +148,22 @@ class Rendering {
     });
   }
 
+  /// Somebody waits for it, so of a large picture not every pixel has a ray of its own.
   void fill_what_is_missing() {
+    constexpr std::size_t kMostRays = 500'000;
     has_zone_values_ = true;
-    const auto width = static_cast<std::size_t>(film_.image().width);
-    tbb::parallel_for(std::size_t{0}, tiles_.size(), [&](std::size_t i) {
-      const Tile& t = tiles_[i].tile;
-      const std::size_t corner = static_cast<std::size_t>(t.y0) * width + static_cast<std::size_t>(t.x0);
-      if (film_.image().samples[corner] == 0) renderer_.fill_with_zones(t, film_);
+    std::vector<const Tile*> missing;
+    for (const TileState& state : tiles_) {
+      const std::size_t corner =
+          static_cast<std::size_t>(state.tile.y0) * static_cast<std::size_t>(film_.image().width) +
+          static_cast<std::size_t>(state.tile.x0);
+      if (film_.image().samples[corner] == 0) missing.push_back(&state.tile);
+    }
+    std::size_t width = 1;
+    while (width < Tile::kSize && missing.size() * Tile::kSize * Tile::kSize / (width * width) > kMostRays)
+      width *= 2;
+    tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+      renderer_.fill_with_zones(*missing[i], static_cast<int>(width), film_);
     });
   }
 
@@ -264,7 +274,8 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   StillImage image;
   arena.execute([&] {
-    const TileRenderer renderer(scene, solution, rays, pinhole, settings, replicates);
+    const StopToken stop(interrupt);
+    const TileRenderer renderer(scene, solution, rays, pinhole, settings, replicates, stop);
     Film film(scene.bands, width, height, replicates, renderer.parts());
     Rendering rendering(renderer, settings, film, progress, interrupt);
     rendering.run();

@@ -28,16 +28,19 @@ struct TileRenderer::PixelSums {
 };
 
 TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
-                           const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates)
+                           const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates,
+                           const StopToken& stop)
     : rays_(&rays),
       camera_(&camera),
       settings_(&settings),
+      stop_(&stop),
       field_(scene, solution, rays, settings.integrator == Integrator::kPath ? 1 : replicates),
       direct_(scene, rays, {settings.light_selection}),
       gather_(rays, field_, direct_,
               // The other integrators gather nothing; without close hits there is nothing to prepare.
               GatherSettings{.close_hit = settings.integrator == Integrator::kGather ? settings.close_hit : 0,
-                             .seed = settings.seed}),
+                             .seed = settings.seed},
+              &stop),
       path_(rays, field_, direct_, settings.seed) {}
 
 void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
@@ -56,6 +59,7 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
     for (int x = tile.x0; x < tile.x1; ++x) {
       const std::size_t pixel = static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x);
       for (int r = block.first_replicate; r < last_replicate; ++r, next += 3 * bands) {
+        if (stop_->requested()) return;
         PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
                        pixel,
                        static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
@@ -89,14 +93,19 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
                  static_cast<std::size_t>(r), *next_found++);
 }
 
-void TileRenderer::fill_with_zones(const Tile& tile, Film& film) const {
+void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) const {
   const std::size_t bands = field_.band_count();
   std::vector<float> values(3 * bands);
   GatherBatch batch(gather_);
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
-                                static_cast<std::size_t>(x);
+  const auto pixel_at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
+           static_cast<std::size_t>(x);
+  };
+  for (int y0 = tile.y0; y0 < tile.y1; y0 += width)
+    for (int x0 = tile.x0; x0 < tile.x1; x0 += width) {
+      const int x1 = std::min(x0 + width, tile.x1);
+      const int y1 = std::min(y0 + width, tile.y1);
+      const std::size_t pixel = pixel_at(x0, y0);
       std::fill(values.begin(), values.end(), 0.0F);
       float* direct = values.data();
       PixelSums sums{
@@ -112,8 +121,9 @@ void TileRenderer::fill_with_zones(const Tile& tile, Film& film) const {
           direct + 2 * bands,
           nullptr,
           {.direct = direct, .indirect = direct + bands, .albedo = direct + 2 * bands, .samples = 1}};
-      add_sample(x + 0.5, y + 0.5, 0, sums, batch);
-      film.add(pixel, 0, sums.found);
+      add_sample(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0, sums, batch);
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) film.add(pixel_at(x, y), 0, sums.found);
     }
 }
 
@@ -214,8 +224,11 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const 
       scale.push_back(seen && radiance > 0 ? 1 / radiance : 0);
     }
   }
-  return estimate_zone_bias(gather_, path_, points, scale,
-                            ZoneBiasEffort::of(camera_rays * (2 + settings_->gathers)), settings_->seed);
+  const ZoneBias bias =
+      estimate_zone_bias(gather_, path_, points, scale,
+                         ZoneBiasEffort::of(camera_rays * (2 + settings_->gathers)), settings_->seed, stop_);
+  if (stop_->requested()) return std::nullopt;
+  return bias;
 }
 
 SurfacePoint TileRenderer::seen_point(const Hit& hit) const {

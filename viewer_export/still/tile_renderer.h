@@ -30,9 +30,11 @@ struct SampleBlock {
 /// Renders tiles. Const members may be called from any thread for different tiles.
 class TileRenderer {
  public:
-  /// `replicates`: of each pixel, a power of two; each reads its own part of the zone solution.
+  /// `replicates`: of each pixel, a power of two; each reads its own part of the zone solution. `stop` must
+  /// outlive the renderer; once it is requested, tiles hold zone values or what they had before.
   TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
-               const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates);
+               const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates,
+               const StopToken& stop);
 
   TileRenderer(const TileRenderer&) = delete;
   TileRenderer& operator=(const TileRenderer&) = delete;
@@ -40,12 +42,13 @@ class TileRenderer {
   /// Parts of the zone solution that the replicates read in turn.
   std::size_t parts() const { return field_.parts(); }
 
-  /// Adds samples first .. first+samples-1 of the replicates of the block to each pixel of the tile.
+  /// Adds samples first .. first+samples-1 of the replicates of the block to each pixel of the tile; none if
+  /// it was told to stop.
   void render(const Tile& tile, const SampleBlock& block, Film& film) const;
 
-  /// For a picture that ends before its first pass does: gives each pixel of a tile the zone values that a
-  /// ray through its middle sees, as one sample of its first replicate.
-  void fill_with_zones(const Tile& tile, Film& film) const;
+  /// For a picture that ends before its first pass does: gives each square of `width` pixels of a tile the
+  /// zone values that a ray through its middle sees, as one sample of the first replicate of each pixel.
+  void fill_with_zones(const Tile& tile, int width, Film& film) const;
 
   /// What the zones do to the picture on the film, relative as StillSettings::error_target: from points seen
   /// through pixels all over it, with about two per cent of the rays of the picture. Exactly 0 for a
@@ -62,6 +65,7 @@ class TileRenderer {
   const RayScene* rays_;
   const PinholeCamera* camera_;
   const StillSettings* settings_;
+  const StopToken* stop_;
   RadianceField field_;
   DirectLight direct_;
   HemisphereGather gather_;

@@ -18,16 +18,18 @@ constexpr float kPi = std::numbers::pi_v<float>;
 }  // namespace
 
 VertexGatherer::VertexGatherer(const Scene& scene, const Solution& solution, const RayScene& rays,
-                               const VertexRings& rings, const VertexSettings& settings, int most_points)
+                               const VertexRings& rings, const VertexSettings& settings, int most_points,
+                               const StopToken& stop)
     : rays_(rays),
       rings_(rings),
       settings_(settings),
       field_(scene, solution, rays, kReplicates),
       direct_(scene, rays),
-      gather_(rays, field_, direct_,
-              // Means of zones gather nothing; without close hits there is nothing to prepare.
-              GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit,
-                             .seed = settings.seed}),
+      gather_(
+          rays, field_, direct_,
+          // Means of zones gather nothing; without close hits there is nothing to prepare.
+          GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit, .seed = settings.seed},
+          &stop),
       path_(rays, field_, direct_, settings.seed),
       bands_(scene.bands.count()),
       gathers_per_point_(settings.gathers_per_point()),

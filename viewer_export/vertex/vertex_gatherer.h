@@ -25,9 +25,10 @@ class VertexGatherer {
   /// standard error.
   static constexpr std::size_t kReplicates = ZoneSums::kGroups;
 
-  /// `most_points`: per replicate, a power of two that no block exceeds.
+  /// `most_points`: per replicate, a power of two that no block exceeds. Preparing ends early when `stop` is
+  /// requested, and what is gathered then means little.
   VertexGatherer(const Scene& scene, const Solution& solution, const RayScene& rays, const VertexRings& rings,
-                 const VertexSettings& settings, int most_points);
+                 const VertexSettings& settings, int most_points, const StopToken& stop);
   VertexGatherer(const VertexGatherer&) = delete;
   VertexGatherer& operator=(const VertexGatherer&) = delete;
 

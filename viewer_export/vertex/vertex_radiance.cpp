@@ -135,7 +135,7 @@ VertexData gather_vertices(const Scene& scene, const Solution& solution, const R
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
     const VertexGatherer gatherer(scene, solution, rays, rings, settings,
-                                  VertexRefinement::most_points(settings));
+                                  VertexRefinement::most_points(settings), StopToken(interrupt));
     average_zones(solution, rings, gatherer.field(), data);
     if (settings.average_zones) {
       if (const auto difference = solution.record.discretisation)

@@ -62,6 +62,19 @@ TEST(UnevenZones, are_none_in_a_furnace_or_without_light) {
     for (const std::uint8_t u : uneven_of(furnace.room(), solution)) EXPECT_EQ(u, 0);
 }
 
+TEST(UnevenZones, are_not_looked_for_once_somebody_waits) {
+  const LampByCeiling room(0.8);
+  const Solution solution = room.solved(400'000, 1);
+  const RayScene rays(solution.mesh);
+  const RadianceField field(room.builder().scene(), solution, rays);
+  const DirectLight direct(room.builder().scene(), rays);
+  const std::atomic<bool> interrupt{true};
+  const StopToken stop(interrupt);
+  const std::vector<std::uint8_t> uneven = uneven_zones(rays, field, direct, 1, &stop);
+  EXPECT_EQ(uneven.size(), solution.mesh.zone_count());
+  EXPECT_EQ(std::count(uneven.begin(), uneven.end(), 1), 0);
+}
+
 /// Only the ceiling reflects, so its zones hold their direct light without a bias, and all the floor gets
 /// besides the lamp's own light comes from the parts of the ceiling that the lamp does not hide.
 TEST(UnevenZones, floor_gets_what_is_seen_of_the_ceiling_beside_a_lamp) {

@@ -128,5 +128,19 @@ TEST_F(LostLight, WarningsDoNotDependOnThreads) {
   EXPECT_EQ(solved(1).light_warnings, solved(2).light_warnings);
 }
 
+TEST_F(LostLight, IsNotLookedForOnceSomebodyWaits) {
+  box(false);
+  ceiling(0, 1);
+  ceiling(1.004, 4);
+  const Solution solution = solved();
+  const RayScene rays(solution.mesh);
+  const TransportScene transport(room_.scene(), solution.mesh, rays);
+  const Emission emission = collect_emission(transport);
+  const std::atomic<bool> interrupt{true};
+  const StopToken stop(interrupt);
+  EXPECT_THROW(find_escapes(transport, emission, solution, &stop), Interrupted);
+  EXPECT_THROW(lost_light_warnings(transport, emission, solution, &stop), Interrupted);
+}
+
 }  // namespace
 }  // namespace reemit

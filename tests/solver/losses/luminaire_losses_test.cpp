@@ -1,3 +1,5 @@
+#include <atomic>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -188,6 +190,18 @@ TEST_F(LuminaireLosses, RoomsWhoseWallsEmitAreNoLamps) {
   const MaterialId glowing = room_.material("glowing", 0.5, 10, true);
   room_.box(Vec3(0, 0, 0), Vec3(1, 1, 1), {glowing, glowing, glowing, glowing, glowing, glowing}, 2);
   EXPECT_THAT(self_lit(room_), IsEmpty());
+}
+
+TEST_P(LuminaireLosses, AreNotLookedForOnceSomebodyWaits) {
+  walls(GetParam());
+  light(troffer(Vec3(2, 3, 2)));
+  const MeshResult meshed = room_.mesh();
+  const RayScene rays(meshed.mesh);
+  const TransportScene transport(room_.scene(), meshed.mesh, rays);
+  const std::atomic<bool> interrupt{true};
+  const StopToken stop(interrupt);
+  EXPECT_THROW(opening_losses(transport, &stop), Interrupted);
+  EXPECT_THROW(luminaire_warnings(transport, collect_emission(transport), &stop), Interrupted);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // Batches that are cut off, and rooms whose light goes on for ever: the books stay exact, and somebody is
 // told.
 
+#include <atomic>
 #include <chrono>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,6 +20,7 @@ namespace {
 
 using test::RoomBuilder;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -118,6 +121,44 @@ TEST(CutOff, BatchThatIsCutOffIsLeftOutIfThereAreOthers) {
     EXPECT_LE(s.audit.unshot_share(), settings.stop_share);
     expect_exact_books(s);
   }
+}
+
+TEST(CutOff, InterruptAfterTheLastBatchCutsTheExaminationShort) {
+  std::atomic<bool> interrupt{false};
+  SolverSettings settings;
+  settings.packets = 200'000;
+  const RoomBuilder room = sealed_room(0.5);
+  bool examines = false;
+  const auto stop_then = [&](const SolveProgress& p) {
+    examines = examines || p.examines;
+    interrupt = examines;
+  };
+  const Solution s = solve(room.scene(), room.mesh(), settings, stop_then, interrupt);
+  EXPECT_TRUE(examines);
+  EXPECT_EQ(s.record.stopped, StopReason::kPacketCount);
+  EXPECT_GT(s.sums.batches, 1);
+  EXPECT_LT(s.record.error_bound, 1);
+  EXPECT_FALSE(s.record.discretisation.has_value());
+  EXPECT_FALSE(s.record.gather_bias.has_value());
+  EXPECT_THAT(s.light_warnings,
+              ElementsAre(HasSubstr("interrupted before it had looked for light that is lost")));
+  expect_exact_books(s);
+}
+
+TEST(CutOff, WhatComesBeforeTheFirstBatchCanBeStoppedWithoutAResult) {
+  SolverSettings settings;
+  settings.packets = 10'000;
+  const RoomBuilder room = sealed_room(0.5);
+  const std::atomic<bool> never{false};
+  const std::atomic<bool> already{true};
+  EXPECT_THROW(solve(room.scene(), room.mesh(), settings, nullptr, never, WorkWatch({}, StopToken(already))),
+               Interrupted);
+  std::vector<double> told;
+  const Solution s = solve(
+      room.scene(), room.mesh(), settings, [&](const SolveProgress&) { EXPECT_EQ(told.back(), 1); }, never,
+      WorkWatch([&](double done) { told.push_back(done); }));
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.back(), 1);
 }
 
 TEST(CutOff, BounceLimitKeepsTheBooksAndIsNoErrorTarget) {

@@ -300,6 +300,26 @@ TEST(RenderStill, interrupted_stills_are_noisier_stills) {
   }
 }
 
+TEST(RenderStill, stills_interrupted_at_once_show_the_zones) {
+  // The larger one has more pixels than are traced one by one then.
+  const RoomBuilder room = furnace(3, 0.5, 8);
+  const Solution solution = test::uniform_solution(room, 3, 3);
+  const RayScene rays(solution.mesh);
+  const std::atomic<bool> already{true};
+  for (const int width : {70, 1030}) {
+    StillSettings settings = small_still(Integrator::kGather, 16);
+    settings.width = width;
+    settings.height = width;
+    const StillImage image = render_still(room.scene(), solution, rays, inside(), settings, {}, already);
+    EXPECT_NO_THROW(check_consistent(image));
+    for (const float l : image.radiance) ASSERT_NEAR(l, 6 / pi, 1e-5);
+    for (const float s : image.samples) ASSERT_EQ(s, 1);
+    for (const float d : image.depth) ASSERT_GT(d, 0);
+    EXPECT_EQ(image.info.settings.back().first, "interrupted");
+    EXPECT_FALSE(image.info.zones.has_value());
+  }
+}
+
 TEST(RenderStill, refuses_nonsense) {
   const RoomBuilder room = furnace(1, 0.5, 1);
   const Solution solution = test::dark_solution(room);

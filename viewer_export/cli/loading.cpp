@@ -1,0 +1,70 @@
+#include "viewer_export/cli/loading.h"
+
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "solver/solution/room_of_solution.h"
+#include "solver/solution/solution_file.h"
+#include "viewer_export/cli/progress.h"
+
+namespace reemit::cli {
+namespace fs = std::filesystem;
+namespace {
+
+/// Steps that are shorter than this are not worth a word [s].
+constexpr double kQuietSeconds = 1;
+
+ProgressStyle style_of(const OutputStyle& style) {
+  return progress_style(style.quiet, style.verbose);
+}
+
+/// "reading hall.obj (412 MB)".
+std::string reading(const std::vector<fs::path>& files) {
+  constexpr double kMegabyte = 1e6;
+  double bytes = 0;
+  for (const fs::path& file : files) {
+    std::error_code unknown;
+    const std::uintmax_t size = fs::file_size(file, unknown);
+    if (!unknown) bytes += static_cast<double>(size);
+  }
+  std::string text = "reading";
+  if (!files.empty()) text += " " + files.front().filename().string();
+  if (files.size() > 1) text += fmt::format(" and {} more", files.size() - 1);
+  if (bytes >= kMegabyte) text += fmt::format(" ({:.0f} MB)", bytes / kMegabyte);
+  return text;
+}
+
+}  // namespace
+
+Scene load_room(const std::vector<fs::path>& files, const ReadOptions& options, const OutputStyle& style) {
+  const WaitingLine line(reading(files), style_of(style));
+  return read_scene(files, options);
+}
+
+MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style) {
+  Progress progress("meshing", style_of(style), kQuietSeconds);
+  return build_mesh(scene, settings, WorkWatch([&](double done) { progress.update(done); }));
+}
+
+Solution load_solution(const fs::path& file, const OutputStyle& style) {
+  const WaitingLine line(reading({file}), style_of(style));
+  return reemit::load_solution(file);
+}
+
+Scene load_room_of(const Solution& solution, const fs::path& solution_file,
+                   const std::vector<fs::path>& override, const OutputStyle& style) {
+  const std::vector<std::string> stored = room_files(solution);
+  const WaitingLine line(
+      reading(override.empty() ? std::vector<fs::path>(stored.begin(), stored.end()) : override),
+      style_of(style));
+  return read_room_of(solution, solution_file, override);
+}
+
+RayScene build_rays(const ZoneMesh& mesh, const OutputStyle& style) {
+  const WaitingLine line("building the tree for rays", style_of(style));
+  return RayScene(mesh);
+}
+
+}  // namespace reemit::cli

@@ -1,0 +1,25 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "mesh/build_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "solver/solution/solution.h"
+#include "solver/trace/ray_scene.h"
+#include "viewer_export/cli/command_options.h"
+
+namespace reemit::cli {
+
+// What comes before a command can begin, with a line of progress where it takes longer than a second. Nothing
+// guards it: a signal ends the program at once.
+
+Scene load_room(const std::vector<std::filesystem::path>& files, const ReadOptions& options,
+                const OutputStyle& style);
+MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style);
+Solution load_solution(const std::filesystem::path& file, const OutputStyle& style);
+/// As read_room_of.
+Scene load_room_of(const Solution& solution, const std::filesystem::path& solution_file,
+                   const std::vector<std::filesystem::path>& override, const OutputStyle& style);
+RayScene build_rays(const ZoneMesh& mesh, const OutputStyle& style);
+
+}  // namespace reemit::cli
