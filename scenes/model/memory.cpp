@@ -65,7 +65,7 @@ void check_memory(const std::string& what, double needed, std::optional<std::uin
   if (!available || needed <= static_cast<double>(*available)) return;
   constexpr double kGigabyte = 1e9;
   throw ResourceError(what,
-                      fmt::format("takes at least {:.3g} GB of memory, and {:.3g} GB are free",
+                      fmt::format("takes at least {:.2g} GB of memory, and {:.2g} GB are free",
                                   needed / kGigabyte, static_cast<double>(*available) / kGigabyte),
                       "Simplify the room, close other programs, or use a machine with more memory.");
 }

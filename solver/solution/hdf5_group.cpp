@@ -1,13 +1,7 @@
 #include "solver/solution/hdf5_group.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
-#include <mutex>
-
-#include <tbb/parallel_for.h>
-
-#include "solver/solution/packed_chunk.h"
 
 namespace reemit {
 namespace {
@@ -84,65 +78,18 @@ Hdf5Id timeless_properties(hid_t kind) {
   return properties;
 }
 
-/// Pre: the shape holds values.
-std::vector<hsize_t> chunk_of(const Hdf5Shape& shape, std::size_t value_size) {
-  std::vector<hsize_t> chunk(shape.begin(), shape.end());
-  const std::uint64_t row_bytes = value_count(shape) / shape[0] * value_size;
-  chunk[0] = std::clamp<std::uint64_t>(kChunkBytes / row_bytes, 1, shape[0]);
-  return chunk;
-}
-
 Hdf5Id dataset_properties(const Hdf5Shape& shape, std::size_t value_size) {
   Hdf5Id properties = timeless_properties(H5P_DATASET_CREATE);
   if (value_count(shape) == 0) return properties;  // nothing to cut into chunks
-  const std::vector<hsize_t> chunk = chunk_of(shape, value_size);
+  std::vector<hsize_t> chunk(shape.begin(), shape.end());
+  const std::uint64_t row_bytes = value_count(shape) / shape[0] * value_size;
+  chunk[0] = std::clamp<std::uint64_t>(kChunkBytes / row_bytes, 1, shape[0]);
   const char* what = "cannot set dataset properties";
   check_hdf5(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), what);
   check_hdf5(H5Pset_shuffle(properties.get()), what);
   check_hdf5(H5Pset_deflate(properties.get(), kDeflateLevel), what);
   check_hdf5(H5Pset_fletcher32(properties.get()), what);
   return properties;
-}
-
-// Writes values whose bytes stand in memory as in the file, chunk by chunk, each packed in a thread of its
-// own.
-void write_chunks(hid_t dataset, const unsigned char* bytes, const Hdf5Shape& shape, std::size_t value_size,
-                  const std::string& what) {
-  const std::vector<hsize_t> chunk = chunk_of(shape, value_size);
-  const std::size_t row_bytes = value_count(shape) / shape[0] * value_size;
-  const std::size_t chunk_bytes = chunk[0] * row_bytes;
-  const std::size_t chunks = (shape[0] + chunk[0] - 1) / chunk[0];
-  // Of short runs most is 0, in chunks that are all alike.
-  std::once_flag once;
-  PackedChunk zeros;
-  const auto pack = [&](std::size_t i) {
-    const std::size_t begin = i * chunk_bytes;
-    const std::size_t size = std::min(chunk_bytes, shape[0] * row_bytes - begin);
-    if (std::all_of(bytes + begin, bytes + begin + size, [](unsigned char byte) { return byte == 0; })) {
-      std::call_once(once, [&] {
-        const std::vector<unsigned char> nothing(chunk_bytes, 0);
-        zeros = pack_chunk(nothing.data(), chunk_bytes, value_size, kDeflateLevel);
-      });
-      return zeros;
-    }
-    if (size == chunk_bytes) return pack_chunk(bytes + begin, size, value_size, kDeflateLevel);
-    std::vector<unsigned char> padded(chunk_bytes, 0);
-    std::copy_n(bytes + begin, size, padded.begin());
-    return pack_chunk(padded.data(), chunk_bytes, value_size, kDeflateLevel);
-  };
-  constexpr std::size_t kAtOnce = 64;
-  std::vector<PackedChunk> packed(std::min(kAtOnce, chunks));
-  std::vector<hsize_t> offset(shape.size(), 0);
-  for (std::size_t first = 0; first < chunks; first += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, chunks - first);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { packed[i] = pack(first + i); });
-    for (std::size_t i = 0; i < count; ++i) {
-      offset[0] = (first + i) * chunk[0];
-      check_hdf5(H5Dwrite_chunk(dataset, H5P_DEFAULT, packed[i].skipped, offset.data(),
-                                packed[i].bytes.size(), packed[i].bytes.data()),
-                 what);
-    }
-  }
 }
 
 // Deflate packs at most 1032 bytes into one, so a larger claim comes from a damaged file.
@@ -293,13 +240,8 @@ void Hdf5Group::write(const std::string& name, std::span<const T> values, const 
     throw std::invalid_argument(full_name(name) + ": the number of values does not fit the shape");
   Hdf5Id dataset = create_dataset(name, hdf5_type<T>(), sizeof(T), shape, unit, description);
   const std::string what = "cannot write the dataset " + full_name(name);
-  if constexpr (std::endian::native == std::endian::little) {
-    if (!values.empty())
-      write_chunks(dataset.get(), reinterpret_cast<const unsigned char*>(values.data()), shape, sizeof(T),
-                   what);
-  } else if (!values.empty()) {
+  if (!values.empty())
     check_hdf5(H5Dwrite(dataset.get(), hdf5_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
-  }
   dataset.close(what);
 }
 

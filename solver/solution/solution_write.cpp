@@ -2,9 +2,6 @@
 #include <new>
 #include <stdexcept>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "scenes/io/output_file.h"
 #include "scenes/model/error.h"
 #include "solver/solution/file_seal.h"
@@ -199,13 +196,11 @@ template <class Function>
 void put_zone_bands(const Hdf5Group& zones, const Solution& solution, const char* name,
                     const char* description, Function&& value_of) {
   const std::size_t bands = solution.bands.count();
-  std::vector<float> values(solution.mesh.zone_count() * bands);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, solution.mesh.zone_count(), 4096),
-                    [&](const auto& range) {
-                      for (std::size_t z = range.begin(); z != range.end(); ++z)
-                        for (std::size_t band = 0; band < bands; ++band)
-                          values[z * bands + band] = static_cast<float>(value_of(ZoneId(z), band));
-                    });
+  std::vector<float> values;
+  values.reserve(solution.mesh.zone_count() * bands);
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    for (std::size_t band = 0; band < bands; ++band)
+      values.push_back(static_cast<float>(value_of(ZoneId(z), band)));
   put_bands(zones, name, values, bands, "W/m2", description);
 }
 
