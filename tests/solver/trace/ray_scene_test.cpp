@@ -1,5 +1,9 @@
 #include "solver/trace/ray_scene.h"
 
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "solver/sampling/counter_rng.h"
@@ -61,8 +65,16 @@ TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
       rays.dy[i] = d.y();
       rays.dz[i] = d.z();
     }
+    // Lanes beyond the count may hold anything.
+    for (float* lanes : {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz})
+      std::fill_n(lanes + 13, 3, std::numeric_limits<float>::quiet_NaN());
+    std::memset(&hits, 0x80, sizeof hits);
     scene.closest16(rays, 13, hits);
     for (int i = 0; i < 13; ++i) {
+      // A bool that nobody has set is no bool, and to read it is undefined.
+      unsigned char front = 0;
+      std::memcpy(&front, &hits.front[i], 1);
+      ASSERT_LE(front, 1);
       Hit hit;
       const bool found =
           scene.closest({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, hit);
