@@ -51,7 +51,7 @@ bool is_unsigned_integer(int type) {
 }  // namespace
 
 void GltfAccessors::fail(const std::string& where, const std::string& problem) const {
-  throw InputError(fmt::format("{}: {}", gltf_.file, where), problem,
+  throw InputError(gltf_.at(where), problem,
                    "Check the file with the Khronos glTF validator, or export it anew.");
 }
 
@@ -79,7 +79,7 @@ std::vector<double> GltfAccessors::numbers(int index, int components, const std:
     fail(where, fmt::format("there is no accessor {}", index));
   }
   const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
-  const std::string what = fmt::format("{}, accessor {}", where, index);
+  const std::string what = fmt::format("{}: accessor {}", where, index);
   const int found = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
   if (found != components)
     fail(what, fmt::format("{} components per element, expected {}", found, components));

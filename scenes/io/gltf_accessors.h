@@ -8,8 +8,8 @@
 
 namespace reemit {
 
-/// Reads accessors with every index, offset and length checked against what the file holds. `where` names the
-/// user of the accessor for the InputError.
+/// Reads accessors with every index, offset and length checked against what the file holds. `where` is the
+/// JSON pointer of what uses the accessor, for the InputError.
 class GltfAccessors {
  public:
   explicit GltfAccessors(const GltfModel& gltf) : gltf_(gltf) {}

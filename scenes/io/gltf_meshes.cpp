@@ -37,7 +37,7 @@ void check_compression(const GltfModel& gltf, const tinygltf::Primitive& primiti
   const bool compressed = primitive.extensions.contains("KHR_draco_mesh_compression");
   const auto index = static_cast<std::size_t>(positions);
   if (compressed && index < gltf.model.accessors.size() && gltf.model.accessors[index].bufferView < 0) {
-    throw InputError(fmt::format("{}: {}", gltf.file, where), "the geometry is compressed with Draco",
+    throw InputError(gltf.at(where), "the geometry is compressed with Draco",
                      "Decompress it first, for example with: gltf-transform copy in.glb out.glb");
   }
 }
@@ -49,8 +49,8 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
   const std::size_t materials = gltf.model.materials.size();
   const bool has_material = source.material >= 0;
   if (has_material && static_cast<std::size_t>(source.material) >= materials) {
-    throw InputError(fmt::format("{}: {}", gltf.file, where),
-                     fmt::format("there is no material {}", source.material), "Export the file anew.");
+    throw InputError(gltf.at(where + "/material"), fmt::format("there is no material {}", source.material),
+                     "Export the file anew.");
   }
   primitive.material = MaterialId(has_material ? static_cast<std::size_t>(source.material) : materials);
   if (source.mode < TINYGLTF_MODE_TRIANGLES || source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
@@ -62,23 +62,22 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
   if (attribute(source, "COLOR_0") >= 0) ++omissions.coloured;
   const int positions = attribute(source, "POSITION");
   if (positions < 0) {
-    throw InputError(fmt::format("{}: {}", gltf.file, where), "the primitive has no positions",
-                     "Export the file anew.");
+    throw InputError(gltf.at(where), "the primitive has no positions", "Export the file anew.");
   }
   check_compression(gltf, source, positions, where);
-  primitive.positions = accessors.vec3(positions, where + " POSITION");
+  primitive.positions = accessors.vec3(positions, where + "/attributes/POSITION");
   if (const int normals = attribute(source, "NORMAL"); normals >= 0) {
-    primitive.normals = accessors.vec3(normals, where + " NORMAL");
+    primitive.normals = accessors.vec3(normals, where + "/attributes/NORMAL");
     if (primitive.normals.size() != primitive.positions.size()) {
       throw InputError(
-          fmt::format("{}: {}", gltf.file, where),
+          gltf.at(where + "/attributes/NORMAL"),
           fmt::format("{} normals for {} positions", primitive.normals.size(), primitive.positions.size()),
           "Export the file anew.");
     }
   }
   std::vector<std::uint32_t> order;
   if (source.indices >= 0) {
-    order = accessors.indices(source.indices, primitive.positions.size(), where + " indices");
+    order = accessors.indices(source.indices, primitive.positions.size(), where + "/indices");
   } else {
     order.resize(primitive.positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -103,7 +102,7 @@ std::vector<GltfPrimitive> read_gltf_mesh(const GltfModel& gltf, const GltfAcces
   const tinygltf::Mesh& source = gltf.model.meshes[static_cast<std::size_t>(mesh)];
   std::vector<GltfPrimitive> primitives;
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
-    const std::string where = fmt::format("mesh {} \"{}\", primitive {}", mesh, source.name, i);
+    const std::string where = fmt::format("/meshes/{}/primitives/{}", mesh, i);
     primitives.push_back(read_primitive(gltf, accessors, source.primitives[i], where, omissions));
   }
   return primitives;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/io/gltf_document.h"
 #include "scenes/io/json_cursor.h"
 #include "scenes/io/text_file.h"
 #include "scenes/model/error.h"
@@ -176,6 +177,9 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
     JsonCursor(document, loaded.file).expect_object();
     check_extensions(document, loaded.file);
     used_extensions = extension_names(document, "extensionsUsed");
+    // Where geometry is compressed, the advice of the parser's refusal says more.
+    if (std::none_of(used_extensions.begin(), used_extensions.end(), is_compression))
+      check_gltf_document(document, loaded.file);
   }
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keep_encoded, nullptr);

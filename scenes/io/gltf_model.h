@@ -13,6 +13,9 @@ struct GltfModel {
   tinygltf::Model model;
   std::string file;                   ///< For messages.
   std::vector<std::string> warnings;  ///< Of the parser.
+
+  /// File and JSON pointer, as messages show them: at("/materials/3") is room.gltf#/materials/3.
+  std::string at(const std::string& pointer) const { return file + "#" + pointer; }
 };
 
 /// Parses a .gltf or .glb file with its buffers. Throws InputError for a file that is cut off, chunks that do

@@ -13,8 +13,9 @@ namespace {
 
 constexpr int kNone = -1;
 
-std::string node_name(const GltfModel& gltf, std::size_t node) {
-  return fmt::format("{}: node {} \"{}\"", gltf.file, node, gltf.model.nodes[node].name);
+/// Where a node stands, and its name.
+std::string node_place(const GltfModel& gltf, std::size_t node) {
+  return gltf.at(fmt::format("/nodes/{}: node \"{}\"", node, gltf.model.nodes[node].name));
 }
 
 Eigen::Quaterniond rotation_of(double x, double y, double z, double w, const std::string& where) {
@@ -30,7 +31,7 @@ Eigen::Affine3d local_transform(const GltfModel& gltf, std::size_t index) {
   const auto check = [&](const std::vector<double>& values, std::size_t size, const char* what) {
     const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     if ((!values.empty() && values.size() != size) || !finite) {
-      throw InputError(node_name(gltf, index),
+      throw InputError(node_place(gltf, index),
                        fmt::format("its {} is not made of {} finite numbers", what, size),
                        "Export the file anew.");
     }
@@ -40,7 +41,7 @@ Eigen::Affine3d local_transform(const GltfModel& gltf, std::size_t index) {
     Eigen::Affine3d transform;
     transform.matrix() = Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());  // Both are column-major.
     if ((transform.matrix().row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() > 1e-6) {
-      throw InputError(node_name(gltf, index), "its matrix is not affine", "Export the file anew.");
+      throw InputError(node_place(gltf, index), "its matrix is not affine", "Export the file anew.");
     }
     return transform;
   }
@@ -50,7 +51,7 @@ Eigen::Affine3d local_transform(const GltfModel& gltf, std::size_t index) {
   }
   if (check(node.rotation, 4, "rotation")) {
     const auto& r = node.rotation;
-    transform.rotate(rotation_of(r[0], r[1], r[2], r[3], node_name(gltf, index)));
+    transform.rotate(rotation_of(r[0], r[1], r[2], r[3], node_place(gltf, index)));
   }
   if (check(node.scale, 3, "scale")) transform.scale(Vec3(node.scale[0], node.scale[1], node.scale[2]));
   return transform;
@@ -63,12 +64,12 @@ std::vector<int> parents_of(const GltfModel& gltf) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const int child : nodes[i].children) {
       if (child < 0 || static_cast<std::size_t>(child) >= nodes.size()) {
-        throw InputError(node_name(gltf, i), fmt::format("there is no child node {}", child),
+        throw InputError(node_place(gltf, i), fmt::format("there is no child node {}", child),
                          "Export the file anew.");
       }
       int& parent = parents[static_cast<std::size_t>(child)];
       if (parent != kNone) {
-        throw InputError(node_name(gltf, static_cast<std::size_t>(child)),
+        throw InputError(node_place(gltf, static_cast<std::size_t>(child)),
                          fmt::format("it is a child of node {} and again of node {}", parent, i),
                          "The nodes must form trees; export the file anew.");
       }
@@ -93,7 +94,7 @@ void check_for_cycles(const GltfModel& gltf, const std::vector<int>& parents) {
   }
   const auto lost = std::find(reached.begin(), reached.end(), false);
   if (lost == reached.end()) return;
-  throw InputError(node_name(gltf, static_cast<std::size_t>(lost - reached.begin())),
+  throw InputError(node_place(gltf, static_cast<std::size_t>(lost - reached.begin())),
                    "it is its own ancestor", "The nodes must form trees; export the file anew.");
 }
 
@@ -108,7 +109,7 @@ std::vector<std::size_t> roots_to_read(const GltfModel& gltf, const std::vector<
   }
   const int chosen = std::max(model.defaultScene, 0);
   if (static_cast<std::size_t>(chosen) >= model.scenes.size()) {
-    throw InputError(gltf.file, fmt::format("there is no scene {}", chosen), "Export the file anew.");
+    throw InputError(gltf.at("/scene"), fmt::format("there is no scene {}", chosen), "Export the file anew.");
   }
   const tinygltf::Scene& source = model.scenes[static_cast<std::size_t>(chosen)];
   if (model.scenes.size() > 1) {
@@ -119,11 +120,12 @@ std::vector<std::size_t> roots_to_read(const GltfModel& gltf, const std::vector<
   for (const int node : source.nodes) {
     const auto index = static_cast<std::size_t>(node);
     if (node < 0 || index >= parents.size()) {
-      throw InputError(gltf.file, fmt::format("scene {} names node {}, which does not exist", chosen, node),
+      throw InputError(gltf.at(fmt::format("/scenes/{}/nodes", chosen)),
+                       fmt::format("scene {} names node {}, which does not exist", chosen, node),
                        "Export the file anew.");
     }
     if (parents[index] != kNone || seen[index]) {
-      throw InputError(node_name(gltf, index),
+      throw InputError(node_place(gltf, index),
                        "the scene names it, but it is the child of another node or named twice",
                        "A scene may list each root node once; export the file anew.");
     }
@@ -159,15 +161,14 @@ std::vector<Eigen::Affine3d> gltf_instances(const GltfModel& gltf, const GltfAcc
   const auto& extensions = gltf.model.nodes[node].extensions;
   const auto it = extensions.find("EXT_mesh_gpu_instancing");
   if (it == extensions.end()) return {Eigen::Affine3d::Identity()};
-  const std::string where =
-      fmt::format("node {} \"{}\" EXT_mesh_gpu_instancing", node, gltf.model.nodes[node].name);
+  const std::string where = fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes", node);
   const tinygltf::Value* attributes =
       it->second.IsObject() && it->second.Has("attributes") ? &it->second.Get("attributes") : nullptr;
   const auto accessor = [&](const char* name) {
     if (!attributes || !attributes->IsObject() || !attributes->Has(name)) return kNone;
     const tinygltf::Value& value = attributes->Get(name);
     if (!value.IsInt() || value.GetNumberAsInt() < 0) {
-      throw InputError(fmt::format("{}: {}", gltf.file, where), fmt::format("{} is no accessor", name),
+      throw InputError(gltf.at(fmt::format("{}/{}", where, name)), "it is no accessor",
                        "Export the file anew.");
     }
     return value.GetNumberAsInt();
@@ -175,14 +176,13 @@ std::vector<Eigen::Affine3d> gltf_instances(const GltfModel& gltf, const GltfAcc
   const int translation = accessor("TRANSLATION"), rotation = accessor("ROTATION"), scale = accessor("SCALE");
   std::vector<Vec3> translations, scales;
   std::vector<Eigen::Vector4d> rotations;
-  if (translation != kNone) translations = accessors.vec3(translation, where + " TRANSLATION");
-  if (rotation != kNone) rotations = accessors.vec4(rotation, where + " ROTATION");
-  if (scale != kNone) scales = accessors.vec3(scale, where + " SCALE");
+  if (translation != kNone) translations = accessors.vec3(translation, where + "/TRANSLATION");
+  if (rotation != kNone) rotations = accessors.vec4(rotation, where + "/ROTATION");
+  if (scale != kNone) scales = accessors.vec3(scale, where + "/SCALE");
   const std::size_t count = std::max({translations.size(), rotations.size(), scales.size()});
   for (const std::size_t size : {translations.size(), rotations.size(), scales.size()}) {
     if (size != 0 && size != count) {
-      throw InputError(fmt::format("{}: {}", gltf.file, where), "its attributes differ in length",
-                       "Export the file anew.");
+      throw InputError(gltf.at(where), "its attributes differ in length", "Export the file anew.");
     }
   }
   std::vector<Eigen::Affine3d> instances(count, Eigen::Affine3d::Identity());
@@ -190,7 +190,7 @@ std::vector<Eigen::Affine3d> gltf_instances(const GltfModel& gltf, const GltfAcc
     if (!translations.empty()) instances[i].translate(translations[i]);
     if (!rotations.empty()) {
       const Eigen::Vector4d& r = rotations[i];
-      instances[i].rotate(rotation_of(r[0], r[1], r[2], r[3], fmt::format("{}: {}", gltf.file, where)));
+      instances[i].rotate(rotation_of(r[0], r[1], r[2], r[3], gltf.at(where + "/ROTATION")));
     }
     if (!scales.empty()) instances[i].scale(scales[i]);
   }

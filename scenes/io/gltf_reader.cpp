@@ -12,6 +12,7 @@
 #include "scenes/io/gltf_nodes.h"
 #include "scenes/io/surface_geometry.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 #include "scenes/model/memory.h"
 
 namespace reemit {
@@ -30,6 +31,7 @@ class NodeReader {
     name_ = node.name.empty() ? fmt::format("node {}", placed.node) : node.name;
     if (!placed.to_world.matrix().allFinite())
       fail("its place in the room is not finite", "Check its transforms.");
+    check_place(placed.to_world.translation());
     if (node.mesh >= 0) read_mesh(placed, node.mesh);
     if (node.camera >= 0) read_camera(placed, node.camera);
     const auto light = node.extensions.find("KHR_lights_punctual");
@@ -85,8 +87,17 @@ class NodeReader {
 
  private:
   [[noreturn]] void fail(const std::string& problem, const std::string& advice) const {
-    throw InputError(fmt::format("{}: node {} \"{}\"", gltf_.file, node_, gltf_.model.nodes[node_].name),
-                     problem, advice);
+    fail_at(fmt::format("/nodes/{}: node \"{}\"", node_, gltf_.model.nodes[node_].name), problem, advice);
+  }
+
+  [[noreturn]] void fail_at(const std::string& pointer, const std::string& problem,
+                            const std::string& advice) const {
+    throw InputError(gltf_.at(pointer), problem, advice);
+  }
+
+  void check_place(const Vec3& place) const {
+    const std::string problem = place_problem(place);
+    if (!problem.empty()) fail(problem, kLengthAdvice);
   }
 
   const std::vector<GltfPrimitive>& mesh(int index) {
@@ -128,6 +139,7 @@ class NodeReader {
     surface.normals = primitive.normals;
     surface.faces = primitive.faces;
     transform_surface(to_world, surface);
+    for (const Vec3& corner : surface.positions) check_place(corner);
     scene_.surfaces.push_back(std::move(surface));
   }
 
@@ -145,8 +157,9 @@ class NodeReader {
     }
     const double yfov = source.perspective.yfov;
     if (!(yfov > 0 && yfov < std::numbers::pi)) {
-      fail(fmt::format("the field of view of camera \"{}\" is {} rad", camera.name, yfov),
-           "Set it between 0 and pi.");
+      fail_at(fmt::format("/cameras/{}/perspective/yfov", index),
+              fmt::format("the field of view of camera \"{}\" is {} rad", camera.name, yfov),
+              "Set it between 0 and pi.");
     }
     const Eigen::Matrix3d axes = placed.to_world.linear();
     const Vec3 forward = -axes.col(2), up = axes.col(1);
@@ -177,11 +190,16 @@ class NodeReader {
     const bool valid =
         colour.size() == 3 && source.intensity >= 0 && std::isfinite(source.intensity) &&
         std::all_of(colour.begin(), colour.end(), [](double c) { return c >= 0 && std::isfinite(c); });
+    const std::string at_light = fmt::format("/extensions/KHR_lights_punctual/lights/{}", index);
     if (!valid)
-      fail(fmt::format("the light \"{}\" has no valid colour or intensity", name), "Export the file anew.");
+      fail_at(at_light, fmt::format("the light \"{}\" has no valid colour or intensity", name),
+              "Export the file anew.");
     const Spectrum strength =
         Eigen::Array3d(colour[0], colour[1], colour[2]) *
         (source.intensity * (source.type == "directional" ? units_.watts_per_m2() : units_.watts_per_sr()));
+    const std::string problem = strength_problem(
+        strength, source.type == "directional" ? "the irradiance [W/m2]" : "the intensity [W/sr]");
+    if (!problem.empty()) fail_at(at_light + "/intensity", problem, kStrengthAdvice);
     const Vec3 position = placed.to_world.translation();
     const Vec3 forward = -placed.to_world.linear().col(2);
     if (source.type != "point" && !(forward.norm() > 0))
@@ -193,14 +211,15 @@ class NodeReader {
     } else if (source.type == "spot") {
       const double inner = source.spot.innerConeAngle, outer = source.spot.outerConeAngle;
       if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2 + 1e-6)) {
-        fail(fmt::format("the cone angles {} and {} of the spot \"{}\"", inner, outer, name),
-             "They must satisfy 0 <= inner < outer <= pi/2.");
+        fail_at(at_light + "/spot",
+                fmt::format("the cone angles {} and {} of the spot \"{}\"", inner, outer, name),
+                "They must satisfy 0 <= inner < outer <= pi/2.");
       }
       scene_.lights.emplace_back(SpotLight{name, position, forward.normalized(), strength, inner,
                                            std::min(outer, std::numbers::pi / 2)});
     } else {
-      fail(fmt::format("the light \"{}\" is of an unknown type", name),
-           "Known are: point, spot, directional.");
+      fail_at(at_light + "/type", fmt::format("the light \"{}\" is of an unknown type", name),
+              "Known are: point, spot, directional.");
     }
   }
 

@@ -74,20 +74,21 @@ std::optional<Eigen::Array3d> GltfTextures::mean(int texture, TextureEncoding en
                                                  const std::string& where) {
   const tinygltf::Model& model = gltf_.model;
   if (texture < 0 || static_cast<std::size_t>(texture) >= model.textures.size()) {
-    throw InputError(fmt::format("{}: {}", gltf_.file, where), fmt::format("there is no texture {}", texture),
+    throw InputError(gltf_.at(where), fmt::format("there is no texture {}", texture),
                      "Check the file with the Khronos glTF validator, or export it anew.");
   }
   const int source = model.textures[static_cast<std::size_t>(texture)].source;
   if (source < 0) return std::nullopt;  // Given by an extension only.
   if (static_cast<std::size_t>(source) >= model.images.size()) {
-    throw InputError(fmt::format("{}: {}", gltf_.file, where), fmt::format("there is no image {}", source),
+    throw InputError(gltf_.at(fmt::format("/textures/{}/source", texture)),
+                     fmt::format("there is no image {}", source),
                      "Check the file with the Khronos glTF validator, or export it anew.");
   }
   const auto key = std::make_pair(source, encoding);
   if (const auto it = known_.find(key); it != known_.end()) return it->second;
   const tinygltf::Image& image = model.images[static_cast<std::size_t>(source)];
   const auto [bytes, size] = image.bufferView >= 0
-                                 ? accessors_.view_bytes(image.bufferView, fmt::format("image {}", source))
+                                 ? accessors_.view_bytes(image.bufferView, fmt::format("/images/{}", source))
                                  : std::make_pair(image.image.data(), image.image.size());
   return known_[key] = mean_of_image(bytes, size, encoding);
 }

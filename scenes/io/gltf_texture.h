@@ -17,6 +17,7 @@ class GltfTextures {
 
   /// The mean R, G, B [0,1] over all texels, colours decoded to linear light first; nothing if the image is
   /// missing or cannot be decoded. Throws InputError for a texture or image that does not exist.
+  /// `where`: JSON pointer of what uses the texture.
   std::optional<Eigen::Array3d> mean(int texture, TextureEncoding encoding, const std::string& where);
 
  private:

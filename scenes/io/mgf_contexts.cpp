@@ -124,7 +124,7 @@ bool MgfContexts::run(const TextLine& line, const std::string& where) {
 void MgfContexts::set_colour(const MgfColour& colour, const std::string& where) {
   colours.current() = colour;
   if (!is_valid_chromaticity(colour.x, colour.y))
-    colours.current().given_at = &*impossible_given_at_.insert(where).first;
+    colours.current().given_at = &*given_at_.insert(where).first;
 }
 
 void MgfContexts::check_current_material(const std::string& where) const {
@@ -185,6 +185,7 @@ bool MgfContexts::run_material(const TextLine& line, const std::string& where) {
   } else if (keyword == "ed") {
     check_argument_count(line, 1, 1, where);
     material.ed = coloured(at_least_zero(line, 1, where), colour);
+    material.ed.given_at = &*given_at_.insert(where).first;
   } else if (keyword == "rs" || keyword == "ts") {
     check_argument_count(line, 2, 2, where);
     (keyword == "rs" ? material.rs : material.ts) = coloured(fraction_at(line, 1, where), colour);

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "scenes/io/mgf_colour.h"
 #include "scenes/io/text_parse.h"
@@ -15,7 +16,13 @@ namespace reemit {
 struct MgfColoured {
   double value = 0;
   MgfColour colour;
-  auto operator<=>(const MgfColoured&) const = default;
+  /// Where it was given, for messages, if the owner of the contexts keeps that. Not part of the value.
+  const std::string* given_at = nullptr;
+
+  bool operator==(const MgfColoured& other) const { return value == other.value && colour == other.colour; }
+  std::partial_ordering operator<=>(const MgfColoured& other) const {
+    return std::pair(value, colour) <=> std::pair(other.value, other.colour);
+  }
 };
 
 /// State of an MGF material context; the default is a two-sided black absorber.
@@ -78,7 +85,7 @@ class MgfContexts {
   bool run_material(const TextLine& line, const std::string& where);
   bool run_vertex(const TextLine& line, const std::string& where);
   void set_colour(const MgfColour& colour, const std::string& where);
-  std::set<std::string> impossible_given_at_;  // MgfColour::given_at points into it
+  std::set<std::string> given_at_;  // given_at of MgfColour and MgfColoured point into it
 };
 
 /// Number at word `index` of a line; throws InputError at `where` if there is none.

@@ -7,6 +7,7 @@
 
 #include "scenes/io/mgf_interpreter.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -26,6 +27,11 @@ PhotometricLight placed(const MeasuredLuminaire& luminaire, const Eigen::Affine3
   light.opening.width *= scale;
   light.opening.height *= scale;
   light.table = luminaire.table;
+  const Vec3 reach = Vec3::Constant(light.opening.size().maxCoeff());
+  for (const Vec3& end : {Vec3(light.position - reach), Vec3(light.position + reach)}) {
+    const std::string problem = place_problem(end);
+    if (!problem.empty()) throw InputError(where, problem, kLengthAdvice);
+  }
   return light;
 }
 
@@ -57,6 +63,9 @@ void MgfInterpreter::run_ies(const File& file, const TextLine& line, const std::
   const BandSet bands = BandSet::rgb();
   const Spectrum per_candela =
       Spectrum::Constant(static_cast<Eigen::Index>(bands.count()), factor / bands.efficacy_lm_per_w().sum());
+  const std::string problem =
+      strength_problem(per_candela * luminaire->table->greatest_intensity(), "the greatest intensity [W/sr]");
+  if (!problem.empty()) throw InputError(where, problem, kStrengthAdvice);
   const std::string& base = object_path_.empty() ? luminaire->name : object_path_;
   for (std::size_t i = 0; i < count; ++i) {
     PhotometricLight light =

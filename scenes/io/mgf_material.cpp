@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "scenes/model/colour.h"
+#include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -26,6 +28,15 @@ Eigen::Array3d fitted(const MgfColoured& coloured, double most, bool& changed) {
   return clamped;
 }
 
+// Here the line of the number is known; the checks of the room could only name the material.
+void check_strength(const Material& material, const MgfColoured& ed, const std::string& where) {
+  const std::string problem = strength_problem(material.emitted_radiance, "the radiance [W/(m2 sr)]");
+  if (!problem.empty())
+    throw InputError(ed.given_at != nullptr ? *ed.given_at : where,
+                     fmt::format("material '{}' with ed {:g}: {}", material.name, ed.value, problem),
+                     kStrengthAdvice);
+}
+
 }  // namespace
 
 Material convert_mgf_material(const MgfMaterial& m, const std::string& name, const std::string& where,
@@ -37,6 +48,7 @@ Material convert_mgf_material(const MgfMaterial& m, const std::string& name, con
   MgfColoured radiance = m.ed;
   radiance.value /= std::numbers::pi * kLumensPerWatt;
   material.emitted_radiance = fitted(radiance, std::numeric_limits<double>::infinity(), changed);
+  check_strength(material, m.ed, where);
   material.two_sided = m.sides == 2;
   material.emits_both_sides = material.two_sided && m.ed.value > 0;
 

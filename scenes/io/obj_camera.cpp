@@ -6,6 +6,7 @@
 #include "scenes/io/text_file.h"
 #include "scenes/io/text_parse.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -28,6 +29,13 @@ Vec3 vector_of(const TextLine& line, const std::string& where) {
   return v;
 }
 
+Vec3 place_of(const TextLine& line, const std::string& where) {
+  const Vec3 place = vector_of(line, where);
+  const std::string problem = place_problem(place);
+  if (!problem.empty()) throw InputError(where, problem, kLengthAdvice);
+  return place;
+}
+
 struct View {
   std::optional<Vec3> eye, look_at, direction;
   std::optional<double> horizontal_fov_deg;
@@ -37,11 +45,11 @@ struct View {
 void read_line(const TextLine& line, const std::string& where, View& view) {
   const std::string_view keyword = line.words[0];
   if (keyword == "eye") {
-    view.eye = vector_of(line, where);
+    view.eye = place_of(line, where);
   } else if (keyword == "direction") {
     view.direction = vector_of(line, where);
   } else if (keyword == "look-at") {
-    view.look_at = vector_of(line, where);
+    view.look_at = place_of(line, where);
   } else if (keyword == "up") {
     view.camera.up = vector_of(line, where);
   } else if ((keyword == "horizontal" || keyword == "vertical") && line.words.size() >= 3 &&

@@ -14,6 +14,7 @@
 #include "scenes/io/text_parse.h"
 #include "scenes/io/texture_average.h"
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace fs = std::filesystem;
@@ -53,13 +54,19 @@ std::string checked_numbers(const NumberRule& rule, const TextLine& line, const 
     throw InputError(where, fmt::format("'{}' has {} numbers", rule.keyword, count),
                      rule.most == 3 ? "Give red, green, blue." : "Give one number.");
   std::string text(rule.keyword);
+  Spectrum values = Spectrum::Zero(static_cast<Eigen::Index>(count));
   for (std::size_t i = 1; i <= count; ++i) {
     const auto value = parse_number(words[i]);
     if (!value || *value < rule.low || *value > rule.high)
       throw InputError(
           where, fmt::format("'{} {}' is not a number in its range", rule.keyword, words[i]),
           rule.high == 1 ? "Give a fraction from 0 to 1." : "Give a finite number of 0 or more.");
+    values[static_cast<Eigen::Index>(i - 1)] = *value;
     text += fmt::format(" {}", words[i]);
+  }
+  if (rule.keyword == "Ke") {
+    const std::string problem = strength_problem(values, "the radiance Ke [W/(m2 sr)]");
+    if (!problem.empty()) throw InputError(where, problem, kStrengthAdvice);
   }
   if (rule.most == 3 && count == 1)
     text += fmt::format(" {0} {0}", words[1]);  // one number stands for all three

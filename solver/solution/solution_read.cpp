@@ -240,6 +240,22 @@ ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
   return sums;
 }
 
+/// Whether no sum of what the books of a band hold overflows, in whatever order it is taken.
+bool can_be_added(const BandAudit& band) {
+  double in = 0, out = 0;
+  const auto add = [&](std::int64_t quanta, double sign) {
+    const double signed_quanta = sign * static_cast<double>(quanta);
+    (signed_quanta > 0 ? in : out) += std::abs(signed_quanta);
+  };
+  for (const std::int64_t quanta : {band.emitted, band.roulette_net}) add(quanta, 1);
+  for (const std::int64_t quanta : band.absorbed) add(quanta, -1);
+  for (const std::int64_t quanta : band.absorbed_on_backs) add(quanta, -1);
+  for (const std::int64_t quanta : band.escaped) add(quanta, -1);
+  add(band.unshot, -1);
+  constexpr double kMost = 0x1.fffp62;
+  return in < kMost && out < kMost;
+}
+
 EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group group = root.open_group("audit");
   const std::uint64_t bands = solution.bands.count();
@@ -252,7 +268,7 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
   require(names.size() == bands, "an audit of another number of bands");
   const auto watts = group.read<double>("watts_per_quantum", {bands});
   const auto gain = group.read<double>("roulette_gain", {bands});
-  require(all_finite(gain), "roulette that is not finite");
+  require(all_finite(watts) && all_finite(gain), "power that is not finite");
   const auto escaped = group.read<std::int64_t>("escaped", {bands, 6});
   const auto absorbed = group.read<std::int64_t>("absorbed", {bands, surfaces});
   const auto on_backs = group.read<std::int64_t>("absorbed_on_backs", {bands, surfaces});
@@ -277,6 +293,8 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
     const auto values = group.read<std::int64_t>(name, {bands});
     for (std::size_t b = 0; b < bands; ++b) audit.bands[b].*member = values[b];
   }
+  require(std::all_of(audit.bands.begin(), audit.bands.end(), can_be_added),
+          "more quanta in the books than can be added");
   return audit;
 }
 

@@ -244,17 +244,20 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.hit.primID[i] = kMiss;
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  // Embree demands sound numbers even of lanes that it is not to trace.
+  // Embree may pass over `valid` and look for rays of no length instead. What else lies in these lanes it
+  // would trace, or end the program where that is no number.
   for (int i = count; i < 16; ++i) {
     query.ray.org_x[i] = query.ray.org_y[i] = query.ray.org_z[i] = 0;
-    query.ray.dir_x[i] = query.ray.dir_y[i] = query.ray.dir_z[i] = 1;
+    query.ray.dir_x[i] = query.ray.dir_y[i] = query.ray.dir_z[i] = 0;
+    query.ray.tfar[i] = -kInfinity;
   }
   intersect16(valid, embree_->scene(), query);
   for (int i = 0; i < count; ++i) {
     const std::uint32_t t = query.hit.primID[i];
     hits.triangle[i] = t;
     if (t == kMiss) {
-      hits.u[i] = hits.v[i] = 0;
+      hits.u[i] = hits.v[i] = 0;  // callers hand these on without a look
+      hits.front[i] = false;
       continue;
     }
     if (query.hit.geomID[i] != EmbreeScene::kTriangles) {

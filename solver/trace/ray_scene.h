@@ -41,7 +41,7 @@ struct Hit16 {
   std::uint32_t triangle[16];  ///< RayScene::kMiss where the ray left the room.
   float u[16], v[16];
   float distance[16];
-  bool front[16];
+  bool front[16];  ///< False where the ray left the room.
 };
 
 /// Owner of the ray-tracing structure over the base triangles and curved shapes. Rays live in a normalised

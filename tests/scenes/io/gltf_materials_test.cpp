@@ -86,13 +86,22 @@ TEST(GltfMaterials, NoMaterialIsGrey) {
 }
 
 TEST(GltfMaterials, RefusesWrongValues) {
-  expect_gltf_refused(with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {1.5, 0, 0, 1}}}}}),
-                      {"material 0", "baseColorFactor is 1.5"});
+  expect_gltf_refused(
+      with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {1.5, 0, 0, 1}}}}}),
+      {"room.gltf#/materials/0/pbrMetallicRoughness/baseColorFactor: ", "baseColorFactor is 1.5"});
   expect_gltf_refused(with_material({{"pbrMetallicRoughness", {{"metallicFactor", -1}}}}),
-                      {"metallicFactor is -1"});
-  expect_gltf_refused(with_material({{"emissiveFactor", {-1, 0, 0}}}), {"emissiveFactor is -1"});
+                      {"#/materials/0/pbrMetallicRoughness/metallicFactor: metallicFactor is -1"});
+  expect_gltf_refused(with_material({{"emissiveFactor", {-1, 0, 0}}}),
+                      {"#/materials/0/emissiveFactor: emissiveFactor is -1"});
   expect_gltf_refused(with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 3}}}}}}),
-                      {"no texture 3"});
+                      {"#/materials/0: there is no texture 3"});
+  expect_gltf_refused(
+      with_material({{"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 2}}}}}}),
+      {"#/materials/0/extensions/KHR_materials_transmission/transmissionFactor: "});
+  expect_gltf_refused(
+      with_material({{"extensions",
+                      {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0.5, 0.5, -0.5, 1}}}}}}}),
+      {"#/materials/0/extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor: "});
 }
 
 /// A PNG of one black and three white texels.

@@ -215,11 +215,12 @@ TEST(GltfReader, RefusesBrokenNodeGraphs) {
     for (const json& node : nodes) gltf.node(node);
     return gltf;
   };
-  expect_gltf_refused(graph({{{"children", {2}}}, {{"children", {1}}}}), {"node 1", "its own ancestor"});
-  expect_gltf_refused(graph({{{"children", {1}}}}), {"node 1", "its own ancestor"});
+  expect_gltf_refused(graph({{{"children", {2}}}, {{"children", {1}}}}),
+                      {"room.gltf#/nodes/1: ", "its own ancestor"});
+  expect_gltf_refused(graph({{{"children", {1}}}}), {"room.gltf#/nodes/1: ", "its own ancestor"});
   expect_gltf_refused(graph({{{"children", {0}}}, {{"children", {0}}}}),
-                      {"node 0 \"square\"", "a child of node 1 and again of node 2"});
-  expect_gltf_refused(graph({{{"children", {7}}}}), {"node 1", "no child node 7"});
+                      {"#/nodes/0: node \"square\"", "a child of node 1 and again of node 2"});
+  expect_gltf_refused(graph({{{"children", {7}}}}), {"#/nodes/1: ", "no child node 7"});
   expect_gltf_refused(graph({{{"mesh", 7}}}), {"no mesh 7"});
   expect_gltf_refused(graph({{{"camera", 7}}}), {"no camera 7"});
   expect_gltf_refused(graph({{{"rotation", {0, 0, 0, 0}}}}), {"quaternion"});
@@ -241,15 +242,15 @@ TEST(GltfReader, RefusesIndicesAndViewsOutOfRange) {
   expect_gltf_refused(broken([&](json& f, GltfBuilder& g) {
                         primitive(f)["indices"] = g.shorts({0, 1, 4});
                       }),
-                      {"mesh 0", "primitive 0", "index 4 is out of range"});
+                      {"room.gltf#/meshes/0/primitives/0/indices: ", "index 4 is out of range"});
   expect_gltf_refused(broken([&](json& f, GltfBuilder&) { primitive(f)["attributes"]["POSITION"] = 99; }),
                       {"no accessor 99"});
   expect_gltf_refused(broken([&](json& f, GltfBuilder&) { primitive(f)["material"] = 5; }),
-                      {"no material 5"});
+                      {"#/meshes/0/primitives/0/material: there is no material 5"});
   expect_gltf_refused(broken([&](json& f, GltfBuilder&) { primitive(f)["attributes"].erase("POSITION"); }),
                       {"no positions"});
   expect_gltf_refused(broken([](json& f, GltfBuilder&) { f["accessors"][0]["count"] = 5; }),
-                      {"5 elements do not fit"});
+                      {"#/meshes/0/primitives/0/attributes/POSITION: accessor 0: 5 elements do not fit"});
   expect_gltf_refused(broken([](json& f, GltfBuilder&) { f["accessors"][0]["count"] = 4000000000000u; }),
                       {"do not fit"});
   expect_gltf_refused(broken([](json& f, GltfBuilder&) { f["accessors"][0]["byteOffset"] = 4; }),
@@ -271,7 +272,27 @@ TEST(GltfReader, RefusesIndicesAndViewsOutOfRange) {
   expect_gltf_refused(broken([](json& f, GltfBuilder&) {
                         f["scenes"] = {{{"nodes", {4}}}};
                       }),
-                      {"names node 4"});
+                      {"#/scenes/0/nodes: scene 0 names node 4"});
+}
+
+TEST(GltfReader, ValuesOfAnotherTypeAreRefusedWhereTheyStand) {
+  const auto refused = [](const char* pointer, const json& value, const char* place) {
+    GltfBuilder gltf;
+    gltf.square();
+    gltf.json[json::json_pointer(pointer)] = value;
+    expect_gltf_refused(gltf, {place});
+  };
+  refused("/accessors/1/componentType", 77, "room.gltf#/accessors/1/componentType: 77");
+  refused("/accessors/0/count", "four", "room.gltf#/accessors/0/count: ");
+  refused("/accessors/0/type", "VEC9", "room.gltf#/accessors/0/type: ");
+  refused("/accessors/0", 3, "room.gltf#/accessors/0: ");
+  refused("/bufferViews/0/byteLength", json(), "room.gltf#/bufferViews/0/byteLength: ");
+  refused("/nodes/0/translation", {0, "a", 0}, "room.gltf#/nodes/0/translation/1: ");
+  refused("/nodes/0/matrix", "unit", "room.gltf#/nodes/0/matrix: ");
+  refused("/materials/0/doubleSided", 1, "room.gltf#/materials/0/doubleSided: ");
+  refused("/nodes/0/children", {"a"}, "room.gltf#/nodes/0/children/0: ");
+  refused("/meshes/0/primitives/0/attributes", 1, "room.gltf#/meshes/0/primitives/0/attributes: ");
+  refused("/materials/0/emissiveFactor", {1, "a", 1}, "room.gltf#/materials/0/emissiveFactor/1: ");
 }
 
 TEST(GltfReader, RefusesExtensionsThatChangeTheGeometry) {

@@ -1,6 +1,7 @@
 // Numbers beyond what a room may hold are refused where they stand, and those just inside are not.
 #include "scenes/model/limits.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "scenes/io/scene_reader.h"
 #include "tests/scenes/io/expect_input_error.h"
+#include "tests/scenes/io/gltf_building.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/temp_folder.h"
 
@@ -93,10 +95,84 @@ TEST(Limits, NumbersInTextFilesAreNamedByTheirLine) {
   refuse("room.obj", replaced(test::small_obj_room(), "v 1 1 1", "v 1 1e300 1"), {"room.obj:8: "});
   refuse("room.mgf", replaced(test::small_mgf_room(), "p 1 1 1", "p 1 -1e+308 1"),
          {"room.mgf:21: ", "farther out"});
-  refuse("room.mgf", replaced(test::small_mgf_room(), "ed 100", "ed 1e300"), {"lamp", "1e+15"});
   refuse("room.mgf", "m w =\n\trd 0.5\nv a =\n\tp 0 0 0\nm w\nxf -s 1e9\nsph a 1e3\nxf\n",
          {"room.mgf:7: ", "farther out"});
-  refuse("room.glb", test::small_glb_room(1e30F), {"room.glb", "farther out"});
+}
+
+TEST(Limits, StrengthsInTextFilesAreNamedByTheirLine) {
+  for (const char* strength : {"1e300", "1e-300", "1e19", "1e-13"}) {
+    refuse("room.mgf", replaced(test::small_mgf_room(), "ed 100", fmt::format("ed {}", strength)),
+           {"room.mgf:7: material 'lamp' with ed 1e", "radiance", "between 1e-15 and 1e+15"});
+  }
+  // Materials may come by a template, from a library that is included.
+  const TempFolder folder;
+  folder.write("library.mgf", "m bright =\n\tsides 1\n\ted 1e19\n");
+  const std::string room =
+      "i library.mgf\nm lamp = bright\n\trd .5\nv a =\n\tp 0 0 0\nv b =\n\tp 1 0 0\nv c =\n\tp 0 1 0\n";
+  const auto file = folder.write("room.mgf", room + "f a b c\n");
+  expect_input_error([&] { read_scene(file); }, {"library.mgf:3: material 'lamp' with ed 1e+19"});
+  // What nobody uses may be anything.
+  EXPECT_NO_THROW(read_scene(folder.write("room.mgf", room + "m\n\trd .5\nf a b c\n")));
+
+  const auto refuse_mtl = [&](const char* from, const char* to, std::initializer_list<const char*> parts) {
+    folder.write("room.mtl", replaced(test::small_obj_materials(), from, to));
+    const auto obj = folder.write("room.obj", test::small_obj_room());
+    expect_input_error([&] { read_scene(obj); }, parts);
+  };
+  for (const char* strength : {"Ke 1e300 0 0", "Ke 0 2e15 0", "Ke 1e-300 1e-16 0"})
+    refuse_mtl("Ke 10 10 10", strength, {"room.mtl:5: ", "radiance Ke", "between 1e-15 and 1e+15"});
+}
+
+TEST(Limits, MeasuredLuminairesOfMgfAreNamedByTheirLine) {
+  const TempFolder folder;
+  folder.write("lamp.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n100 100\n");
+  const auto refuse_ies = [&](const std::string& line, std::initializer_list<const char*> parts) {
+    const auto file = folder.write("room.mgf", test::small_mgf_room() + line);
+    expect_input_error([&] { read_scene(file); }, parts);
+  };
+  const auto lines = std::ranges::count(test::small_mgf_room(), '\n');
+  const std::string place = fmt::format("room.mgf:{}: ", lines + 1);
+  refuse_ies("ies lamp.ies -m 1e20\n", {place.c_str(), "greatest intensity", "1e+15"});
+  refuse_ies("ies lamp.ies -t 1e19 0 0\n", {place.c_str(), "farther out"});
+}
+
+TEST(Limits, PlacesInGltfAreNamedByTheirPointer) {
+  refuse("room.glb", test::small_glb_room(1e30F), {"room.glb#/nodes/0: ", "farther out"});
+  const auto gltf = [](auto change) {
+    test::GltfBuilder builder;
+    builder.square();
+    change(builder);
+    return builder;
+  };
+  const auto emissive = [&](const nlohmann::json& factor, double strength) {
+    return gltf([&](test::GltfBuilder& g) {
+      g.json["materials"][0]["emissiveFactor"] = factor;
+      if (strength != 1)
+        g.json["materials"][0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] =
+            strength;
+    });
+  };
+  test::expect_gltf_refused(emissive({0, 1e20, 0}, 1),
+                            {"room.gltf#/materials/0/emissiveFactor: ", "radiance", "1e+15"});
+  test::expect_gltf_refused(
+      emissive({0, 1, 0}, 1e20),
+      {"#/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength: ", "radiance"});
+  test::expect_gltf_refused(emissive({0, 1e-30, 0}, 1), {"#/materials/0/emissiveFactor: "});
+  for (const char* type : {"point", "directional", "spot"}) {
+    test::expect_gltf_refused(gltf([&](test::GltfBuilder& g) {
+                                nlohmann::json light = {{"type", type}, {"intensity", 1e25}};
+                                light["spot"] = {{"outerConeAngle", 0.5}};
+                                g.json["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+                                g.node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+                              }),
+                              {"room.gltf#/extensions/KHR_lights_punctual/lights/0/intensity: ", "1e+15"});
+  }
+  test::expect_gltf_refused(
+      gltf([](test::GltfBuilder& g) {
+        g.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1.0}}}}};
+        g.node({{"camera", 0}, {"translation", {0, 1e20, 0}}});
+      }),
+      {"#/nodes/1: ", "farther out"});
 }
 
 TEST(Limits, OpeningsOfMeasuredLuminairesAreNamedByTheirLine) {

@@ -1,7 +1,9 @@
 #include "solver/solution/solution_file.h"
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -225,8 +227,7 @@ TEST_F(SolutionFile, HoldsZoneValuesWithUnits) {
 
 TEST_F(SolutionFile, RefusesOtherFiles) {
   EXPECT_THAT([&] { load_solution(file_); }, ThrowsMessage<InputError>(HasSubstr("no such file")));
-  EXPECT_THAT([&] { load_solution(folder_.path()); },
-              ThrowsMessage<InputError>(HasSubstr("it is a folder")));
+  EXPECT_THAT([&] { load_solution(folder_.path()); }, ThrowsMessage<InputError>(HasSubstr("it is a folder")));
   write_bytes(file_, "");
   EXPECT_THAT([&] { load_solution(file_); }, ThrowsMessage<InputError>(HasSubstr("the file is empty")));
   write_bytes(file_, std::string(5000, 'x'));
@@ -256,6 +257,8 @@ TEST_F(SolutionFile, RefusesIndicesOutOfRangeAndAbsurdCounts) {
   const std::uint32_t bad_divisions[] = {50000, 50000};
   const std::uint32_t zero_divisions[] = {0, 3};
   const double not_a_number[64] = {std::numeric_limits<double>::quiet_NaN()};
+  std::int64_t most_quanta[64];
+  std::ranges::fill(most_quanta, std::numeric_limits<std::int64_t>::max());
   const struct {
     const char* dataset;
     hid_t type;
@@ -268,7 +271,12 @@ TEST_F(SolutionFile, RefusesIndicesOutOfRangeAndAbsurdCounts) {
                {"/mesh/vertices", H5T_NATIVE_DOUBLE, not_a_number},
                {"/surfaces/material", H5T_NATIVE_UINT32, bad_index},
                {"/materials/reflectance", H5T_NATIVE_DOUBLE, not_a_number},
-               {"/sums/direct", H5T_NATIVE_DOUBLE, not_a_number}};
+               {"/sums/direct", H5T_NATIVE_DOUBLE, not_a_number},
+               {"/audit/watts_per_quantum", H5T_NATIVE_DOUBLE, not_a_number},
+               {"/audit/emitted", H5T_NATIVE_INT64, most_quanta},
+               {"/audit/absorbed", H5T_NATIVE_INT64, most_quanta},
+               {"/audit/absorbed_on_backs", H5T_NATIVE_INT64, most_quanta},
+               {"/audit/escaped", H5T_NATIVE_INT64, most_quanta}};
   for (const auto& c : cases) {
     save_solution(solution, file_);
     edit([&](hid_t id) { overwrite(id, c.dataset, c.type, c.values); });

@@ -1,6 +1,8 @@
 #include "solver/trace/ray_scene.h"
 
-#include <cmath>
+#include <algorithm>
+#include <cstring>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -57,9 +59,16 @@ TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
       const auto u = rng.uniform4(block, 0, static_cast<std::uint32_t>(i));
       rays.set(i, {0.1F * u[2], 0.1F * u[3], 0}, sample_sphere(u[0], u[1]));
     }
-    for (int i = 13; i < 16; ++i) rays.ox[i] = rays.dy[i] = std::nanf("");  // lanes that do not count
+    // Lanes beyond the count may hold anything.
+    for (float* lanes : {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz})
+      std::fill_n(lanes + 13, 3, std::numeric_limits<float>::quiet_NaN());
+    std::memset(&hits, 0x80, sizeof hits);
     scene.closest16(rays, 13, hits);
     for (int i = 0; i < 13; ++i) {
+      // A bool that nobody has set is no bool, and to read it is undefined.
+      unsigned char front = 0;
+      std::memcpy(&front, &hits.front[i], 1);
+      ASSERT_LE(front, 1);
       Hit hit;
       const bool found = scene.closest(rays.origin(i), rays.direction(i), hit);
       ASSERT_EQ(found, hits.triangle[i] != RayScene::kMiss);
