@@ -112,7 +112,7 @@ TEST(HitPaths, a_bias_of_2_percent_is_noticed) {
 }
 
 TEST(HitPaths, a_bias_of_2_percent_is_noticed_under_measured_luminaires) {
-  expect_bias_is_noticed(read_scene(kRooms / "measured_luminaires.json"), 768);
+  expect_bias_is_noticed(read_scene(kRooms / "measured_luminaires.json"), 1536);
 }
 
 }  // namespace
