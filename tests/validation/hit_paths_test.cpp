@@ -98,6 +98,7 @@ TEST(HitPaths, openings_of_measured_luminaires_of_every_shape_light_the_room) {
 void expect_bias_is_noticed(const Scene& scene, int passes) {
   ComparisonSettings settings = quick(false);
   settings.passes = passes;
+  settings.packets = 2'400'000;
   const Comparison sound = compare_blocks(scene, scene.cameras[0], settings);
   EXPECT_LE(std::abs(sound.mean_deviation), kLimit * sound.mean_error);
   settings.planted_bias = 0.02;
@@ -112,7 +113,7 @@ TEST(HitPaths, a_bias_of_2_percent_is_noticed) {
 }
 
 TEST(HitPaths, a_bias_of_2_percent_is_noticed_under_measured_luminaires) {
-  expect_bias_is_noticed(read_scene(kRooms / "measured_luminaires.json"), 768);
+  expect_bias_is_noticed(read_scene(kRooms / "measured_luminaires.json"), 2048);
 }
 
 }  // namespace
