@@ -290,7 +290,7 @@ TEST(GltfReader, ValuesOfAnotherTypeAreRefusedWhereTheyStand) {
   refused("/nodes/0/translation", {0, "a", 0}, "room.gltf#/nodes/0/translation/1: ");
   refused("/nodes/0/matrix", "unit", "room.gltf#/nodes/0/matrix: ");
   refused("/materials/0/doubleSided", 1, "room.gltf#/materials/0/doubleSided: ");
-  refused("/nodes/0/children", {"a"}, "room.gltf#/nodes/0/children/0: ");
+  refused("/nodes/0/children", json::array({"a"}), "room.gltf#/nodes/0/children/0: ");
   refused("/meshes/0/primitives/0/attributes", 1, "room.gltf#/meshes/0/primitives/0/attributes: ");
   refused("/materials/0/emissiveFactor", {1, "a", 1}, "room.gltf#/materials/0/emissiveFactor/1: ");
 }
