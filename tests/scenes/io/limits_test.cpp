@@ -169,7 +169,7 @@ TEST(Limits, PlacesInGltfAreNamedByTheirPointer) {
   }
   test::expect_gltf_refused(
       gltf([](test::GltfBuilder& g) {
-        g.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1.0}}}}};
+        g.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}};
         g.node({{"camera", 0}, {"translation", {0, 1e20, 0}}});
       }),
       {"#/nodes/1: ", "farther out"});
