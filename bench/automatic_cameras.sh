@@ -27,6 +27,7 @@ solve cabin "$rooms/mgf/cabin/cabin.mgf"
 solve corridor "$rooms/mgf/corridor/corridor.mgf"
 solve bathroom "$rooms/mgf/bathroom/bathroom.mgf"
 solve modern_hall "$rooms/obj/modern_hall/modern_hall.obj"
+solve veach_ajar "$rooms/obj/veach_ajar/veach-ajar.obj"
 for i in 0 1 2 3 4 5 6; do solve "erw5_scene$i" "$rooms/mgf/erw5/scene$i.mgf"; done
 for name in Empty-CO Empty-Squashed Original Glossy Mirror Sphere; do
   solve "CornellBox-$name" "$rooms/obj/cornell/CornellBox-$name.obj"
