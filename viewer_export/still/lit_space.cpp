@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "solver/losses/probe_flight.h"
+#include "solver/sampling/warp.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/flight.h"
 #include "solver/shoot/transport_scene.h"
@@ -55,14 +56,15 @@ std::vector<Hit> reflect(const TransportScene& transport, const std::vector<Hit>
     const int count = static_cast<int>(std::min<std::size_t>(16, hits.size() - first));
     UniformLanes uniform;
     numbers.get16(static_cast<std::uint32_t>(first), uniform);
-    ZoneLanes lanes{};
+    Ray16 rays;
     for (int lane = 0; lane < count; ++lane) {
       const Hit& hit = hits[first + static_cast<std::size_t>(lane)];
-      transport.put_hit(static_cast<std::uint32_t>(hit.triangle.index()), hit.u, hit.v, hit.front, lanes,
-                        lane);
+      const Vec3f front = transport.rays().normal(hit.triangle, hit.u, hit.v);
+      const Frame frame(hit.front ? front : Vec3f(-front));
+      const Vec3f direction =
+          frame.to_world(sample_cosine_hemisphere(uniform.u[2][lane], uniform.u[3][lane]));
+      rays.set(lane, transport.rays().ray_origin(hit.triangle, hit.u, hit.v, hit.front), direction);
     }
-    Ray16 rays;
-    transport.start(lanes, uniform, rays);
     trace_probes(transport.rays(), rays, count, [&](int, const ProbeRay& probe) {
       if (note(transport, probe, space)) next.push_back(probe.hit);
     });
