@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include <boost/container_hash/hash.hpp>
 #include <fmt/format.h>
 
 #include "mesh/face_notes.h"
@@ -38,26 +39,13 @@ Outline outline_of(const FacePiece& piece) {
   return out;
 }
 
-std::uint64_t hash_of(const std::vector<Loop>& loops) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  const auto add = [&hash](std::uint64_t x) {
-    hash = (hash ^ x) * 0x9e3779b97f4a7c15ULL;
-    hash ^= hash >> 29;
-  };
-  for (const Loop& loop : loops) {
-    add(loop.size());
-    for (const std::uint32_t v : loop) add(v);
-  }
-  return hash;
-}
-
 // By piece, the first one with the same corners, which mostly is the piece itself. Only what looks alike by a
 // number is compared, so that next to nothing is kept of millions of faces.
 std::vector<std::uint32_t> first_alike(const std::vector<FacePiece>& pieces) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  std::vector<std::pair<std::size_t, std::uint32_t>> order;  // hash and piece
   order.reserve(pieces.size());
   for (std::uint32_t i = 0; i < pieces.size(); ++i)
-    order.emplace_back(hash_of(outline_of(pieces[i]).loops), i);
+    order.emplace_back(boost::hash<std::vector<Loop>>()(outline_of(pieces[i]).loops), i);
   std::sort(order.begin(), order.end());
   std::vector<std::uint32_t> first(pieces.size());
   for (auto begin = order.begin(); begin != order.end();) {

@@ -17,7 +17,7 @@ constexpr const char* kAdvice = "Check the file with the Khronos glTF validator,
 
 enum class Kind { kIndex, kIndices, kNumber, kNumbers, kText, kFlag, kComponentType, kElementType };
 
-/// What stands at `path`, keys apart by '/', in each entry of a list of the file.
+/// What stands at `path`, keys apart by '/', in each entry of a list; rules of one list stand together.
 struct Rule {
   const char* list;
   const char* path;
@@ -152,9 +152,12 @@ void check_meshes(const JsonCursor& meshes) {
 
 void check_gltf_document(const nlohmann::json& document, const std::string& file) {
   const JsonCursor root(document, file);
-  for (const Rule& rule : kRules) {
-    const auto list = root.find(rule.list);
-    if (list) check_entries(*list, std::span(&rule, 1));
+  for (std::span<const Rule> rest = kRules; !rest.empty();) {
+    const std::string_view name = rest.front().list;
+    const auto end = std::find_if(rest.begin(), rest.end(), [&](const Rule& r) { return r.list != name; });
+    const auto of_list = rest.first(static_cast<std::size_t>(end - rest.begin()));
+    if (const auto list = root.find(of_list.front().list)) check_entries(*list, of_list);
+    rest = rest.subspan(of_list.size());
   }
   if (const auto meshes = root.find("meshes")) check_meshes(*meshes);
   if (const auto extensions = root.find("extensions"))

@@ -303,7 +303,7 @@ unsigned RayScene::edges_near(std::uint32_t triangle, float u, float v) const {
 }
 
 Vec3f RayScene::second_direction(const Vec3f& direction, std::uint32_t triangle, float u, float v) const {
-  if (triangle == kMiss || !is_at_edge(triangle, u, v)) return turned(direction);
+  if (triangle == kMiss || is_curved(TriangleId(triangle))) return turned(direction);
   const unsigned edges = edges_near(triangle, u, v);
   Vec3f turn = Vec3f::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -315,7 +315,7 @@ Vec3f RayScene::second_direction(const Vec3f& direction, std::uint32_t triangle,
     const float length = across.norm();
     if (length > 0) turn += (across.dot(inwards) < 0 ? -1 : 1) / length * across;
   }
-  // Where all edges are near there is no inside.
+  // Away from all edges, or near to all of them, there is no way inwards.
   constexpr float kNowhere = 0.1F;
   if (turn.norm() < kNowhere) return turned(direction);
   return (direction + kTurn * turn).normalized();

@@ -20,11 +20,12 @@ namespace {
 using test::LampByCeiling;
 using test::MeanTest;
 
-std::vector<std::uint8_t> uneven_of(const test::RoomBuilder& room, const Solution& solution) {
+std::vector<std::uint8_t> uneven_of(const test::RoomBuilder& room, const Solution& solution,
+                                    const StopToken* stop = nullptr) {
   const RayScene rays(solution.mesh);
   const RadianceField field(room.scene(), solution, rays);
   const DirectLight direct(room.scene(), rays);
-  return uneven_zones(rays, field, direct, 1);
+  return uneven_zones(rays, field, direct, 1, stop);
 }
 
 TEST(UnevenZones, lie_above_a_lamp_close_to_the_ceiling) {
@@ -65,12 +66,9 @@ TEST(UnevenZones, are_none_in_a_furnace_or_without_light) {
 TEST(UnevenZones, are_not_looked_for_once_somebody_waits) {
   const LampByCeiling room(0.8);
   const Solution solution = room.solved(400'000, 1);
-  const RayScene rays(solution.mesh);
-  const RadianceField field(room.builder().scene(), solution, rays);
-  const DirectLight direct(room.builder().scene(), rays);
   const std::atomic<bool> interrupt{true};
   const StopToken stop(interrupt);
-  const std::vector<std::uint8_t> uneven = uneven_zones(rays, field, direct, 1, &stop);
+  const std::vector<std::uint8_t> uneven = uneven_of(room.builder(), solution, &stop);
   EXPECT_EQ(uneven.size(), solution.mesh.zone_count());
   EXPECT_EQ(std::count(uneven.begin(), uneven.end(), 1), 0);
 }
