@@ -174,8 +174,8 @@ Vec3f RayScene::ray_origin(TriangleId t, float u, float v, bool front) const {
     const float r = v + inset * (kMiddle - v);
     Vec3 n = curved_normal(t, s, r).cast<double>();
     Vec3 p = curved_point(t, s, r);
-    if (feet_.touches_faces(shape_of(t))) {
-      p = feet_.clear_of_faces(shape_of(t), p);
+    if (feet_.touches_others(shape_of(t))) {
+      p = feet_.clear_of_others(shape_of(t), p);
       n = shapes_[shape_of(t)].normal_at(p);
     }
     return (p + (front ? kLift : -kLift) * n).cast<float>();

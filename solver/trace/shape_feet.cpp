@@ -66,6 +66,22 @@ bool lies_in_plane(const Vec3& centre, const Vec3& axis, double radius, const st
   return std::abs(normal.dot(centre - t[0])) + radius * axis.cross(normal).norm() <= kTouching;
 }
 
+/// Whether a line from `from` comes near something whose distance from a point is given.
+template <class Distance>
+bool comes_near(const Vec3& from, const Vec3& along, double near, Distance&& distance) {
+  constexpr int kLooks = 32;
+  for (int i = 0; i <= kLooks; ++i)
+    if (distance(from + along * i / kLooks) <= near + along.norm() / kLooks) return true;
+  return false;
+}
+
+/// What brings an offset to this length, towards `else_to` if it has none, unless it is as long already.
+Vec3 push(const Vec3& offset, double length, const Vec3& else_to) {
+  const double distance = offset.norm();
+  if (distance >= length) return Vec3::Zero();
+  return (length - distance) * (distance > 0 ? Vec3(offset / distance) : else_to);
+}
+
 }  // namespace
 
 ShapeFeet::OnTriangle& ShapeFeet::at(std::uint32_t triangle) {
@@ -79,7 +95,7 @@ ShapeFeet::OnTriangle& ShapeFeet::at(std::uint32_t triangle) {
 
 ShapeFeet::ShapeFeet(const ZoneMesh& mesh, const std::vector<Vec3f>& corners,
                      std::span<const CurvedShape> shapes)
-    : resting_(shapes.size()), index_(mesh.flat_count(), kNowhere) {
+    : resting_(shapes.size()), touched_(shapes.size()), index_(mesh.flat_count(), kNowhere) {
   const auto triangle = [&](std::size_t t) {
     return Corners{corners[3 * t].cast<double>(), corners[3 * t + 1].cast<double>(),
                    corners[3 * t + 2].cast<double>()};
@@ -90,8 +106,9 @@ ShapeFeet::ShapeFeet(const ZoneMesh& mesh, const std::vector<Vec3f>& corners,
     const auto [a, b, c] = triangle(t);
     boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), t});
   }
+  const std::vector<IndexedBox> shape_boxes = boxes_of(shapes, kGap);
   std::vector<std::vector<Target>> near(shapes.size());
-  for_each_box_pair(boxes_of(shapes, kGap), boxes, [&](std::uint32_t shape, std::uint32_t t) {
+  for_each_box_pair(shape_boxes, boxes, [&](std::uint32_t shape, std::uint32_t t) {
     near[shape].push_back({t, triangle(t)});
   });
   for (std::size_t s = 0; s < shapes.size(); ++s) {
@@ -99,13 +116,21 @@ ShapeFeet::ShapeFeet(const ZoneMesh& mesh, const std::vector<Vec3f>& corners,
       add_resting(s, shapes[s], face, mesh.triangle_normal(TriangleId(face.triangle)));
     if (!std::holds_alternative<Sphere>(shapes[s])) add_mantle(frustum_of(shapes[s]), mesh, near[s]);
   }
+  for_each_box_pair(shape_boxes, shape_boxes, [&](std::uint32_t a, std::uint32_t b) {
+    if (const auto* disk = std::get_if<Disk>(&shapes[b])) {
+      add_resting_on_disk(a, shapes[a], b, *disk);
+    } else if (const auto* second = std::get_if<Sphere>(&shapes[b]); second != nullptr && a < b) {
+      if (const auto* first = std::get_if<Sphere>(&shapes[a])) add_spheres(a, *first, b, *second);
+    }
+  });
 }
 
-void ShapeFeet::add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal) {
-  const Vec3& on_plane = face.corners[0];
+std::optional<ShapeFeet::Contact> ShapeFeet::contact(const CurvedShape& s, const Vec3& on_plane,
+                                                     const Vec3& normal) {
   const auto rests = [&](const Vec3& p) { return std::abs(normal.dot(p - on_plane)) <= kGap; };
-  Resting resting;
-  Touch touch;
+  Contact found;
+  Resting& resting = found.resting;
+  Touch& touch = found.touch;
   double radius = 0;
   if (const auto* sphere = std::get_if<Sphere>(&s)) {
     const double height = normal.dot(sphere->centre - on_plane);
@@ -115,29 +140,60 @@ void ShapeFeet::add_resting(std::size_t shape, const CurvedShape& s, const Targe
     touch.along = Vec3::Zero();
   } else {
     const Frustum f = frustum_of(s);
-    if (!(f.height > 0)) return;
+    if (!(f.height > 0)) return std::nullopt;
     const bool above = normal.dot(f.base + 0.5 * f.height * f.axis - on_plane) > 0;
     const Vec3 down = above ? Vec3(-normal) : normal;
     const Vec3 radial = across(down, f.axis);
-    if (radial.norm() < 0.5) return;  // stands rather than lies
+    if (radial.norm() < 0.5) return std::nullopt;  // stands rather than lies
     resting = {f.base, f.axis, radial.normalized(), radial.norm()};
     radius = f.r0;
     touch.from = f.base + f.r0 * resting.low;
     touch.along = f.base + f.height * f.axis + f.r1 * resting.low - touch.from;
   }
-  if (radius <= 4 * kGap || !rests(touch.from) || !rests(touch.from + touch.along)) return;
+  if (radius <= 4 * kGap || !rests(touch.from) || !rests(touch.from + touch.along)) return std::nullopt;
   touch.clear = std::sqrt(2 * radius * kGap / resting.steepness);
-  constexpr int kLooks = 32;
-  bool reaches = false;
-  for (int i = 0; i <= kLooks && !reaches; ++i)
-    reaches = distance_to(face.corners, touch.from + touch.along * i / kLooks) <=
-              touch.clear + touch.along.norm() / kLooks;
-  if (!reaches) return;
   touch.normal = normal;
   touch.aside = touch.along.isZero() ? normal.unitOrthogonal() : normal.cross(touch.along).normalized();
+  return found;
+}
+
+void ShapeFeet::add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal) {
+  const std::optional<Contact> found = contact(s, face.corners[0], normal);
+  if (!found) return;
+  const Touch& touch = found->touch;
+  if (!comes_near(touch.from, touch.along, touch.clear,
+                  [&](const Vec3& p) { return distance_to(face.corners, p); }))
+    return;
   at(face.triangle).touched.push_back(static_cast<std::uint32_t>(touches_.size()));
   touches_.push_back(touch);
-  resting_[shape].push_back(resting);
+  resting_[shape].push_back(found->resting);
+}
+
+void ShapeFeet::add_resting_on_disk(std::size_t shape, const CurvedShape& s, std::size_t disk_shape,
+                                    const Disk& disk) {
+  const std::optional<Contact> found = contact(s, disk.centre, disk.normal);
+  if (!found) return;
+  const Touch& touch = found->touch;
+  if (!comes_near(touch.from, touch.along, touch.clear, [&](const Vec3& p) {
+        const double from_centre = across(p - disk.centre, disk.normal).norm();
+        return std::max({from_centre - disk.radius, disk.inner_radius - from_centre, 0.0});
+      }))
+    return;
+  touched_[disk_shape].push_back(static_cast<std::uint32_t>(touches_.size()));
+  touches_.push_back(touch);
+  resting_[shape].push_back(found->resting);
+}
+
+// Each of the two keeps clear of the plane that touches both.
+void ShapeFeet::add_spheres(std::size_t a, const Sphere& sphere_a, std::size_t b, const Sphere& sphere_b) {
+  const Vec3 apart = sphere_b.centre - sphere_a.centre;
+  const double distance = apart.norm();
+  if (std::min(sphere_a.radius, sphere_b.radius) <= 4 * kGap ||
+      std::abs(distance - sphere_a.radius - sphere_b.radius) > kGap)
+    return;
+  const Vec3 towards = apart / distance;
+  resting_[a].push_back({sphere_a.centre, Vec3::Zero(), towards, 1});
+  resting_[b].push_back({sphere_b.centre, Vec3::Zero(), -towards, 1});
 }
 
 void ShapeFeet::add_mantle(const Frustum& f, const ZoneMesh& mesh, std::span<const Target> near) {
@@ -179,23 +235,22 @@ void ShapeFeet::add_foot(Foot foot, const ZoneMesh& mesh, std::span<const Target
   for (const std::uint32_t t : beside) at(t).beside.push_back(number);
 }
 
-Vec3f ShapeFeet::clear_of_shapes(std::size_t triangle, const Vec3f& start) const {
-  const OnTriangle& on = on_[index_[triangle]];
-  Vec3 p = start.cast<double>();
-  const auto keep_off = [&](const Vec3& offset, double radius, const Vec3& else_to) {
-    const double distance = offset.norm();
-    if (distance >= radius) return;
-    p += (radius - distance) * (distance > 0 ? Vec3(offset / distance) : else_to);
-  };
-  for (const std::uint32_t f : on.beside)
-    keep_off(across(p - feet_[f].centre, feet_[f].up), feet_[f].radius + kBeside, feet_[f].u);
-  for (const std::uint32_t k : on.touched) {
+Vec3 ShapeFeet::clear_of(const std::vector<std::uint32_t>& touches, Vec3 p) const {
+  for (const std::uint32_t k : touches) {
     const Touch& touch = touches_[k];
     const double length2 = touch.along.squaredNorm();
     const double t = length2 > 0 ? std::clamp((p - touch.from).dot(touch.along) / length2, 0.0, 1.0) : 0.0;
-    keep_off(across(p - touch.from - t * touch.along, touch.normal), touch.clear, touch.aside);
+    p += push(across(p - touch.from - t * touch.along, touch.normal), touch.clear, touch.aside);
   }
-  return p.cast<float>();
+  return p;
+}
+
+Vec3f ShapeFeet::clear_of_shapes(std::size_t triangle, const Vec3f& start) const {
+  const OnTriangle& on = on_[index_[triangle]];
+  Vec3 p = start.cast<double>();
+  for (const std::uint32_t f : on.beside)
+    p += push(across(p - feet_[f].centre, feet_[f].up), feet_[f].radius + kBeside, feet_[f].u);
+  return clear_of(on.touched, p).cast<float>();
 }
 
 ShapeFeet::Place ShapeFeet::place_of(const Place& hit, const Vec3& origin, const Vec3& direction,
@@ -224,8 +279,8 @@ ShapeFeet::Place ShapeFeet::place_of(const Place& hit, const Vec3& origin, const
   return hit;
 }
 
-Vec3 ShapeFeet::clear_of_faces(std::size_t shape, const Vec3& point) const {
-  Vec3 p = point;
+Vec3 ShapeFeet::clear_of_others(std::size_t shape, const Vec3& point) const {
+  Vec3 p = clear_of(touched_[shape], point);
   for (const Resting& r : resting_[shape]) {
     const Vec3 centre = r.base + r.axis.dot(p - r.base) * r.axis;
     const Vec3 radial = p - centre;

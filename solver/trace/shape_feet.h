@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,9 +17,9 @@ namespace reemit {
 /// the same: what arrives within the mantle belongs to the triangles within the polygon, and rays leave from
 /// points beside the mantle.
 ///
-/// A sphere touches a face in a point and a mantle that lies on it in a line. There the gap is narrower than
-/// the distance by which rays start off their surface: they leave from where it is wide enough, on either
-/// surface.
+/// A sphere touches a face, a disk or another sphere in a point, and a mantle that lies on a face or a disk
+/// does so in a line. There the gap is narrower than the distance by which rays start off their surface: they
+/// leave from where it is wide enough, on either surface.
 class ShapeFeet {
  public:
   ShapeFeet() = default;
@@ -41,10 +42,12 @@ class ShapeFeet {
   /// Where a hit of one of triangles() belongs, of a ray that came `distance` along `direction` (unit).
   Place place_of(const Place& hit, const Vec3& origin, const Vec3& direction, double distance) const;
 
-  /// Whether faces touch the shape, so that clear_of_faces() may move points.
-  bool touches_faces(std::size_t shape) const { return shape < resting_.size() && !resting_[shape].empty(); }
-  /// A point of the shape, moved along it until no face is nearer than a ray start needs.
-  Vec3 clear_of_faces(std::size_t shape, const Vec3& point) const;
+  /// Whether faces or other shapes touch the shape, so that clear_of_others() may move points.
+  bool touches_others(std::size_t shape) const {
+    return shape < resting_.size() && !(resting_[shape].empty() && touched_[shape].empty());
+  }
+  /// A point of the shape, moved along it until nothing that touches it is nearer than a ray start needs.
+  Vec3 clear_of_others(std::size_t shape, const Vec3& point) const;
 
  private:
   static constexpr std::uint32_t kNowhere = 0xffffffff;
@@ -86,12 +89,22 @@ class ShapeFeet {
 
   void add_mantle(const Frustum& f, const ZoneMesh& mesh, std::span<const Target> near);
   void add_foot(Foot foot, const ZoneMesh& mesh, std::span<const Target> near);
+  /// How a shape touches a plane through `on_plane`.
+  struct Contact {
+    Resting resting;
+    Touch touch;
+  };
+  static std::optional<Contact> contact(const CurvedShape& s, const Vec3& on_plane, const Vec3& normal);
   void add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal);
+  void add_resting_on_disk(std::size_t shape, const CurvedShape& s, std::size_t disk_shape, const Disk& disk);
+  void add_spheres(std::size_t a, const Sphere& sphere_a, std::size_t b, const Sphere& sphere_b);
+  Vec3 clear_of(const std::vector<std::uint32_t>& touches, Vec3 point) const;
   OnTriangle& at(std::uint32_t triangle);
 
   std::vector<Foot> feet_;
   std::vector<Touch> touches_;
-  std::vector<std::vector<Resting>> resting_;  // by shape
+  std::vector<std::vector<Resting>> resting_;        // by shape
+  std::vector<std::vector<std::uint32_t>> touched_;  // by shape: touches of disks that others rest on
   std::vector<std::uint32_t> triangles_;
   std::vector<OnTriangle> on_;        // as triangles_
   std::vector<std::uint32_t> index_;  // by triangle, in triangles_

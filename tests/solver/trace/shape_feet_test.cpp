@@ -21,8 +21,8 @@ struct OnShape {
   TriangleId triangle;
   float u, v;
 };
-OnShape on_shape(const RayScene& rays, const Vec3& point) {
-  const TriangleId first = rays.mesh().first_patch(0);
+OnShape on_shape(const RayScene& rays, const Vec3& point, std::size_t shape = 0) {
+  const TriangleId first = rays.mesh().first_patch(shape);
   const CurvedPatches& patches = rays.patches(first);
   const auto place = patches.place_of(rays.normalised(point).cast<double>());
   return {TriangleId(first.index() + place.patch), static_cast<float>(place.at.u),
@@ -115,6 +115,37 @@ TEST(ShapeFeet, RaysLeaveBallAndFloorWhereTheGapIsWideEnough) {
       ASSERT_TRUE(rays.closest(rays.ray_origin(floor.triangle, floor.u, floor.v, true),
                                Frame(rays.normal(floor.triangle)).to_world(local), hit));
       EXPECT_TRUE(hit.front);
+    }
+  }
+}
+
+// The same where a ball stands on a disk, as on the cap of a cylinder, and on another ball.
+TEST(ShapeFeet, RaysLeaveBallsAndWhatTheyStandOnWhereTheGapIsWideEnough) {
+  const Vec3 touch(0.3, 0.2, 1);
+  const double radius = 0.2;
+  for (const CurvedShape& below :
+       {CurvedShape(Disk{{0.25, 0.2, 1}, {0, 0, 1}, 0.3, 0}), CurvedShape(Sphere{{0.3, 0.2, 0.6}, 0.4, false})}) {
+    TestRoom room;
+    room.box("hull", room.material(false), {-2, -2, 0}, {2, 2, 3}, true);
+    const SurfaceId round = room.surface("round", room.material(false));
+    room.scene().surfaces[round.index()].shapes = {Sphere{touch + Vec3(0, 0, radius), radius, false}, below};
+    const MeshResult built = build_mesh(room.scene());
+    const RayScene rays(built.mesh);
+    const CounterRng rng(6, RngPurpose::kProbe);
+    const double close = std::sqrt(2 * radius * 8e-6);
+    for (std::uint32_t i = 0; i < 20'000; ++i) {
+      const auto u = rng.uniform4(i, 0, 0);
+      const double distance = close * static_cast<double>(u[0]);
+      const double azimuth = 2 * std::numbers::pi * static_cast<double>(u[1]);
+      const Vec3 beside = touch + Vec3(distance * std::cos(azimuth), distance * std::sin(azimuth), 0);
+      const Vec3f local = sample_cosine_hemisphere(u[2], u[3]);
+      for (const std::size_t shape : {0U, 1U}) {
+        const OnShape from = on_shape(rays, beside, shape);
+        const Vec3f away = Frame(rays.normal(from.triangle, from.u, from.v)).to_world(local);
+        Hit hit;
+        ASSERT_TRUE(rays.closest(rays.ray_origin(from.triangle, from.u, from.v, true), away, hit));
+        EXPECT_TRUE(hit.front) << "shape " << shape << ", " << distance << " m from where they touch";
+      }
     }
   }
 }
