@@ -123,8 +123,8 @@ TEST(ShapeFeet, RaysLeaveBallAndFloorWhereTheGapIsWideEnough) {
 TEST(ShapeFeet, RaysLeaveBallsAndWhatTheyStandOnWhereTheGapIsWideEnough) {
   const Vec3 touch(0.3, 0.2, 1);
   const double radius = 0.2;
-  for (const CurvedShape& below :
-       {CurvedShape(Disk{{0.25, 0.2, 1}, {0, 0, 1}, 0.3, 0}), CurvedShape(Sphere{{0.3, 0.2, 0.6}, 0.4, false})}) {
+  for (const CurvedShape& below : {CurvedShape(Disk{{0.25, 0.2, 1}, {0, 0, 1}, 0.3, 0}),
+                                   CurvedShape(Sphere{{0.3, 0.2, 0.6}, 0.4, false})}) {
     TestRoom room;
     room.box("hull", room.material(false), {-2, -2, 0}, {2, 2, 3}, true);
     const SurfaceId round = room.surface("round", room.material(false));
@@ -147,6 +147,37 @@ TEST(ShapeFeet, RaysLeaveBallsAndWhatTheyStandOnWhereTheGapIsWideEnough) {
         EXPECT_TRUE(hit.front) << "shape " << shape << ", " << distance << " m from where they touch";
       }
     }
+  }
+}
+
+// Where they touch, ball and cap are equally far from within the ball.
+TEST(ShapeFeet, NothingThatTouchesABallIsSeenFromWithinIt) {
+  const Vec3 touch(0.3, 0.2, 1);
+  for (const CurvedShape& below : {CurvedShape(Disk{{0.25, 0.2, 1}, {0, 0, 1}, 0.3, 0}),
+                                   CurvedShape(Sphere{{0.3, 0.2, 0.6}, 0.4, false}),
+                                   CurvedShape(Cylinder{{0.3, -0.4, 0.9}, {0.3, 0.8, 0.9}, 0.1, false})}) {
+    TestRoom room;
+    room.box("hull", room.material(false), {-2, -2, 0}, {2, 2, 3}, true);
+    const SurfaceId round = room.surface("round", room.material(false));
+    room.scene().surfaces[round.index()].shapes = {Sphere{touch + Vec3(0, 0, 0.2), 0.2, false}, below};
+    const MeshResult built = build_mesh(room.scene());
+    const RayScene rays(built.mesh);
+    const CounterRng rng(7, RngPurpose::kProbe);
+    int lost = 0;
+    for (std::uint32_t i = 0; i < 20'000; ++i) {
+      const auto u = rng.uniform4(i, 0, 0);
+      const Vec3 from = touch + Vec3(0.2 * (static_cast<double>(u[0]) - 0.5),
+                                     0.2 * (static_cast<double>(u[1]) - 0.5), 0.15);
+      const Vec3 to =
+          touch + 1e-4 * Vec3(static_cast<double>(u[2]) - 0.5, static_cast<double>(u[3]) - 0.5, 0);
+      Hit hit;
+      ASSERT_TRUE(rays.closest(rays.normalised(from),
+                               (rays.normalised(to) - rays.normalised(from)).normalized(), hit));
+      if (hit.triangle.index() < built.mesh.first_patch(0).index() ||
+          hit.triangle.index() >= built.mesh.first_patch(1).index() || hit.front)
+        ++lost;
+    }
+    EXPECT_EQ(lost, 0);
   }
 }
 

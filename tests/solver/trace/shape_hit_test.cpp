@@ -112,9 +112,14 @@ TEST(ShapeTarget, StartsAndEndsOfRaysLimitTheHits) {
   EXPECT_NEAR(tube.nearest(o, Vec3::UnitX(), 0, 9), 0.6, 1e-15);
   EXPECT_NEAR(tube.nearest(o, Vec3::UnitX(), 0.7, 9), 1.4, 1e-15);
   EXPECT_EQ(tube.nearest(o, Vec3::UnitX(), 0.7, 1.3), kNone);
+  // From within a little sooner than what touches the shape from outside, but not over a rim.
+  constexpr double kSooner = 2e-6;
+  EXPECT_NEAR(ball.nearest({0, 0, 0}, Vec3::UnitX(), 0, 9), 0.5 - kSooner, 1e-15);
+  EXPECT_NEAR(tube.nearest({0, 0, 0}, Vec3::UnitX(), 0, 9), 0.5 - kSooner, 1e-15);
   EXPECT_EQ(tube.nearest({0, 0, -1}, Vec3::UnitZ(), 0, 9), kNone);    // along the axis
   EXPECT_EQ(tube.nearest({-1, 0, 0.6}, Vec3::UnitX(), 0, 9), kNone);  // above the rim
-  EXPECT_NEAR(tube.nearest({-1, 0, 0.9}, Vec3(1, 0, -0.5).normalized(), 0, 9), std::hypot(1.5, 0.75),
+  EXPECT_NEAR(tube.nearest({-1, 0, 0.9}, Vec3(1, 0, -0.5).normalized(), 0, 9),
+              std::hypot(1.5, 0.75),
               1e-12);  // over the near rim, onto the far inside
 }
 
