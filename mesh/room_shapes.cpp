@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,57 @@ namespace {
 
 /// Around a full circle of a shape that becomes faces.
 constexpr int kFacetSegments = 32;
+
+/// Circle in which a mantle or a disk ends.
+struct Rim {
+  Vec3 centre;
+  Vec3 axis;
+  double radius;
+  std::size_t shape;
+};
+
+std::vector<Rim> rims_of(std::span<const CurvedShape> shapes) {
+  std::vector<Rim> rims;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (std::holds_alternative<Sphere>(shapes[i])) continue;
+    const Frustum f = frustum_of(shapes[i]);
+    rims.push_back({f.base, f.axis, f.r0, i});
+    if (f.r1 > 0) rims.push_back({f.base + f.height * f.axis, f.axis, f.r1, i});
+  }
+  return rims;
+}
+
+/// Shapes that end in the same circle become faces together: a round cap on a mantle of flat faces would
+/// stick out between its corners and show its back.
+void add_neighbours(const Scene& room, const RoomShapes& shapes, const MeshTolerances& tolerances,
+                    std::vector<bool>& faceted) {
+  const std::vector<Rim> rims = rims_of(shapes.exact);
+  std::vector<IndexedBox> boxes;
+  for (std::uint32_t i = 0; i < rims.size(); ++i) {
+    const Vec3 margin = Vec3::Constant(tolerances.weld);
+    boxes.push_back({rims[i].centre - margin, rims[i].centre + margin, i});
+  }
+  std::vector<std::vector<std::size_t>> neighbours(shapes.exact.size());
+  for_each_box_pair(boxes, boxes, [&](std::uint32_t i, std::uint32_t j) {
+    const Rim& a = rims[i];
+    const Rim& b = rims[j];
+    if (a.shape != b.shape && std::abs(a.radius - b.radius) <= tolerances.weld &&
+        a.radius * a.axis.cross(b.axis).norm() <= tolerances.weld)
+      neighbours[a.shape].push_back(b.shape);
+  });
+  std::vector<std::size_t> spreads;
+  for (std::size_t s = 0; s < faceted.size(); ++s)
+    if (faceted[s]) spreads.push_back(s);
+  while (!spreads.empty()) {
+    const std::size_t from = spreads.back();
+    spreads.pop_back();
+    for (const std::size_t s : neighbours[from]) {
+      if (faceted[s] || room.material_of(room.surfaces[shapes.surface[s].index()]).emits()) continue;
+      faceted[s] = true;
+      spreads.push_back(s);
+    }
+  }
+}
 
 std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes,
                                const MeshTolerances& tolerances) {
@@ -32,6 +85,7 @@ std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes,
     // Not within the contact distance: what sticks out by less than that is a leak all the same.
     pierced[s] = is_pierced(shapes.exact[s], vertices, pieces[piece], tolerances.weld);
   });
+  add_neighbours(room, shapes, tolerances, pierced);
   return pierced;
 }
 

@@ -22,9 +22,10 @@ struct RoomShapes {
   }
 };
 
-/// Decides which shapes stay exact: all that no flat face passes through, and all luminaires. The zones of a
-/// pierced shape must end at the cut, or they would carry light from one side to the other; faces can be
-/// cut. With `exact_shapes` false all become faces.
+/// Decides which shapes stay exact: all that no flat face passes through, unless they end in a circle
+/// together with one that is not exact, and all luminaires. The zones of a pierced shape must end at the cut,
+/// or they would carry light from one side to the other; faces can be cut. With `exact_shapes` false all
+/// become faces.
 RoomShapes separate_shapes(const Scene& room, bool exact_shapes, const MeshTolerances& tolerances);
 
 /// Appends the patches of the exact shapes to the base triangles, and their areas to the report.

@@ -66,6 +66,13 @@ TEST(ClosedRooms, RodsAndBarsThroughTheWalls) {
     {"name": "corner", "material": "wall", "box": {"min": [3.5, 0.43, 4.5], "max": [4.5, 0.45, 5.5]}})"));
 }
 
+// Where a rod becomes flat faces, its caps must too, or they stick out between its corners.
+TEST(ClosedRooms, CapsOfRodsThroughTheWallsEndWhereTheRodsDo) {
+  expect_nothing_lost(room_of(kHall + R"(,
+    {"name": "rod", "material": "one", "cylinder": {"base": [1, 0.6, 2], "top": [1, 0.6, 5.5], "radius": 0.4}},
+    {"name": "hopper", "material": "one", "cylinder": {"base": [3, 0.8, 2], "top": [3, 0.8, 5.5], "radius": 0.7, "top_radius": 0.3}})"));
+}
+
 TEST(ClosedRooms, RodFromALitRoomIntoADarkOne) {
   expect_nothing_lost(room_of(kHall + R"(,
     {"name": "next room", "material": "sealed", "box": {"min": [0, 0, 5.2], "max": [4, 3, 9], "inward": true}},
