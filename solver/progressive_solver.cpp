@@ -1,9 +1,9 @@
 #include "solver/progressive_solver.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,17 +12,11 @@
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
-#include "scenes/model/error.h"
-#include "scenes/model/interrupted.h"
-#include "scenes/model/stop_token.h"
-#include "solver/gather/discretisation.h"
-#include "solver/gather/small_zones.h"
-#include "solver/gather/zone_bias_estimate.h"
-#include "solver/losses/lost_light.h"
-#include "solver/losses/luminaire_warnings.h"
 #include "solver/matrix/matrix_solve.h"
-#include "solver/shoot/closed_room_check.h"
-#include "solver/shoot/packet_batch.h"
+#include "solver/run/examination.h"
+#include "solver/run/prepared_room.h"
+#include "solver/run/schedule.h"
+#include "solver/shoot/batches_ahead.h"
 #include "solver/tally/batch_statistics.h"
 #include "solver/tally/stop_rule.h"
 
@@ -33,197 +27,22 @@ namespace {
 
 using Clock = StopToken::Clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-Solution empty_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings) {
-  Solution solution;
-  solution.program_version = kProgramVersion;
-  solution.room_hash = content_hash(scene);
-  solution.settings = settings;
-  solution.bands = scene.bands;
-  keep_surfaces(scene, solution);
-  solution.mesh_report = std::move(mesh.report);
-  solution.mesh = std::move(mesh.mesh);
-  solution.sums.clear(solution.mesh.zone_count() * scene.bands.count());
-  for (const std::string& name : scene.bands.names()) {
-    BandAudit& band = solution.audit.bands.emplace_back();
+EnergyAudit empty_audit(const Solution& solution) {
+  EnergyAudit audit;
+  for (const std::string& name : solution.bands.names()) {
+    BandAudit& band = audit.bands.emplace_back();
     band.band = name;
-    band.absorbed.assign(scene.surfaces.size(), 0);
-    band.absorbed_on_backs.assign(scene.surfaces.size(), 0);
+    band.absorbed.assign(solution.surface_names.size(), 0);
+    band.absorbed_on_backs.assign(solution.surface_names.size(), 0);
   }
-  return solution;
+  return audit;
 }
 
-/// Share of all rays, and of the time, that goes to gathering on small zones at most.
-constexpr double kSmallZoneShare = 0.15;
-/// Share of the time that is kept for what comes after batches and gathering: the error and the
-/// discretisation.
-constexpr double kLastShare = 0.03;
-
-bool gathers_small_zones(const Solution& solution) {
-  return solution.settings.gather_small_zones && small_zone_count(solution.mesh) > 0;
-}
-
-/// When the parts of a run must be over; never, without a time limit.
-struct Schedule {
-  Clock::time_point start;
-  double limit_s = 0;  ///< 0: no limit.
-  double batches_s = 0;
-  double gather_s = 0;
-
-  Schedule(Clock::time_point begin, const Solution& solution)
-      : start(begin), limit_s(solution.settings.time_limit_s) {
-    gather_s = limit_s * (1 - kLastShare);
-    batches_s = gather_s - (gathers_small_zones(solution) ? kSmallZoneShare * limit_s : 0.0);
-  }
-
-  StopToken token(double seconds, const std::atomic<bool>& interrupt) const {
-    if (!(limit_s > 0)) return StopToken(interrupt);
-    // Beyond what a clock can count there is no limit either.
-    constexpr double kLongest = 1e9;
-    const std::chrono::duration<double> span(std::min(seconds, kLongest));
-    return StopToken(interrupt, start + std::chrono::duration_cast<Clock::duration>(span));
-  }
-};
-
-/// Adds batches to a solution until a rule stops it.
-class BatchRun {
- public:
-  BatchRun(const TransportScene& transport, const Emission& emission, const Schedule& schedule,
-           Solution& solution)
-      : transport_(transport),
-        emission_(emission),
-        schedule_(schedule),
-        solution_(solution),
-        plan_(solution.settings, transport.zones()),
-        rule_(solution.settings, plan_, schedule.batches_s),
-        books_(transport.zones(), transport.surfaces(), transport.bands()) {}
-
-  void run(const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
-    // A batch that was foreseen to end in time may take a little longer, and a slow start must leave time for
-    // some light at least.
-    constexpr double kGrace = 0.01;
-    constexpr double kLeast = 0.1;
-    state_.seconds = seconds_since(schedule_.start);
-    const double end = std::max(schedule_.batches_s + kGrace * schedule_.limit_s,
-                                state_.seconds + kLeast * schedule_.limit_s);
-    const StopToken stop = schedule_.token(end, interrupt);
-    std::optional<StopReason> reason;
-    while (!reason) {
-      const bool whole = add(stop);
-      if (progress) report(progress);
-      reason = rule_.stop(state_);
-      if (!whole) reason = stop.interrupted() ? StopReason::kInterrupted : StopReason::kTimeLimit;
-      if (interrupt) reason = StopReason::kInterrupted;
-    }
-    solution_.record.stopped = *reason;
-  }
-
- private:
-  /// Runs the next batch; false if it was cut off.
-  bool add(const StopToken& stop) {
-    const SolverSettings& settings = solution_.settings;
-    SolveRecord& record = solution_.record;
-    const std::int64_t weight = rule_.next_weight(state_);
-    state_.shortened = weight < plan_.next_weight(state_.batches, state_.weight);
-    const auto packets = static_cast<std::uint32_t>(weight * plan_.unit_packets());
-    const BatchTask task{transport_, emission_, settings, static_cast<std::uint32_t>(state_.batches),
-                         packets,    &stop};
-    books_.clear();
-    const bool whole =
-        settings.method == SolveMethod::kShooting ? shoot_batch(task, books_) : walk_batch(task, books_);
-    const bool counts = whole || state_.batches == 0;
-    if (counts) {
-      add_batch(solution_.mesh, books_, emission_.watts_per_quantum, weight, solution_.sums);
-      add_batch(books_, weight, solution_.audit);
-      record.packets += books_.packets;
-      record.rays += books_.rays;
-      state_.weight += weight;
-      state_.batches = solution_.sums.batches;
-    }
-    if (counts) {
-      record.error = zone_rms_error(transport_.scene(), solution_.mesh, solution_.sums);
-      state_.error = record.error;
-      look_at_bound();
-    }
-    state_.unshot_share = solution_.audit.worst_unshot_share();
-    const double before = std::exchange(state_.seconds, seconds_since(schedule_.start));
-    state_.batch_seconds = (state_.seconds - before) / static_cast<double>(weight);
-    record.seconds = state_.seconds;
-    return whole;
-  }
-
-  /// The bound takes a longer look than the error: where it may end the run, and for information whenever the
-  /// work has doubled.
-  void look_at_bound() {
-    const bool decides = rule_.may_reach_target(state_.batches, record().error);
-    if (!decides && state_.weight < 2 * weight_of_bound_) return;
-    bound_ = zone_error(transport_.scene(), solution_.mesh, solution_.sums).bound;
-    weight_of_bound_ = state_.weight;
-    if (decides) state_.error = bound_;
-  }
-
-  void report(const ProgressCallback& progress) const {
-    const double fraction = rule_.fraction_done(state_);
-    SolveProgress now;
-    now.fraction = fraction;
-    now.error = record().error;
-    now.error_bound = bound_;
-    now.unshot_share = state_.unshot_share;
-    now.rays_per_second = static_cast<double>(record().rays) / record().seconds;
-    now.seconds = record().seconds;
-    now.seconds_left = fraction > 0 ? now.seconds * (1 - fraction) / fraction : kUnknown;
-    now.rays = record().rays;
-    now.packets = record().packets;
-    now.batches = state_.batches;
-    progress(now);
-  }
-
-  const SolveRecord& record() const { return solution_.record; }
-
-  const TransportScene& transport_;
-  const Emission& emission_;
-  const Schedule& schedule_;
-  Solution& solution_;
-  BatchPlan plan_;
-  StopRule rule_;
-  BatchBooks books_;
-  RunState state_;
-  double bound_ = kUnknown;
-  std::int64_t weight_of_bound_ = 0;  // when bound_ was looked at
-};
-
-/// Light on small zones, which follows the batches and takes time of its own.
-void gather_what_is_small(const Scene& scene, const RayScene& rays, const Schedule& schedule,
-                          const std::atomic<bool>& interrupt, Solution& solution) {
-  if (interrupt || !gathers_small_zones(solution)) return;
-  SolveRecord& record = solution.record;
-  SmallZoneLimits limits;
-  limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
-  if (schedule.limit_s > 0) limits.seconds = schedule.gather_s - seconds_since(schedule.start);
-  const bool clock_had_a_say =
-      gather_small_zones(scene, rays, limits, solution, schedule.token(schedule.gather_s, interrupt));
-  if (clock_had_a_say && !interrupt) record.stopped = StopReason::kTimeLimit;
-}
-
-/// How far points differ from the zones they are in.
-void compare_points_with_zones(const Scene& scene, const RayScene& rays, const Schedule& schedule,
-                               const std::atomic<bool>& interrupt, Solution& solution) {
-  SolveRecord& record = solution.record;
-  if (solution.settings.method == SolveMethod::kMatrix) {
-    record.discretisation = discretisation_error(scene, rays, solution, StopToken(interrupt));
-    record.gather_bias = estimate_zone_bias(scene, rays, solution, StopToken(interrupt));
-    return;
-  }
-  // Short runs may spend a moment more on it.
-  constexpr double kMoment = 0.5;
-  const StopToken stop = schedule.token(schedule.limit_s + kMoment, interrupt);
-  record.discretisation = discretisation_error(scene, rays, solution, stop);
-  record.gather_bias = estimate_zone_bias(scene, rays, solution, stop);
+int thread_count(const SolverSettings& settings) {
+  const int cores = tbb::info::default_concurrency();
+  return settings.threads > 0 ? std::min(settings.threads, cores) : cores;
 }
 
 void tell_of_examination(const Solution& solution, const ProgressCallback& progress) {
@@ -241,23 +60,8 @@ void tell_of_examination(const Solution& solution, const ProgressCallback& progr
   progress(now);
 }
 
-/// Where light is lost, or that nobody looked.
-void look_for_lost_light(const TransportScene& transport, const Emission& emission,
-                         const std::atomic<bool>& interrupt, Solution& solution) {
-  const StopToken stop(interrupt);
-  std::vector<std::string>& warnings = solution.light_warnings;
-  try {
-    warnings = luminaire_warnings(transport, emission, &stop);
-    for (std::string& warning : lost_light_warnings(transport, emission, solution, &stop))
-      warnings.push_back(std::move(warning));
-  } catch (const Interrupted&) {
-    warnings.push_back(
-        "the run was interrupted before it had looked for light that is lost; solve again to know");
-  }
-}
-
-void run_matrix(const TransportScene& transport, const Emission& emission, Solution& solution,
-                const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+void run_matrix(const PreparedRoom& room, Solution& solution, const ProgressCallback& progress,
+                const std::atomic<bool>& interrupt) {
   const auto start = Clock::now();
   const auto report = [&](double fraction) {
     if (!progress) return;
@@ -268,65 +72,325 @@ void run_matrix(const TransportScene& transport, const Emission& emission, Solut
     now.seconds_left = fraction > 0 ? now.seconds * (1 - fraction) / fraction : kUnknown;
     progress(now);
   };
-  solve_by_matrix(transport, emission, report, interrupt, solution);
+  solve_by_matrix(room.transport, room.emission, report, interrupt, solution);
   solution.record.seconds = seconds_since(start);
 }
 
-/// `examine`: find out how good the solution is, beyond its noise, and where light is lost.
-Solution solve_room(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
-                    const ProgressCallback& progress, const std::atomic<bool>& interrupt,
-                    const WorkWatch& preparing, bool examine) {
+/// What follows the last batch, or the matrix, in the arena of the run.
+void examine_zones(const Scene& scene, const PreparedRoom& room, const Schedule& schedule,
+                   const ProgressCallback& progress, const std::atomic<bool>& interrupt, Solution& solution) {
+  if (progress && !interrupt) tell_of_examination(solution, progress);
+  compare_points_with_zones(scene, room.rays, schedule, interrupt, solution);
+}
+
+Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& watch,
+                      const std::atomic<bool>& interrupt, Examination examination) {
   const auto start = Clock::now();
-  Solution solution = empty_solution(scene, std::move(mesh), settings);
-  preparing.at(0);
-  const RayScene rays(solution.mesh);
-  const TransportScene transport(scene, solution.mesh, rays);
-  const Emission emission = collect_emission(transport);
-  for (std::size_t b = 0; b < scene.bands.count(); ++b)
-    solution.audit.bands[b].watts_per_quantum = emission.watts_per_quantum[b];
-  if (emission.sources.empty()) {
+  const PreparedRoom room(scene, solution, watch.preparing);
+  if (room.is_dark()) {
     solution.record.stopped = StopReason::kNoLuminaire;
     solution.record.unreached_zones = solution.mesh.zone_count();
     return solution;
   }
-  refuse_closed_perfect_reflector(transport, emission, settings.seed);
-  preparing.at(1);
-
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
+  tbb::task_arena arena(thread_count(solution.settings));
   arena.execute([&] {
-    const Schedule schedule(start, solution);
-    if (settings.method == SolveMethod::kMatrix) {
-      run_matrix(transport, emission, solution, progress, interrupt);
-    } else {
-      BatchRun(transport, emission, schedule, solution).run(progress, interrupt);
-      gather_what_is_small(scene, rays, schedule, interrupt, solution);
-    }
-    if (examine && progress && !interrupt) tell_of_examination(solution, progress);
-    if (examine) compare_points_with_zones(scene, rays, schedule, interrupt, solution);
-    const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
-    solution.record.error = error.rms;
-    solution.record.error_bound = error.bound;
-    solution.record.error_95th_percentile = error.percentile_95;
-    solution.record.unreached_zones = error.unreached;
+    run_matrix(room, solution, watch.progress, interrupt);
+    if (examination == Examination::kWhole)
+      examine_zones(scene, room, Schedule(start, solution), watch.progress, interrupt, solution);
+    record_error(scene, solution);
     solution.record.seconds = seconds_since(start);
   });
-  if (!examine) return solution;
-  look_for_lost_light(transport, emission, interrupt, solution);
+  if (examination == Examination::kWhole) look_for_lost_light(room, interrupt, solution);
   return solution;
 }
 
 }  // namespace
 
+Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings) {
+  Solution solution;
+  solution.program_version = kProgramVersion;
+  solution.room_hash = content_hash(scene);
+  solution.settings = settings;
+  solution.bands = scene.bands;
+  keep_surfaces(scene, solution);
+  solution.mesh_report = std::move(mesh.report);
+  solution.mesh = std::move(mesh.mesh);
+  solution.sums.clear(solution.mesh.zone_count() * scene.bands.count());
+  solution.audit = empty_audit(solution);
+  return solution;
+}
+
+/// Its parts refer to each other, so it is not moved.
+class ProgressiveSolver::Run {
+ public:
+  Run(const Scene& scene, Solution start, const std::atomic<bool>& interrupt, const WorkWatch& preparing)
+      : begin_(Clock::now()),
+        scene_(scene),
+        interrupt_(interrupt),
+        solution_(prepared_to_go_on(std::move(start))),
+        seconds_before_(solution_.record.seconds),
+        room_(scene, solution_, preparing),
+        arena_(thread_count(solution_.settings)),
+        schedule_(begin_, solution_),
+        plan_(solution_.settings, solution_.mesh.zone_count(), solution_.record.unit_packets),
+        rule_(solution_.settings, plan_, schedule_.batches_s) {
+    if (room_.is_dark()) {
+      record().stopped = StopReason::kNoLuminaire;
+      record().unreached_zones = solution_.mesh.zone_count();
+      return;
+    }
+    record().unit_packets = plan_.unit_packets();
+    state_.seconds = seconds_since(begin_);
+    // A batch that was foreseen to end in time may take a little longer, and a slow start must leave time for
+    // some light at least.
+    constexpr double kGrace = 0.01;
+    constexpr double kLeast = 0.1;
+    const double end = std::max(schedule_.batches_s + kGrace * schedule_.limit_s,
+                                state_.seconds + kLeast * schedule_.limit_s);
+    stop_.emplace(schedule_.token(end, interrupt));
+    ahead_.emplace(room_.transport, room_.emission, solution_.settings, thread_count(solution_.settings));
+    if (solution_.sums.batches == 0) return;
+    state_.batches = solution_.sums.batches;
+    state_.weight = solution_.sums.weight();
+    arena_.execute([&] { look_at_error(); });
+    if (const std::optional<StopReason> reason = rule_.stop(state_)) end_batches(*reason);
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  bool step() {
+    if (interrupt_ && state_.batches > 0 && record().stopped == StopReason::kUnderWay)
+      end_batches(StopReason::kInterrupted);
+    if (record().stopped != StopReason::kUnderWay) return false;
+    start_batches();
+    std::unique_ptr<BatchesAhead::Batch> batch = ahead_->take();
+    arena_.execute([&] { add(*batch); });
+    const std::optional<StopReason> reason = reason_to_stop(*batch);
+    ahead_->give_back(std::move(batch));
+    if (reason) end_batches(*reason);
+    return !reason;
+  }
+
+  const Solution& solution() const { return solution_; }
+
+  SolveProgress progress() const {
+    const double fraction = rule_.fraction_done(state_);
+    SolveProgress now;
+    now.fraction = fraction;
+    now.error = solution_.record.error;
+    now.error_bound = bound_;
+    now.unshot_share = state_.unshot_share;
+    now.rays_per_second = static_cast<double>(solution_.record.rays) / solution_.record.seconds;
+    now.seconds = state_.seconds;
+    now.seconds_left = fraction > 0 ? now.seconds * (1 - fraction) / fraction : kUnknown;
+    now.rays = solution_.record.rays;
+    now.packets = solution_.record.packets;
+    now.batches = state_.batches;
+    return now;
+  }
+
+  const Solution& checkpoint() {
+    arena_.execute([&] { record_error(scene_, solution_); });
+    return solution_;
+  }
+
+  Solution finish(const ProgressCallback& progress, Examination examination) {
+    if (room_.is_dark()) return std::move(solution_);
+    if (record().stopped == StopReason::kUnderWay) end_batches(StopReason::kInterrupted);
+    arena_.execute([&] {
+      gather_what_is_small(scene_, room_.rays, schedule_, interrupt_, solution_);
+      if (examination == Examination::kWhole)
+        examine_zones(scene_, room_, schedule_, progress, interrupt_, solution_);
+      record_error(scene_, solution_);
+      record().seconds = seconds_before_ + seconds_since(begin_);
+    });
+    if (examination == Examination::kWhole) look_for_lost_light(room_, interrupt_, solution_);
+    return std::move(solution_);
+  }
+
+ private:
+  SolveRecord& record() { return solution_.record; }
+
+  /// Takes out what followed the last batch when the solution was finished before.
+  static Solution prepared_to_go_on(Solution start) {
+    SolveRecord& record = start.record;
+    if (record.cut_off) {
+      // A part of a batch is no independent estimate; it starts again.
+      start.sums.clear(start.sums.direct.size());
+      start.audit = empty_audit(start);
+      const SolveRecord cut_off = std::exchange(record, {});
+      record.seconds = cut_off.seconds;
+      record.unit_packets = cut_off.unit_packets;
+    }
+    start.gathered.restore(start.sums, start.bands.count());
+    record.rays -= start.gathered.rays;
+    start.gathered = {};
+    record.stopped = StopReason::kUnderWay;
+    record.gathered_zones = 0;
+    record.discretisation.reset();
+    record.gather_bias.reset();
+    start.light_warnings.clear();
+    return start;
+  }
+
+  /// Fills the places of batches that go on at the same time with those that will be needed, as far as can be
+  /// foreseen.
+  void start_batches() {
+    while (!ahead_->full()) {
+      RunState then = state_;
+      then.batches += ahead_->batches();
+      then.weight += ahead_->weight();
+      then.seconds = seconds_since(begin_);
+      std::int64_t weight = drains_ ? 0 : rule_.next_weight(then);
+      if (!ahead_->empty() && (weight == 0 || will_suffice(then))) return;
+      weight = std::max<std::int64_t>(weight, 1);  // the clock went on since it was looked at
+      ahead_->start(static_cast<std::uint32_t>(then.batches),
+                    static_cast<std::uint32_t>(weight * plan_.unit_packets()), weight, *stop_);
+    }
+  }
+
+  /// Whether the error target is likely to be met once the batches on their way are added.
+  bool will_suffice(const RunState& then) const {
+    const double target = solution_.settings.error_target;
+    if (!(target > 0) || then.batches < solution_.settings.smallest_batch_count || state_.batches < 2)
+      return false;
+    const double bound = solution_.record.error * bound_over_error_;
+    return bound * std::sqrt(static_cast<double>(state_.weight) / static_cast<double>(then.weight)) <= target;
+  }
+
+  void add(const BatchesAhead::Batch& batch) {
+    state_.shortened = batch.weight < plan_.next_weight(state_.batches, state_.weight);
+    const bool counts = batch.whole || state_.batches == 0;
+    if (counts) {
+      add_batch(solution_.mesh, batch.books, room_.emission.watts_per_quantum, batch.weight, solution_.sums);
+      add_batch(batch.books, batch.weight, solution_.audit);
+      record().packets += batch.books.packets;
+      record().rays += batch.books.rays;
+      record().cut_off = !batch.whole;
+      state_.weight += batch.weight;
+      state_.batches = solution_.sums.batches;
+      look_at_error();
+    }
+    state_.seconds = seconds_since(begin_);
+    state_.batch_seconds = batch.seconds / static_cast<double>(batch.weight);
+    record().seconds = seconds_before_ + state_.seconds;
+  }
+
+  void look_at_error() {
+    state_.unshot_share = solution_.audit.worst_unshot_share();
+    record().error = zone_rms_error(scene_, solution_.mesh, solution_.sums);
+    state_.error = record().error;
+    // The bound takes a longer look than the error: where it may end the run, and for information whenever
+    // the work has doubled.
+    const bool decides = rule_.may_reach_target(state_.batches, record().error);
+    if (!decides && state_.weight < 2 * weight_of_bound_) return;
+    bound_ = zone_error(scene_, solution_.mesh, solution_.sums).bound;
+    weight_of_bound_ = state_.weight;
+    if (std::isfinite(bound_) && record().error > 0) bound_over_error_ = bound_ / record().error;
+    if (decides) state_.error = bound_;
+  }
+
+  std::optional<StopReason> reason_to_stop(const BatchesAhead::Batch& batch) {
+    if (interrupt_) return StopReason::kInterrupted;
+    if (!batch.whole) return StopReason::kTimeLimit;
+    const std::optional<StopReason> reason = rule_.stop(state_);
+    // Those that are on their way were planned to end in time.
+    drains_ = reason == StopReason::kTimeLimit && !ahead_->empty();
+    return drains_ ? std::nullopt : reason;
+  }
+
+  void end_batches(StopReason reason) {
+    record().stopped = reason;
+    ahead_.reset();
+  }
+
+  Clock::time_point begin_;
+  const Scene& scene_;
+  const std::atomic<bool>& interrupt_;
+  Solution solution_;
+  double seconds_before_;  // of earlier sittings
+  PreparedRoom room_;
+  tbb::task_arena arena_;
+  Schedule schedule_;
+  BatchPlan plan_;
+  StopRule rule_;
+  RunState state_;
+  std::optional<StopToken> stop_;
+  std::optional<BatchesAhead> ahead_;
+  bool drains_ = false;  // no more batches begin
+  double bound_ = kUnknown;
+  double bound_over_error_ = 1;
+  std::int64_t weight_of_bound_ = 0;  // when bound_ was looked at
+};
+
+ProgressiveSolver::ProgressiveSolver(const Scene& scene, Solution start, const std::atomic<bool>& interrupt,
+                                     const WorkWatch& preparing)
+    : run_(std::make_unique<Run>(scene, std::move(start), interrupt, preparing)) {}
+
+ProgressiveSolver::~ProgressiveSolver() = default;
+
+bool ProgressiveSolver::step() {
+  return run_->step();
+}
+const Solution& ProgressiveSolver::solution() const {
+  return run_->solution();
+}
+SolveProgress ProgressiveSolver::progress() const {
+  return run_->progress();
+}
+const Solution& ProgressiveSolver::checkpoint() {
+  return run_->checkpoint();
+}
+Solution ProgressiveSolver::finish(const ProgressCallback& progress, Examination examination) {
+  return run_->finish(progress, examination);
+}
+
+std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution) {
+  if (solution.record.stopped == StopReason::kNoLuminaire) return StopReason::kNoLuminaire;
+  if (solution.sums.batches == 0 || solution.record.cut_off) return std::nullopt;
+  const std::size_t bands = solution.bands.count();
+  GatheredZones gathered;
+  gathered.keep(solution.sums, bands, solution.gathered.zones);
+  solution.gathered.restore(solution.sums, bands);
+  const double bound = zone_error(scene, solution.mesh, solution.sums).bound;
+  gathered.restore(solution.sums, bands);
+
+  const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);
+  RunState state;
+  state.batches = solution.sums.batches;
+  state.weight = solution.sums.weight();
+  state.error = bound;
+  state.unshot_share = solution.audit.worst_unshot_share();
+  return StopRule(solution.settings, plan, solution.settings.time_limit_s).stop(state);
+}
+
+Solution solve(const Scene& scene, Solution start, const SolveWatch& watch,
+               const std::atomic<bool>& interrupt, Examination examination) {
+  if (start.settings.method == SolveMethod::kMatrix)
+    return solve_matrix(scene, std::move(start), watch, interrupt, examination);
+  ProgressiveSolver solver(scene, std::move(start), interrupt, watch.preparing);
+  auto saved = Clock::now();
+  bool goes_on = solver.solution().record.stopped == StopReason::kUnderWay;
+  while (goes_on) {
+    goes_on = solver.step();
+    if (watch.progress) watch.progress(solver.progress());
+    if (goes_on && watch.checkpoint && seconds_since(saved) >= watch.checkpoint_s) {
+      watch.checkpoint(solver.checkpoint());
+      saved = Clock::now();
+    }
+  }
+  return solver.finish(watch.progress, examination);
+}
+
 Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
-               const ProgressCallback& progress, const std::atomic<bool>& interrupt,
-               const WorkWatch& preparing) {
-  return solve_room(scene, std::move(mesh), settings, progress, interrupt, preparing, true);
+               const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
+  return solve(scene, new_solution(scene, std::move(mesh), settings), {.progress = progress}, interrupt);
 }
 
 Solution solve_zones(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
                      const ProgressCallback& progress, const std::atomic<bool>& interrupt) {
-  return solve_room(scene, std::move(mesh), settings, progress, interrupt, {}, false);
+  return solve(scene, new_solution(scene, std::move(mesh), settings), {.progress = progress}, interrupt,
+               Examination::kNone);
 }
 
 }  // namespace reemit

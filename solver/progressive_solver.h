@@ -1,6 +1,8 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <memory>
+#include <optional>
 
 #include "mesh/build_mesh.h"
 #include "scenes/model/scene.h"
@@ -26,24 +28,76 @@ struct SolveProgress {
 };
 using ProgressCallback = std::function<void(const SolveProgress&)>;
 
-/// Solves the room batch by batch until a stopping rule of `settings` holds or `interrupt` becomes true; then
-/// returns what stands. A batch that the time limit or `interrupt` cuts off is left out, but if it is the
-/// first: then it is the solution, low by what BandAudit::unshot says, its error unknown. The time limit
-/// counts from the call on. Values depend on room, mesh and settings (without threads) only, bit for bit,
-/// when the run stops by error or packets. Fills everything in Solution except room_path, read_options and
-/// mesh_settings. Throws InputError when a luminaire shines into a sealed part of the room that reflects
-/// everything in some band: it has no solution. The matrix method has no stopping rules and nothing to return
-/// when it is interrupted: it throws Interrupted, and what compute_form_factors throws. `preparing` is told
-/// 0 before the tree for rays is built and 1 right before the first batch; Interrupted is thrown when it asks
-/// for it there. An interrupt after the last batch cuts the examination of the solution short: what is not
-/// known then is empty in SolveRecord, and Solution::light_warnings says so of lost light.
-Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
-               const ProgressCallback& progress, const std::atomic<bool>& interrupt,
-               const WorkWatch& preparing = {});
+/// What is found out about a solution once its last batch is in.
+enum class Examination {
+  kWhole,
+  /// SolveRecord::discretisation and gather_bias and Solution::light_warnings stay empty: for studies that
+  /// solve a small room many times, of which they would be the greater part of the work.
+  kNone,
+};
 
-/// The same without what `solve` then finds out about the solution: SolveRecord::discretisation and
-/// gather_bias and Solution::light_warnings stay empty. For studies that solve a small room many times, of
-/// which that would be the greater part of the work.
+/// A solution of this room without any batch: where a run starts. Everything in it is filled but what only
+/// the caller knows: room_path, more_room_paths, read_options and mesh_settings.
+Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings);
+
+/// A run by shooting or walks, batch by batch, that can be looked at and saved between batches and resumed
+/// later. Values depend on room, mesh and settings (without threads) only, bit for bit, however often the run
+/// was resumed, when it stops by error or packets.
+class ProgressiveSolver {
+ public:
+  /// Goes on from `start`: a new_solution, one that a checkpoint saved, or a finished one, whose settings may
+  /// have other stopping rules and threads than before; with others changed the batches would not go
+  /// together. A time limit counts from here on. A batch that it or `interrupt` cuts off is left out, but if
+  /// it is the first: then it is the solution, low by what BandAudit::unshot says, its error unknown.
+  /// `preparing` is told 0 before the tree for rays is built and 1 at the end. Throws InputError when a
+  /// luminaire shines into a sealed part of the room that reflects everything in some band: it has no
+  /// solution. The scene and `interrupt` must outlive the solver. Pre: the method is not the matrix.
+  ProgressiveSolver(const Scene& scene, Solution start, const std::atomic<bool>& interrupt,
+                    const WorkWatch& preparing = {});
+  ~ProgressiveSolver();
+  ProgressiveSolver(const ProgressiveSolver&) = delete;
+  ProgressiveSolver& operator=(const ProgressiveSolver&) = delete;
+
+  /// Adds a batch; false, without a further one, once a stopping rule holds or `interrupt` is true. Other
+  /// batches go on meanwhile, on other threads.
+  bool step();
+  SolveProgress progress() const;
+  /// What stands. SolveRecord::stopped is kUnderWay until a rule holds.
+  const Solution& solution() const;
+  /// The same with all that the record says about its noise, ready to be saved.
+  const Solution& checkpoint();
+  /// Ends the run and hands over its solution, with light on zones too small for packets. An interrupt cuts
+  /// the examination short: what is not known then is empty in SolveRecord, and Solution::light_warnings says
+  /// so of lost light. Once, as the last call.
+  Solution finish(const ProgressCallback& progress = {}, Examination examination = Examination::kWhole);
+
+ private:
+  class Run;
+  std::unique_ptr<Run> run_;
+};
+
+/// The stopping rule of its settings that a solution meets already, so that a run would add no batch to it;
+/// nothing if it would. The sums are changed meanwhile and put back.
+std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution);
+
+/// Who watches a solve.
+struct SolveWatch {
+  ProgressCallback progress = {};
+  WorkWatch preparing = {};
+  /// Is given what stands, at intervals, between two batches; not by the matrix method.
+  std::function<void(const Solution&)> checkpoint = {};
+  double checkpoint_s = 600;  ///< Wall time between two checkpoints [s].
+};
+
+/// Runs a ProgressiveSolver from `start` to its end. The matrix method has no stopping rules and nothing to
+/// return when it is interrupted: it throws Interrupted, and what compute_form_factors throws.
+Solution solve(const Scene& scene, Solution start, const SolveWatch& watch,
+               const std::atomic<bool>& interrupt, Examination examination = Examination::kWhole);
+
+/// The same from the beginning.
+Solution solve(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
+               const ProgressCallback& progress, const std::atomic<bool>& interrupt);
+/// The same with Examination::kNone.
 Solution solve_zones(const Scene& scene, MeshResult mesh, const SolverSettings& settings,
                      const ProgressCallback& progress, const std::atomic<bool>& interrupt);
 

@@ -16,12 +16,24 @@ class StopToken {
   StopToken(const std::atomic<bool>& interrupt, Clock::time_point deadline)
       : interrupt_(&interrupt), deadline_(deadline) {}
 
+  /// The same for work that may become needless before the rest: requested also once `needless` is true,
+  /// which must outlive the token too.
+  StopToken or_when(const std::atomic<bool>& needless) const {
+    StopToken token = *this;
+    token.needless_ = &needless;
+    return token;
+  }
+
   bool interrupted() const { return interrupt_->load(std::memory_order_relaxed); }
   bool out_of_time() const { return deadline_ != Clock::time_point::max() && Clock::now() >= deadline_; }
-  bool requested() const { return interrupted() || out_of_time(); }
+  bool requested() const {
+    return interrupted() || (needless_ != nullptr && needless_->load(std::memory_order_relaxed)) ||
+           out_of_time();
+  }
 
  private:
   const std::atomic<bool>* interrupt_;
+  const std::atomic<bool>* needless_ = nullptr;
   Clock::time_point deadline_ = Clock::time_point::max();
 };
 

@@ -85,7 +85,7 @@ void RadianceField::read_zones(const Solution& solution) {
           total = sums.direct[k] + sums.indirect[k];
         else
           for (std::size_t g = p; g < ZoneSums::kGroups; g += parts_)
-            total += sums.group_total[g * values_ + k];
+            total += static_cast<double>(sums.group_total[g * values_ + k]);
         const auto irradiance = static_cast<float>(total / part_weight[p]);
         reflected_[p * values_ + k] = lambert_reflected_radiance(reflectance, irradiance);
       }

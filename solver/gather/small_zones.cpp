@@ -199,7 +199,8 @@ bool gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZon
       });
   const auto packet_rays = static_cast<double>(solution.record.rays);
   const double watts_per_ray = power_per_ray(solution);
-  solution.record.rays += piloted * kRaysPerPoint;
+  solution.gathered.rays = piloted * kRaysPerPoint;
+  solution.record.rays += solution.gathered.rays;
   if (piloted < zones.size()) return true;
 
   double points_left = affordable - static_cast<double>(piloted);
@@ -221,12 +222,15 @@ bool gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZon
   // As many rays as the mean zone meets packets leave about its error.
   const double enough = packet_rays / static_cast<double>(mesh.zone_count() * kRaysPerPoint);
   const int points = whole_points(std::min(enough, points_left / static_cast<double>(chosen.size())));
+  solution.gathered.keep(solution.sums, bands, chosen);
   const std::size_t gathered = gatherer.gather(
       chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, std::size_t b, const ZoneReplicates& x) {
         store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect);
       });
   solution.record.gathered_zones = gathered;
-  solution.record.rays += gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);
+  const std::uint64_t gather_rays = gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);
+  solution.gathered.rays += gather_rays;
+  solution.record.rays += gather_rays;
   return clock_had_a_say || gathered < chosen.size();
 }
 

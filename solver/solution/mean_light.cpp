@@ -64,7 +64,7 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
   add_up([&](std::size_t i) { return sums.direct[i] + sums.indirect[i]; },
          [](GroupedMean& side) -> Spectrum& { return side.irradiance; });
   for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
-    add_up([&](std::size_t i) { return sums.group_total[g * values + i]; },
+    add_up([&](std::size_t i) { return static_cast<double>(sums.group_total[g * values + i]); },
            [g](GroupedMean& side) -> Spectrum& { return side.groups[g]; });
   for (GroupedMean& side : sides) {
     if (!(side.area > 0)) continue;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace reemit {
 namespace {
@@ -26,10 +27,8 @@ void ZoneSums::clear(std::size_t values) {
   batches = 0;
   group_weight.fill(0);
   weight_squared = 0;
-  for (auto* sum : {&direct, &indirect, &direct_cross, &indirect_cross, &direct_squared, &indirect_squared,
-                    &total_squared})
-    sum->assign(values, 0.0);
-  group_total.assign(kGroups * values, 0.0);
+  for (std::vector<double>* sum : columns()) sum->assign(values, 0.0);
+  group_total.assign(kGroups * values, 0.0F);
 }
 
 std::size_t ZoneSums::count_batch(std::int64_t w) {
@@ -56,8 +55,38 @@ double ZoneSums::squared_error(double sum, double cross, double squares) const {
   return std::max(0.0, squares - 2 * mean * cross + mean * mean * weight_squared) / (w * w - weight_squared);
 }
 
+void GatheredZones::keep(const ZoneSums& from, std::size_t bands, std::vector<ZoneId> of_zones) {
+  zones = std::move(of_zones);
+  sums.clear();
+  group_total.clear();
+  for (const ZoneId z : zones)
+    for (std::size_t i = z.index() * bands; i < (z.index() + 1) * bands; ++i)
+      for (const std::vector<double>* column : from.columns()) sums.push_back((*column)[i]);
+  const std::size_t values = from.direct.size();
+  for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
+    for (const ZoneId z : zones) {
+      const auto row = from.group_total.begin() + static_cast<std::ptrdiff_t>(g * values + z.index() * bands);
+      group_total.insert(group_total.end(), row, row + static_cast<std::ptrdiff_t>(bands));
+    }
+}
+
+void GatheredZones::restore(ZoneSums& to, std::size_t bands) const {
+  auto next = sums.begin();
+  for (const ZoneId z : zones)
+    for (std::size_t i = z.index() * bands; i < (z.index() + 1) * bands; ++i)
+      for (std::vector<double>* column : to.columns()) (*column)[i] = *next++;
+  const std::size_t values = to.direct.size();
+  auto next_total = group_total.begin();
+  for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
+    for (const ZoneId z : zones)
+      for (std::size_t b = 0; b < bands; ++b)
+        to.group_total[g * values + z.index() * bands + b] = *next_total++;
+}
+
 std::string to_string(StopReason reason) {
   switch (reason) {
+    case StopReason::kUnderWay:
+      return "not finished";
     case StopReason::kErrorTarget:
       return "error target reached";
     case StopReason::kTimeLimit:

@@ -38,8 +38,20 @@ struct ZoneSums {
   std::vector<double> direct_squared, indirect_squared,
       total_squared;  ///< Sum of (w x)^2; of direct + indirect.
   /// Sum of w (direct + indirect) over the batches of one group: index group * values + zone * bands + band,
-  /// with values = zones * bands.
-  std::vector<double> group_total;
+  /// with values = zones * bands. Single precision, as the file has it: a run that was resumed must not
+  /// differ from one that was not.
+  std::vector<float> group_total;
+
+  static constexpr std::size_t kColumns = 7;
+  /// The sums with one value per zone and band.
+  std::array<std::vector<double>*, kColumns> columns() {
+    return {&direct,         &indirect,         &direct_cross, &indirect_cross,
+            &direct_squared, &indirect_squared, &total_squared};
+  }
+  std::array<const std::vector<double>*, kColumns> columns() const {
+    return {&direct,         &indirect,         &direct_cross, &indirect_cross,
+            &direct_squared, &indirect_squared, &total_squared};
+  }
 
   /// No batches, and all sums 0, for `values` = zones * bands.
   void clear(std::size_t values);
@@ -58,7 +70,21 @@ struct Estimate {
   double stderr_of_mean = 0;
 };
 
+/// What packets brought to zones whose sums hold light that was gathered since; to go on, a run needs it.
+struct GatheredZones {
+  std::vector<ZoneId> zones;
+  std::vector<double> sums;        ///< Rows of ZoneSums::columns(): [zone][band][column].
+  std::vector<float> group_total;  ///< [group][zone][band]
+  std::uint64_t rays = 0;          ///< Traced to gather, part of SolveRecord::rays.
+
+  /// Keeps what the sums of these zones are.
+  void keep(const ZoneSums& sums, std::size_t bands, std::vector<ZoneId> of_zones);
+  /// Puts it back.
+  void restore(ZoneSums& sums, std::size_t bands) const;
+};
+
 enum class StopReason {
+  kUnderWay,  ///< It has not: what stands when a checkpoint is saved.
   kErrorTarget,
   kTimeLimit,
   kPacketCount,
@@ -72,15 +98,17 @@ std::string to_string(StopReason reason);  ///< In words, as printed and stored.
 
 /// How far a solve got.
 struct SolveRecord {
-  StopReason stopped = StopReason::kNoLuminaire;
+  StopReason stopped = StopReason::kUnderWay;
   std::uint64_t packets = 0;  ///< Emitted by luminaires.
   std::uint64_t rays = 0;     ///< Traced in all.
-  double seconds = 0;         ///< Wall time of the solve without meshing and saving.
+  double seconds = 0;         ///< Wall time of the solve without meshing and saving, all sittings together.
   double error = 0;        ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
   double error_bound = 0;  ///< The true rms error stays below this with odds of 99.9 %, worst band.
   double error_95th_percentile = 0;   ///< 95th percentile over zones of s/B, worst band; lit zones only.
   std::uint64_t unreached_zones = 0;  ///< Zones that no packet met.
   std::uint64_t gathered_zones = 0;   ///< Zones too small for packets, found by gathering.
+  std::uint64_t unit_packets = 0;     ///< Packets of a batch of weight 1; 0 before there is one.
+  bool cut_off = false;               ///< The solution is a first batch that was cut off.
   /// How far radiosity at points lies from that of their zones, relative rms, worst band: an error that more
   /// packets do not lessen. Nothing if it was not estimated.
   std::optional<double> discretisation;
@@ -108,6 +136,7 @@ struct Solution {
   MeshReport mesh_report;
   ZoneMesh mesh{BaseMesh{}};
   ZoneSums sums;
+  GatheredZones gathered;
   EnergyAudit audit;
   std::vector<std::string> light_warnings;  ///< Of light that is lost where it should not be (lost_light.h).
   std::optional<FormFactorReport> form_factors;  ///< Of the matrix method; not kept in the file.

@@ -29,6 +29,7 @@ void transfer_mesh_settings(Archive& archive, Settings& settings) {
   archive.attribute("default_zone_count", settings.default_zone_count);
   archive.attribute("smallest_angle_deg", settings.smallest_angle_deg);
   archive.attribute("crease_angle_deg", settings.crease_angle_deg);
+  archive.attribute("exact_shapes", settings.exact_shapes);
 }
 
 template <class Archive, class Settings>
@@ -58,6 +59,8 @@ void transfer_record(Archive& archive, Record& record) {
   archive.attribute("error_95th_percentile", record.error_95th_percentile);
   archive.attribute("unreached_zones", record.unreached_zones);
   archive.attribute("gathered_zones", record.gathered_zones);
+  archive.attribute("unit_packets", record.unit_packets);
+  archive.attribute("cut_off", record.cut_off);
   archive.attribute("discretisation", record.discretisation);
   archive.attribute("gather_bias", record.gather_bias);
 }
@@ -90,7 +93,8 @@ inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, Solve
 inline constexpr SamplingKind kAllSamplingKinds[] = {SamplingKind::kRandom, SamplingKind::kSobol};
 inline constexpr Reemission kAllReemissions[] = {Reemission::kFromHits, Reemission::kFromZones};
 inline constexpr StopReason kAllStopReasons[] = {
-    StopReason::kErrorTarget, StopReason::kTimeLimit,   StopReason::kPacketCount, StopReason::kBatchLimit,
-    StopReason::kBounceLimit, StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};
+    StopReason::kUnderWay,    StopReason::kErrorTarget, StopReason::kTimeLimit,
+    StopReason::kPacketCount, StopReason::kBatchLimit,  StopReason::kBounceLimit,
+    StopReason::kInterrupted, StopReason::kNoLuminaire, StopReason::kSystemSolved};
 
 }  // namespace reemit

@@ -100,8 +100,9 @@ std::uint64_t rows_of(const Hdf5Group& group, const char* name) {
   return group.shape(name).at(0);
 }
 
-bool all_finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+template <class T>
+bool all_finite(const std::vector<T>& values) {
+  return std::all_of(values.begin(), values.end(), [](T x) { return std::isfinite(x); });
 }
 
 void read_materials(const Hdf5Group& root, Solution& solution) {
@@ -234,10 +235,27 @@ ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
     *values = group.read<double>(name, shape);
     require(all_finite(*values), std::string("/sums/") + name + " holds a number that is not finite");
   }
-  const auto groups = group.read<float>("group_total", {ZoneSums::kGroups, shape[0], bands});
-  sums.group_total.assign(groups.begin(), groups.end());
+  sums.group_total = group.read<float>("group_total", {ZoneSums::kGroups, shape[0], bands});
   require(all_finite(sums.group_total), "/sums/group_total holds a number that is not finite");
   return sums;
+}
+
+GatheredZones read_gathered(const Hdf5Group& root, const Solution& solution) {
+  const Hdf5Group group = root.open_group("gathered");
+  const std::uint64_t bands = solution.bands.count();
+  const std::uint64_t count = rows_of(group, "zone");
+  GatheredZones gathered;
+  gathered.rays = group.read_attribute<std::uint64_t>("rays");
+  require(gathered.rays <= solution.record.rays, "more gathered rays than rays");
+  for (const std::uint32_t zone : group.read<std::uint32_t>("zone", {count})) {
+    require(zone < solution.mesh.zone_count(), "gathered zones out of range");
+    gathered.zones.emplace_back(zone);
+  }
+  gathered.sums = group.read<double>("sums", {count, bands, ZoneSums::kColumns});
+  gathered.group_total = group.read<float>("group_total", {ZoneSums::kGroups, count, bands});
+  require(all_finite(gathered.sums) && all_finite(gathered.group_total),
+          "/gathered holds a number that is not finite");
+  return gathered;
 }
 
 /// Whether no sum of what the books of a band hold overflows, in whatever order it is taken.
@@ -312,6 +330,7 @@ Solution read_all(const Hdf5Group& root) {
   const std::uint64_t bands = solution.bands.count();
   solution.sums = read_sums(root, bands);
   solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / bands);
+  solution.gathered = read_gathered(root, solution);
   solution.audit = read_audit(root, solution);
   solution.light_warnings = root.open_group("audit").read_texts("warnings");
   return solution;

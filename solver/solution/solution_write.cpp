@@ -56,11 +56,14 @@ void check_consistent(const Solution& solution) {
   require(solution.mesh_report.surfaces.size() == surfaces,
           "one row of the mesh report per surface expected");
   const ZoneSums& sums = solution.sums;
-  for (const auto* values : {&sums.direct, &sums.direct_cross, &sums.direct_squared, &sums.indirect,
-                             &sums.indirect_cross, &sums.indirect_squared, &sums.total_squared})
+  for (const std::vector<double>* values : sums.columns())
     require(values->size() == solution.mesh.zone_count() * bands, "one sum per zone and band expected");
   require(sums.group_total.size() == ZoneSums::kGroups * solution.mesh.zone_count() * bands,
           "one sum per group, zone and band expected");
+  const std::size_t gathered = solution.gathered.zones.size() * bands;
+  require(solution.gathered.sums.size() == gathered * ZoneSums::kColumns &&
+              solution.gathered.group_total.size() == gathered * ZoneSums::kGroups,
+          "one row per gathered zone expected");
   require(solution.audit.bands.size() == bands, "one audit per band expected");
   for (const BandAudit& audit : solution.audit.bands)
     require(audit.absorbed.size() == surfaces && audit.absorbed_on_backs.size() == surfaces,
@@ -276,9 +279,24 @@ void write_sums(const Hdf5Group& root, const Solution& solution) {
             "sum of the squares of w times the indirect irradiance");
   put_bands(group, "total_squared", sums.total_squared, bands, "W2/m4",
             "sum of the squares of w times direct + indirect");
-  const std::vector<float> groups(sums.group_total.begin(), sums.group_total.end());
-  group.write<float>("group_total", groups, {ZoneSums::kGroups, sums.direct.size() / bands, bands}, "W/m2",
+  group.write<float>("group_total", sums.group_total, {ZoneSums::kGroups, sums.direct.size() / bands, bands},
+                     "W/m2",
                      "sum of w times direct + indirect over batches k, k + 16, k + 32 ... for k = 0 ... 15");
+}
+
+void write_gathered(const Hdf5Group& root, const Solution& solution) {
+  const Hdf5Group group = root.create_group("gathered");
+  const GatheredZones& gathered = solution.gathered;
+  const std::size_t zones = gathered.zones.size();
+  const std::size_t bands = solution.bands.count();
+  group.write_attribute("rays", gathered.rays);
+  put(group, "zone", column<std::uint32_t>(gathered.zones, std::mem_fn(&ZoneId::index)), 1, "",
+      "rows of /zones whose light was gathered after the last batch");
+  group.write<double>("sums", gathered.sums, {zones, bands, ZoneSums::kColumns}, "",
+                      "what packets brought there: direct, indirect, direct_cross, indirect_cross, "
+                      "direct_squared, indirect_squared and total_squared as in /sums");
+  group.write<float>("group_total", gathered.group_total, {ZoneSums::kGroups, zones, bands}, "W/m2",
+                     "the same of group_total");
 }
 
 void write_audit(const Hdf5Group& root, const Solution& solution) {
@@ -326,6 +344,7 @@ void write_all(const Hdf5Group& root, const Solution& solution) {
   write_zone_geometry(zones, solution.mesh);
   write_zone_values(zones, solution);
   write_sums(root, solution);
+  write_gathered(root, solution);
   write_audit(root, solution);
 }
 

@@ -28,7 +28,7 @@ constexpr std::int64_t kRound = static_cast<std::int64_t>(ZoneSums::kGroups);
 
 }  // namespace
 
-BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones) {
+BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones, std::uint64_t unit_packets) {
   std::uint64_t unit = default_unit(zones);
   if (settings.batch_packets > 0) {
     unit = settings.batch_packets;
@@ -46,6 +46,12 @@ BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones) {
           std::min({units, settings.packets, static_cast<std::uint64_t>(kMostWeight)}));
       unit = settings.packets / static_cast<std::uint64_t>(weight_of_packets_);
     }
+  }
+  if (unit_packets > 0 && unit_packets != unit) {
+    unit = unit_packets;
+    if (settings.packets > 0)
+      weight_of_packets_ = static_cast<std::int64_t>(
+          std::clamp<std::uint64_t>(settings.packets / unit, 1, static_cast<std::uint64_t>(kMostWeight)));
   }
   unit_packets_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(unit, 1, std::uint64_t{1} << 31));
   const std::int64_t most =

@@ -13,7 +13,8 @@ namespace reemit {
 /// smaller part of the work. Sizes depend on the settings and the number of zones only.
 class BatchPlan {
  public:
-  BatchPlan(const SolverSettings& settings, std::size_t zones);
+  /// `unit_packets`: of a run that goes on; 0 for a new one, which chooses.
+  BatchPlan(const SolverSettings& settings, std::size_t zones, std::uint64_t unit_packets = 0);
 
   /// Packets of a batch of weight 1, >= 1.
   std::uint32_t unit_packets() const { return unit_packets_; }

@@ -19,7 +19,7 @@ void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<
                std::int64_t weight, ZoneSums& sums) {
   const std::size_t bands = books.bands;
   const auto w = static_cast<double>(weight);
-  double* group_total = &sums.group_total[sums.count_batch(weight) * mesh.zone_count() * bands];
+  float* group_total = &sums.group_total[sums.count_batch(weight) * mesh.zone_count() * bands];
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.zone_count(), 4096), [&](const auto& range) {
     for (std::size_t z = range.begin(); z != range.end(); ++z) {
       const double per_area = 1.0 / mesh.zone_area(ZoneId(z));
@@ -36,7 +36,7 @@ void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<
         sums.indirect_cross[i] += w * indirect;
         sums.indirect_squared[i] += indirect * indirect;
         sums.total_squared[i] += (direct + indirect) * (direct + indirect);
-        group_total[i] += direct + indirect;
+        group_total[i] += static_cast<float>(direct + indirect);
       }
     }
   });
@@ -85,7 +85,8 @@ void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> dir
   sums.indirect_cross[i] = sums.weight_squared * sums.indirect[i] / w;
   const std::size_t values = sums.direct.size();
   for (std::size_t g = 0; g < count; ++g)
-    sums.group_total[g * values + i] = total(g) * static_cast<double>(sums.group_weight[g]);
+    sums.group_total[g * values + i] =
+        static_cast<float>(total(g) * static_cast<double>(sums.group_weight[g]));
 }
 
 namespace {
@@ -121,7 +122,8 @@ void add_products(const ZoneSums& sums, std::size_t i, double mean, double weigh
   std::array<double, kGroups> deviation{};
   for (std::size_t g = 0; g < groups; ++g) {
     const auto w = static_cast<double>(sums.group_weight[g]);
-    deviation[g] = (sums.group_total[g * sums.direct.size() + i] / w - mean) * std::sqrt(w);
+    const auto total = static_cast<double>(sums.group_total[g * sums.direct.size() + i]);
+    deviation[g] = (total / w - mean) * std::sqrt(w);
   }
   for (std::size_t g = 0; g < groups; ++g)
     for (std::size_t h = g; h < groups; ++h)

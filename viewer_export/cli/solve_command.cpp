@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -36,8 +37,11 @@ constexpr double kDefaultErrorTarget = 0.02;
 constexpr int kMatrixZoneCount = 2000;
 
 struct SolveOptions {
-  std::vector<std::filesystem::path> room;
+  std::vector<std::filesystem::path>
+      room;                      ///< Of a run that goes on: where its room is now, if it was moved.
+  std::filesystem::path resume;  ///< Solution to go on from; empty: a new run.
   std::filesystem::path output;
+  double checkpoint_s = 600;  ///< 0: none.
   ReadOptions read;
   MeshSettings mesh;
   SolverSettings solver;
@@ -57,6 +61,10 @@ void refuse_stopping_rules(const SolverSettings& settings) {
   throw InputError(given,
                    "is a stopping rule, and --method matrix has none: it ends when the system is solved",
                    "Leave it out.");
+}
+
+double parse_checkpoint(const std::string& text) {
+  return text == "0" ? 0 : parse_seconds(text);
 }
 
 ProgressCallback progress_callback(Progress& progress, SolveMethod method) {
@@ -88,43 +96,145 @@ void check_solution_output(const std::filesystem::path& output, const std::files
                      "choose another output with -o, or remove the file if it is a solution cut short");
 }
 
-ExitCode run_solve(const SolveOptions& options) {
+/// Where a run starts, and the room it is about.
+struct Start {
+  Scene scene;
+  Solution solution;
+};
+
+/// The file as it is stored in a solution.
+std::string stored_path(const fs::path& file) {
+  return fs::absolute(file).lexically_normal().string();
+}
+
+/// Notes where the files of the room are.
+void keep_room_paths(const std::vector<fs::path>& room, Solution& solution) {
+  solution.room_path = stored_path(room.front());
+  solution.more_room_paths.clear();
+  for (std::size_t i = 1; i < room.size(); ++i) solution.more_room_paths.push_back(stored_path(room[i]));
+}
+
+Start new_run(const SolveOptions& options) {
   const bool matrix = options.solver.method == SolveMethod::kMatrix;
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
-  for (const std::filesystem::path& file : options.room) {
-    check_solution_output(options.output, file);
-    if (!options.log.empty()) RunLog::check(options.log, file, options.output);
-  }
-  const Scene scene = load_room(options.room, options.read, options.style);
+  Start start{load_room(options.room, options.read, options.style), {}};
   if (!options.style.quiet) {
-    print_warnings(scene.warnings);
-    for (const std::string& note : scene.notes) print_note(note);
+    print_warnings(start.scene.warnings);
+    for (const std::string& note : start.scene.notes) print_note(note);
   }
   MeshSettings mesh_settings = options.mesh;
   if (matrix) {
     mesh_settings.default_zone_count = kMatrixZoneCount;
     mesh_settings.exact_shapes = false;  // form factors are those of flat zones
   }
-  MeshResult meshed = mesh_room(scene, mesh_settings, options.style);
+  MeshResult meshed = mesh_room(start.scene, mesh_settings, options.style);
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
 
   SolverSettings settings = options.solver;
   if (!matrix && !has_stopping_rule(settings)) {
     settings.error_target = kDefaultErrorTarget;
-    if (!options.style.quiet) {
+    if (!options.style.quiet)
       print_note(fmt::format("no stopping rule given; solving to --error {:g}%", 100 * kDefaultErrorTarget));
+  }
+  start.solution = new_solution(start.scene, std::move(meshed), settings);
+  keep_room_paths(options.room, start.solution);
+  start.solution.read_options = options.read;
+  start.solution.mesh_settings = mesh_settings;
+  return start;
+}
+
+/// A run that goes on by the rules given now, or else by its own.
+Start resumed_run(const SolveOptions& options) {
+  Start start;
+  start.solution = load_solution(options.resume, options.style);
+  SolverSettings& settings = start.solution.settings;
+  if (settings.method == SolveMethod::kMatrix)
+    throw InputError(options.resume.string(),
+                     "was solved by the matrix method, which leaves nothing to go on with",
+                     "Solve the room by --method shooting or walk.");
+  start.scene = load_room_of(start.solution, options.resume, options.room, options.style);
+  if (has_stopping_rule(options.solver)) {
+    settings.error_target = options.solver.error_target;
+    settings.time_limit_s = options.solver.time_limit_s;
+    settings.packets = options.solver.packets;
+  } else if (settings.time_limit_s > 0) {
+    // What is left of it. A limit of 0 would be none.
+    constexpr double kNone = 1e-3;
+    settings.time_limit_s = std::max(kNone, settings.time_limit_s - start.solution.record.seconds);
+  }
+  settings.threads = options.solver.threads;
+  if (!options.room.empty()) keep_room_paths(options.room, start.solution);
+  return start;
+}
+
+/// Whether a run that goes on would have nothing to do.
+bool is_done(const SolveOptions& options, Start& start) {
+  const StopReason stopped = start.solution.record.stopped;
+  if (stopped == StopReason::kUnderWay || stopped == StopReason::kInterrupted) return false;
+  return !has_stopping_rule(options.solver) || rule_that_holds(start.scene, start.solution);
+}
+
+/// Saves a solution in one piece, with a line about it if that takes long.
+void save(const Solution& solution, const SolveOptions& options) {
+  const WaitingLine saving("saving " + options.output.filename().string(),
+                           progress_style(options.style.quiet, options.style.verbose));
+  write_output([&] { save_solution(solution, options.output); });
+}
+
+void report(const Scene& scene, const Solution& solution, const SolveOptions& options) {
+  if (!options.style.quiet) {
+    print_warnings(solution.light_warnings);
+    if (solution.record.stopped == StopReason::kInterrupted)
+      print_note(
+          fmt::format("interrupted; the solution so far is in {}; go on with: reemit solve --resume {}",
+                      options.output.string(), options.output.string()));
+    print_warnings(solve_warnings(solution));
+    const std::string missed =
+        missed_by_zones("gathered light", solution.settings.error_target, solution.record.gather_bias);
+    if (!missed.empty()) print_note(missed);
+  }
+  if (options.style.json)
+    print_json(solve_json(scene, solution, options.output));
+  else
+    print_result(solve_line(solution) + '\n');
+}
+
+ExitCode run_solve(const SolveOptions& options) {
+  for (const fs::path& file : options.room) {
+    check_solution_output(options.output, file);
+    if (!options.log.empty()) RunLog::check(options.log, file, options.output);
+  }
+  const bool resumed = !options.resume.empty();
+  Start start = resumed ? resumed_run(options) : new_run(options);
+  if (resumed) {
+    for (const std::string& file : room_files(start.solution)) {
+      check_solution_output(options.output, file);
+      if (!options.log.empty()) RunLog::check(options.log, file, options.output);
+    }
+    if (is_done(options, start)) {
+      if (!options.style.quiet)
+        print_note(
+            fmt::format("{} is solved as far as its stopping rules ask for ({}); ask for more with --error, "
+                        "--time or --packets",
+                        options.resume.string(), to_string(start.solution.record.stopped)));
+      if (options.output != options.resume) save(start.solution, options);
+      report(start.scene, start.solution, options);
+      return ExitCode::kDone;
     }
   }
+  const SolverSettings settings = start.solution.settings;
+  const bool matrix = settings.method == SolveMethod::kMatrix;
   std::optional<RunLog> log;
   if (!options.log.empty())
-    log.emplace(options.log, RunLog::Run{options.room.front(), options.output, settings,
-                                         meshed.mesh.zone_count(), scene.bands});
+    log.emplace(options.log, RunLog::Run{start.solution.room_path, options.output, settings,
+                                         start.solution.mesh.zone_count(), start.scene.bands});
   // Before the first batch there is nothing to keep.
   InterruptGuard interrupt(InterruptGuard::kLater);
   const ProgressStyle style = progress_style(options.style.quiet, options.style.verbose);
   std::optional<WaitingLine> preparation;
   Progress progress("solving", style);
-  const WorkWatch preparing([&](double done) {
+  SolveWatch watch;
+  watch.preparing = WorkWatch([&](double done) {
     if (done < 1) {
       preparation.emplace("building the tree for rays", style);
       return;
@@ -134,40 +244,23 @@ ExitCode run_solve(const SolveOptions& options) {
     progress.begin_step(0, matrix ? "form factors" : "first batch");
   });
   const ProgressCallback show = progress_callback(progress, settings.method);
-  const ProgressCallback report = [&](const SolveProgress& now) {
+  watch.progress = [&](const SolveProgress& now) {
     show(now);
     if (log) log->add(now);
   };
-  Solution solution = solve(scene, std::move(meshed), settings, report, interrupt.requested(), preparing);
+  if (options.checkpoint_s > 0) {
+    watch.checkpoint_s = options.checkpoint_s;
+    watch.checkpoint = [&](const Solution& solution) {
+      progress.begin_step(0, "saving a checkpoint");
+      write_output([&] { save_solution(solution, options.output); });
+    };
+  }
+  const Solution solution = solve(start.scene, std::move(start.solution), watch, interrupt.requested());
   preparation.reset();
   progress.finish();
   if (log) log->finish(solution);
-  const auto stored = [](const std::filesystem::path& file) {
-    return std::filesystem::absolute(file).lexically_normal().string();
-  };
-  solution.room_path = stored(options.room.front());
-  for (std::size_t i = 1; i < options.room.size(); ++i)
-    solution.more_room_paths.push_back(stored(options.room[i]));
-  solution.read_options = options.read;
-  solution.mesh_settings = mesh_settings;
-  {
-    const WaitingLine saving("saving " + options.output.filename().string(), style);
-    write_output([&] { save_solution(solution, options.output); });
-  }
-
-  if (!options.style.quiet) print_warnings(solution.light_warnings);
-  if (solution.record.stopped == StopReason::kInterrupted && !options.style.quiet) {
-    print_note(fmt::format("interrupted; the solution so far is in {}", options.output.string()));
-  }
-  if (!options.style.quiet) print_warnings(solve_warnings(solution));
-  const std::string missed =
-      missed_by_zones("gathered light", settings.error_target, solution.record.gather_bias);
-  if (!missed.empty() && !options.style.quiet) print_note(missed);
-  if (options.style.json) {
-    print_json(solve_json(scene, solution, options.output));
-  } else {
-    print_result(solve_line(solution) + '\n');
-  }
+  save(solution, options);
+  report(start.scene, solution, options);
   return ExitCode::kDone;
 }
 
@@ -186,18 +279,28 @@ void add_solve_command(CLI::App& program, Action& action) {
       "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
       "  reemit solve materials.mgf room.mgf lamps.mgf -o office.h5\n"
       "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7\n"
+      "  reemit solve --resume office.h5 --error 0.5%\n"
       "How to write a room: docs/room_format.md; what the solution holds: docs/solution_file.md");
   solve
       .add_option("room", options->room,
                   "Room file: .json .obj .gltf .glb .mgf; several .mgf files are read in order\n"
-                  "as one room")
-      ->required()
+                  "as one room. With --resume only if the room is no longer where it was")
       ->type_name("ROOM");
   solve
       .add_option("-o,--output", options->output,
-                  "Solution file to write (HDF5): .h5 or .hdf5; replaces a solution, nothing else")
-      ->required()
+                  "Solution file to write (HDF5): .h5 or .hdf5; replaces a solution, nothing else\n"
+                  "(default with --resume: the same file)")
       ->type_name("SOLUTION");
+  CLI::Option* resume =
+      solve
+          .add_option("--resume", options->resume,
+                      "Go on with a solution that is finished, was interrupted or was killed after a\n"
+                      "checkpoint, by the stopping rules given now or else by its own (--time: what\n"
+                      "is left of it). The result is that of one run without a break")
+          ->type_name("SOLUTION");
+  add_parsed_option(solve, "--checkpoint", options->checkpoint_s, parse_checkpoint, "TIME",
+                    "Save what stands at these intervals, for --resume: 30s, 10min; 0 = never")
+      ->default_str("10min");
 
   solve.option_defaults()->group("Stopping rules");
   add_parsed_option(solve, "--error", options->solver.error_target, parse_share, "SHARE",
@@ -240,7 +343,16 @@ void add_solve_command(CLI::App& program, Action& action) {
       ->type_name("FILE");
   add_json_option(solve, options->style);
   add_progress_options(solve, options->style);
-  solve.callback([options, &action] { action = [options] { return run_solve(*options); }; });
+  // A run has one of each from its first batch to its last.
+  for (const char* settled : {"--method", "--sampling", "--reemit", "--seed", "--zone-area", "--two-sided",
+                              "--emissive-units", "--gltf-light-efficacy"})
+    resume->excludes(solve.get_option(settled));
+  solve.callback([options, &action] {
+    if (options->resume.empty() && options->room.empty()) throw CLI::RequiredError("ROOM or --resume");
+    if (options->output.empty()) options->output = options->resume;
+    if (options->output.empty()) throw CLI::RequiredError("--output");
+    action = [options] { return run_solve(*options); };
+  });
 }
 
 }  // namespace reemit::cli

@@ -151,12 +151,14 @@ TEST(CutOff, WhatComesBeforeTheFirstBatchCanBeStoppedWithoutAResult) {
   const RoomBuilder room = sealed_room(0.5);
   const std::atomic<bool> never{false};
   const std::atomic<bool> already{true};
-  EXPECT_THROW(solve(room.scene(), room.mesh(), settings, nullptr, never, WorkWatch({}, StopToken(already))),
+  EXPECT_THROW(solve(room.scene(), new_solution(room.scene(), room.mesh(), settings),
+                     {.preparing = WorkWatch({}, StopToken(already))}, never),
                Interrupted);
   std::vector<double> told;
-  const Solution s = solve(
-      room.scene(), room.mesh(), settings, [&](const SolveProgress&) { EXPECT_EQ(told.back(), 1); }, never,
-      WorkWatch([&](double done) { told.push_back(done); }));
+  SolveWatch watch;
+  watch.progress = [&](const SolveProgress&) { EXPECT_EQ(told.back(), 1); };
+  watch.preparing = WorkWatch([&](double done) { told.push_back(done); });
+  const Solution s = solve(room.scene(), new_solution(room.scene(), room.mesh(), settings), watch, never);
   ASSERT_FALSE(told.empty());
   EXPECT_EQ(told.back(), 1);
 }

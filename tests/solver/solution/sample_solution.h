@@ -32,7 +32,9 @@ inline Solution sample_solution(const BandSet& bands) {
   s.settings.gather_small_zones = false;
   s.settings.seed = 18'000'000'000'000'000'001U;
   s.settings.threads = 3;
-  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6, 5, 0.125, ZoneBias{0.03, 0.04}};
+  s.mesh_settings.exact_shapes = false;
+  s.record = {StopReason::kInterrupted, 12, 34, 5.5, 0.07, 0.08, 0.21, 6, 5, 13, true, 0.125,
+              ZoneBias{0.03, 0.04}};
   s.bands = bands;
 
   Scene scene;
@@ -89,9 +91,10 @@ inline Solution sample_solution(const BandSet& bands) {
   fill(s.sums.indirect_cross, 2);
   fill(s.sums.indirect_squared, 40);
   fill(s.sums.total_squared, 100);
-  // Stored as float: numbers that it holds exactly.
   for (std::size_t i = 0; i < ZoneSums::kGroups * s.sums.direct.size(); ++i)
-    s.sums.group_total.push_back(0.125 * static_cast<double>(i));
+    s.sums.group_total.push_back(0.1F * static_cast<float>(i));
+  s.gathered.keep(s.sums, bands.count(), {ZoneId(3), ZoneId(1)});
+  s.gathered.rays = 9;
 
   s.light_warnings = {"light 'spot': 40 % of its light is lost", "", "5 % leaves the room"};
   s.audit.batches = 4;

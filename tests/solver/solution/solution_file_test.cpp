@@ -36,6 +36,7 @@ void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.mesh_settings.default_zone_count, b.mesh_settings.default_zone_count);
   EXPECT_EQ(a.mesh_settings.smallest_angle_deg, b.mesh_settings.smallest_angle_deg);
   EXPECT_EQ(a.mesh_settings.crease_angle_deg, b.mesh_settings.crease_angle_deg);
+  EXPECT_EQ(a.mesh_settings.exact_shapes, b.mesh_settings.exact_shapes);
   EXPECT_EQ(a.settings.method, b.settings.method);
   EXPECT_EQ(a.settings.sampling, b.settings.sampling);
   EXPECT_EQ(a.settings.error_target, b.settings.error_target);
@@ -55,6 +56,8 @@ void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.record.error_95th_percentile, b.record.error_95th_percentile);
   EXPECT_EQ(a.record.unreached_zones, b.record.unreached_zones);
   EXPECT_EQ(a.record.gathered_zones, b.record.gathered_zones);
+  EXPECT_EQ(a.record.unit_packets, b.record.unit_packets);
+  EXPECT_EQ(a.record.cut_off, b.record.cut_off);
   EXPECT_EQ(a.record.discretisation, b.record.discretisation);
   ASSERT_EQ(a.record.gather_bias.has_value(), b.record.gather_bias.has_value());
   if (!a.record.gather_bias) return;
@@ -111,6 +114,10 @@ void expect_same_books(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.sums.indirect_squared, b.sums.indirect_squared);
   EXPECT_EQ(a.sums.total_squared, b.sums.total_squared);
   EXPECT_EQ(a.sums.group_total, b.sums.group_total);
+  EXPECT_EQ(a.gathered.zones, b.gathered.zones);
+  EXPECT_EQ(a.gathered.sums, b.gathered.sums);
+  EXPECT_EQ(a.gathered.group_total, b.gathered.group_total);
+  EXPECT_EQ(a.gathered.rays, b.gathered.rays);
   EXPECT_EQ(a.audit.batches, b.audit.batches);
   EXPECT_EQ(a.audit.weight, b.audit.weight);
   ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());

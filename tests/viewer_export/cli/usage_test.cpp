@@ -43,7 +43,7 @@ TEST(Usage, MistakesEndWithCode2AndAHint) {
       {{"solv", "room.json"}, "did you mean 'solve'"},
       {{"solve", "room.json", "-o", "x.h5", "--eror", "1%"}, "did you mean '--error'"},
       {{"solve", "room.json"}, "--output is required"},
-      {{"solve", "-o", "x.h5"}, "room is required"},
+      {{"solve", "-o", "x.h5"}, "ROOM or --resume is required"},
       {{"solve", "room.json", "-o", "x.h5", "--error", "5"}, "write 1% or 0.01"},
       {{"solve", "room.json", "-o", "x.h5", "--time", "soon"}, "2min"},
       {{"solve", "room.json", "-o", "x.h5", "--packets", "-5"}, "1e6"},

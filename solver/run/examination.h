@@ -1,0 +1,25 @@
+#pragma once
+#include <atomic>
+
+#include "solver/run/prepared_room.h"
+#include "solver/run/schedule.h"
+
+namespace reemit {
+
+// What is done with the zones once the last batch is in.
+
+/// Notes the noise of the zones as it stands in the record.
+void record_error(const Scene& scene, Solution& solution);
+
+/// Light on small zones, which follows the batches and takes time of its own.
+void gather_what_is_small(const Scene& scene, const RayScene& rays, const Schedule& schedule,
+                          const std::atomic<bool>& interrupt, Solution& solution);
+
+/// Notes how far points differ from the zones they are in.
+void compare_points_with_zones(const Scene& scene, const RayScene& rays, const Schedule& schedule,
+                               const std::atomic<bool>& interrupt, Solution& solution);
+
+/// Notes where light is lost, or that nobody looked.
+void look_for_lost_light(const PreparedRoom& room, const std::atomic<bool>& interrupt, Solution& solution);
+
+}  // namespace reemit

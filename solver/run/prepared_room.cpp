@@ -1,0 +1,17 @@
+#include "solver/run/prepared_room.h"
+
+#include "solver/shoot/closed_room_check.h"
+
+namespace reemit {
+
+PreparedRoom::PreparedRoom(const Scene& scene, Solution& solution, const WorkWatch& preparing)
+    : rays((preparing.at(0), solution.mesh)),
+      transport(scene, solution.mesh, rays),
+      emission(collect_emission(transport)) {
+  for (std::size_t b = 0; b < scene.bands.count(); ++b)
+    solution.audit.bands[b].watts_per_quantum = emission.watts_per_quantum[b];
+  if (!is_dark()) refuse_closed_perfect_reflector(transport, emission, solution.settings.seed);
+  preparing.at(1);
+}
+
+}  // namespace reemit

@@ -1,0 +1,28 @@
+#pragma once
+#include "scenes/model/scene.h"
+#include "scenes/model/work_watch.h"
+#include "solver/shoot/emission.h"
+#include "solver/shoot/transport_scene.h"
+#include "solver/solution/solution.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// The room of a solution as packets meet it. Scene and solution must stay where they are as long as it
+/// lives.
+struct PreparedRoom {
+  /// `preparing` is told 0 before the tree for rays is built and 1 at the end. Notes in the audit what a
+  /// quantum is worth. Throws what refuse_closed_perfect_reflector does.
+  PreparedRoom(const Scene& scene, Solution& solution, const WorkWatch& preparing);
+  PreparedRoom(const PreparedRoom&) = delete;
+  PreparedRoom& operator=(const PreparedRoom&) = delete;
+
+  /// Nothing emits.
+  bool is_dark() const { return emission.sources.empty(); }
+
+  RayScene rays;
+  TransportScene transport;
+  Emission emission;
+};
+
+}  // namespace reemit

@@ -1,0 +1,40 @@
+#include "solver/run/schedule.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "solver/gather/small_zones.h"
+
+namespace reemit {
+namespace {
+
+/// Share of the time that is kept for what comes after batches and gathering: the error and the
+/// discretisation.
+constexpr double kLastShare = 0.03;
+
+}  // namespace
+
+bool gathers_small_zones(const Solution& solution) {
+  return solution.settings.gather_small_zones && small_zone_count(solution.mesh) > 0;
+}
+
+double seconds_since(StopToken::Clock::time_point start) {
+  return std::chrono::duration<double>(StopToken::Clock::now() - start).count();
+}
+
+Schedule::Schedule(Clock::time_point begin, const Solution& solution)
+    : start(begin),
+      limit_s(solution.settings.time_limit_s),
+      batches_s(limit_s * (1 - kLastShare) -
+                (gathers_small_zones(solution) ? kSmallZoneShare * limit_s : 0.0)),
+      gather_s(limit_s * (1 - kLastShare)) {}
+
+StopToken Schedule::token(double seconds, const std::atomic<bool>& interrupt) const {
+  if (!(limit_s > 0)) return StopToken(interrupt);
+  // Beyond what a clock can count there is no limit either.
+  constexpr double kLongest = 1e9;
+  const std::chrono::duration<double> span(std::min(seconds, kLongest));
+  return StopToken(interrupt, start + std::chrono::duration_cast<Clock::duration>(span));
+}
+
+}  // namespace reemit

@@ -1,0 +1,33 @@
+#pragma once
+#include <atomic>
+
+#include "scenes/model/stop_token.h"
+#include "solver/solution/solution.h"
+
+namespace reemit {
+
+/// Share of all rays, and of the time, that goes to gathering on small zones at most.
+inline constexpr double kSmallZoneShare = 0.15;
+
+/// True if the run ends with gathering on zones too small for packets.
+bool gathers_small_zones(const Solution& solution);
+
+/// Wall time since then [s].
+double seconds_since(StopToken::Clock::time_point start);
+
+/// When the parts of a run must be over; never, without a time limit.
+struct Schedule {
+  using Clock = StopToken::Clock;
+
+  Schedule(Clock::time_point begin, const Solution& solution);
+
+  /// Requested `seconds` after the start, or by the interrupt.
+  StopToken token(double seconds, const std::atomic<bool>& interrupt) const;
+
+  Clock::time_point start;
+  double limit_s = 0;    ///< 0: no limit.
+  double batches_s = 0;  ///< When the last batch must be over.
+  double gather_s = 0;   ///< When gathering on small zones must be over.
+};
+
+}  // namespace reemit

@@ -1,0 +1,82 @@
+#include "solver/shoot/batches_ahead.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <tbb/task_arena.h>
+
+namespace reemit {
+namespace {
+
+/// Memory that the accounts of all batches on their way may take [bytes].
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
+/// Of one batch: its books, and what zones have caught and have yet to send on in a sweep.
+std::size_t bytes_of_batch(const TransportScene& transport) {
+  constexpr std::size_t kAccountsPerValue = 4;
+  return kAccountsPerValue * transport.zones() * transport.bands() * sizeof(std::int64_t);
+}
+
+}  // namespace
+
+BatchesAhead::BatchesAhead(const TransportScene& transport, const Emission& emission,
+                           const SolverSettings& settings, int threads)
+    : transport_(transport), emission_(emission), settings_(settings) {
+  // Threads inside a batch wait for each other at every sweep; batches are run in vain when the run ends, and
+  // take memory. Between the two lies the root.
+  const int together = std::max(1, static_cast<int>(std::sqrt(threads)));
+  const auto affordable = static_cast<int>(
+      std::clamp<std::size_t>(kMostBytes / std::max<std::size_t>(1, bytes_of_batch(transport)), 1, 1024));
+  most_ = static_cast<std::size_t>(std::clamp(threads / together, 1, affordable));
+  threads_per_batch_ = threads / static_cast<int>(most_);
+}
+
+BatchesAhead::~BatchesAhead() {
+  needless_ = true;
+  for (Flight& flight : flights_) flight.done.wait();
+}
+
+std::int64_t BatchesAhead::weight() const {
+  std::int64_t sum = 0;
+  for (const Flight& flight : flights_) sum += flight.batch->weight;
+  return sum;
+}
+
+void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64_t weight,
+                         const StopToken& stop) {
+  Flight flight;
+  if (spare_.empty()) {
+    flight.batch = std::make_unique<Batch>(
+        Batch{BatchBooks(transport_.zones(), transport_.surfaces(), transport_.bands())});
+  } else {
+    flight.batch = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  flight.batch->weight = weight;
+  flight.stop = std::make_unique<StopToken>(stop.or_when(needless_));
+  flight.done = std::async(
+      std::launch::async, [this, number, packets, batch = flight.batch.get(), token = flight.stop.get()] {
+        using Clock = StopToken::Clock;
+        const Clock::time_point begin = Clock::now();
+        batch->books.clear();
+        const BatchTask task{transport_, emission_, settings_, number, packets, token};
+        tbb::task_arena arena(threads_per_batch_);
+        arena.execute([&] {
+          batch->whole = settings_.method == SolveMethod::kShooting ? shoot_batch(task, batch->books)
+                                                                    : walk_batch(task, batch->books);
+        });
+        batch->seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+      });
+  flights_.push_back(std::move(flight));
+}
+
+std::unique_ptr<BatchesAhead::Batch> BatchesAhead::take() {
+  Flight flight = std::move(flights_.front());
+  flights_.pop_front();
+  flight.done.get();
+  return std::move(flight.batch);
+}
+
+}  // namespace reemit

@@ -1,0 +1,174 @@
+// A run that was saved, loaded and resumed is the run without a break, bit for bit.
+#include <atomic>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "solver/progressive_solver.h"
+#include "solver/solution/solution_file.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/test_rooms.h"
+#include "tests/support/variable_furnace.h"
+
+namespace reemit {
+namespace {
+
+using test::RoomBuilder;
+using test::TempFolder;
+using test::VariableFurnace;
+
+const std::atomic<bool> never{false};
+
+void expect_same_result(const Solution& a, const Solution& b) {
+  EXPECT_EQ(a.record.stopped, b.record.stopped);
+  EXPECT_EQ(a.record.packets, b.record.packets);
+  EXPECT_EQ(a.record.rays, b.record.rays);
+  EXPECT_EQ(a.record.error, b.record.error);
+  EXPECT_EQ(a.record.error_bound, b.record.error_bound);
+  EXPECT_EQ(a.record.gathered_zones, b.record.gathered_zones);
+  EXPECT_EQ(a.record.discretisation, b.record.discretisation);
+  EXPECT_EQ(a.sums.batches, b.sums.batches);
+  EXPECT_EQ(a.sums.group_weight, b.sums.group_weight);
+  for (std::size_t c = 0; c < ZoneSums::kColumns; ++c) EXPECT_EQ(*a.sums.columns()[c], *b.sums.columns()[c]);
+  EXPECT_EQ(a.sums.group_total, b.sums.group_total);
+  ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
+  for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {
+    EXPECT_EQ(a.audit.bands[i].absorbed, b.audit.bands[i].absorbed);
+    EXPECT_EQ(a.audit.bands[i].emitted, b.audit.bands[i].emitted);
+    EXPECT_EQ(a.audit.bands[i].unshot, b.audit.bands[i].unshot);
+    EXPECT_EQ(a.audit.bands[i].roulette_gain, b.audit.bands[i].roulette_gain);
+  }
+  EXPECT_EQ(a.light_warnings, b.light_warnings);
+}
+
+/// Large walls and a screen whose zones are too small for packets.
+VariableFurnace furnace_with_small_zones() {
+  VariableFurnace furnace(4);
+  furnace.screen({0.3, 0.3, 0.5}, {0.01, 0, 0}, {0, 0.01, 0}, 2);
+  return furnace;
+}
+
+/// With a row in the report for every surface, as a file wants it.
+MeshResult mesh_of(const RoomBuilder& room) {
+  MeshResult mesh = room.mesh();
+  mesh.report.surfaces.resize(room.scene().surfaces.size());
+  return mesh;
+}
+
+class Resume : public testing::Test {
+ protected:
+  Solution through_file(const Solution& solution) const {
+    save_solution(solution, file_);
+    return load_solution(file_);
+  }
+  /// Breaks off after so many batches each time, with other threads each time.
+  Solution in_sittings(const RoomBuilder& room, const SolverSettings& settings, int batches) const {
+    Solution stands = new_solution(room.scene(), mesh_of(room), settings);
+    for (int sitting = 0;; ++sitting) {
+      stands.settings.threads = 1 + sitting % 2;
+      ProgressiveSolver solver(room.scene(), std::move(stands), never);
+      bool goes_on = true;
+      for (int i = 0; i < batches && goes_on; ++i) goes_on = solver.step();
+      if (!goes_on) return solver.finish();
+      stands = through_file(solver.checkpoint());
+      EXPECT_EQ(stands.record.stopped, StopReason::kUnderWay);
+    }
+  }
+
+  TempFolder folder_;
+  std::filesystem::path file_ = folder_ / "room.h5";
+};
+
+TEST_F(Resume, AnyNumberOfBreaksLeavesNoTrace) {
+  const VariableFurnace furnace = furnace_with_small_zones();
+  const RoomBuilder& room = furnace.room();
+  for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk})
+    for (const int batches : {1, 7}) {
+      SCOPED_TRACE(to_string(method) + ", " + std::to_string(batches));
+      SolverSettings settings;
+      settings.method = method;
+      settings.packets = 40'000;
+      settings.batch_packets = 2000;
+      const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
+      ASSERT_GT(whole.record.gathered_zones, 0U);
+      ASSERT_EQ(whole.sums.batches, 20);
+      expect_same_result(whole, in_sittings(room, settings, batches));
+    }
+}
+
+TEST_F(Resume, AFinishedSolutionGoesOnToALowerError) {
+  const VariableFurnace furnace = furnace_with_small_zones();
+  const RoomBuilder& room = furnace.room();
+  SolverSettings settings;
+  settings.batch_packets = 4000;
+  settings.error_target = 0.02;
+  const Solution at_once = solve(room.scene(), mesh_of(room), settings, {}, never);
+  settings.error_target = 0.06;
+  Solution first = through_file(solve(room.scene(), mesh_of(room), settings, {}, never));
+  ASSERT_LT(first.sums.batches, at_once.sums.batches);
+  ASSERT_GT(first.gathered.zones.size(), 0U);
+  first.settings.error_target = 0.02;
+  expect_same_result(at_once, solve(room.scene(), std::move(first), {}, never));
+}
+
+TEST_F(Resume, BatchesGrowAsIfThereHadBeenNoBreak) {
+  // Default sizes: after sixteen batches they depend on those before.
+  const VariableFurnace furnace(24);
+  const RoomBuilder& room = furnace.room();
+  SolverSettings settings;
+  settings.packets = 5'000'000;
+  const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
+  ASSERT_GT(whole.sums.weight(), whole.sums.batches) << "of unequal size";
+  expect_same_result(whole, in_sittings(room, settings, 9));
+}
+
+TEST_F(Resume, MorePacketsThanAtFirstKeepTheSizeOfBatches) {
+  const VariableFurnace furnace(4);
+  const RoomBuilder& room = furnace.room();
+  SolverSettings settings;
+  settings.packets = 30'000;
+  Solution first = solve(room.scene(), mesh_of(room), settings, {}, never);
+  const std::int64_t batches = first.sums.batches;
+  const std::uint64_t unit = first.record.unit_packets;
+  first.settings.packets = 60'000;
+  const Solution more = solve(room.scene(), std::move(first), {}, never);
+  EXPECT_EQ(more.record.unit_packets, unit);
+  EXPECT_EQ(more.sums.batches, 2 * batches);
+  EXPECT_EQ(more.record.stopped, StopReason::kPacketCount);
+}
+
+TEST_F(Resume, AFirstBatchThatWasCutOffIsRunAgain) {
+  const VariableFurnace furnace(4);
+  const RoomBuilder& room = furnace.room();
+  SolverSettings settings;
+  settings.packets = 40'000;
+  settings.batch_packets = 2000;
+  const std::atomic<bool> at_once{true};
+  Solution cut_off = through_file(solve(room.scene(), mesh_of(room), settings, {}, at_once));
+  ASSERT_TRUE(cut_off.record.cut_off);
+  const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
+  expect_same_result(whole, solve(room.scene(), std::move(cut_off), {}, never));
+}
+
+TEST_F(Resume, TellsWhichRuleHoldsAlreadyAndChangesNothing) {
+  const VariableFurnace furnace = furnace_with_small_zones();
+  const RoomBuilder& room = furnace.room();
+  SolverSettings settings;
+  settings.batch_packets = 4000;
+  settings.error_target = 0.05;
+  const Solution before = solve(room.scene(), mesh_of(room), settings, {}, never);
+  ASSERT_GT(before.gathered.zones.size(), 0U);
+  Solution solution = before;
+  EXPECT_EQ(rule_that_holds(room.scene(), solution), StopReason::kErrorTarget);
+  solution.settings.error_target = 0.01;
+  EXPECT_EQ(rule_that_holds(room.scene(), solution), std::nullopt);
+  solution.settings.packets = 1;
+  EXPECT_EQ(rule_that_holds(room.scene(), solution), StopReason::kPacketCount);
+  expect_same_result(before, solution);
+}
+
+}  // namespace
+}  // namespace reemit
