@@ -16,9 +16,9 @@
 
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
+#include "viewer_export/output/tone_map.h"
 #include "viewer_export/still/default_cameras.h"
 #include "viewer_export/still/render_still.h"
-#include "viewer_export/still/tone_map.h"
 
 namespace {
 

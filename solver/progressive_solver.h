@@ -8,7 +8,7 @@
 #include "scenes/model/scene.h"
 #include "scenes/model/work_watch.h"
 #include "solver/solution/solution.h"
-#include "solver/solver_settings.h"
+#include "solver/solution/solver_settings.h"
 
 namespace reemit {
 

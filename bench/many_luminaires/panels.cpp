@@ -14,7 +14,7 @@
 #include "bench/many_luminaires/parts.h"
 #include "bench/many_luminaires/side_by_side.h"
 #include "scenes/io/scene_reader.h"
-#include "viewer_export/still/tone_map.h"
+#include "viewer_export/output/tone_map.h"
 
 namespace reemit::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 
-#include "viewer_export/still/tone_map.h"
+#include "viewer_export/output/tone_map.h"
 
 namespace reemit::bench {
 namespace {

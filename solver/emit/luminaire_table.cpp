@@ -7,7 +7,7 @@
 #include "scenes/model/photometry.h"
 #include "solver/emit/light_places.h"
 #include "solver/emit/luminaire_faces.h"
-#include "solver/shoot/emission.h"
+#include "solver/emit/punctual_packets.h"
 
 namespace reemit {
 

@@ -7,7 +7,7 @@
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/surface_point.h"
-#include "solver/tally/zone_bias.h"
+#include "solver/solution/zone_bias.h"
 
 namespace reemit {
 

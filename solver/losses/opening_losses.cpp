@@ -9,6 +9,7 @@
 
 #include "scenes/model/opening_reach.h"
 #include "solver/emit/photometric_emitter.h"
+#include "solver/emit/punctual_packets.h"
 #include "solver/losses/probe_flight.h"
 #include "solver/shoot/emission.h"
 

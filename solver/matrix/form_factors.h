@@ -8,9 +8,9 @@
 
 #include "mesh/zone_mesh.h"
 #include "scenes/model/interrupted.h"
-#include "solver/matrix/form_factor_report.h"
 #include "solver/matrix/leaks.h"
 #include "solver/matrix/symmetric_table.h"
+#include "solver/solution/form_factor_report.h"
 #include "solver/trace/ray_scene.h"
 
 namespace reemit {

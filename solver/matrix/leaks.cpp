@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/emit/punctual_packets.h"
 #include "solver/matrix/zone_points.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"

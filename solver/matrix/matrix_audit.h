@@ -5,7 +5,7 @@
 #include "solver/matrix/leaks.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
-#include "solver/tally/energy_audit.h"
+#include "solver/solution/energy_audit.h"
 
 namespace reemit {
 

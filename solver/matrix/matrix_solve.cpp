@@ -8,6 +8,7 @@
 
 #include "scenes/model/error.h"
 #include "solver/emit/punctual_emitter.h"
+#include "solver/emit/punctual_packets.h"
 #include "solver/matrix/conjugate_gradients.h"
 #include "solver/matrix/factor_noise.h"
 #include "solver/matrix/form_factors.h"

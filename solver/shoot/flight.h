@@ -7,7 +7,7 @@
 #include "solver/shoot/arrival_points.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
-#include "solver/solver_settings.h"
+#include "solver/solution/solver_settings.h"
 #include "solver/tally/batch_books.h"
 
 namespace reemit {

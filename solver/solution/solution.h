@@ -10,10 +10,10 @@
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/bands.h"
 #include "scenes/model/scene.h"
-#include "solver/matrix/form_factor_report.h"
-#include "solver/solver_settings.h"
-#include "solver/tally/energy_audit.h"
-#include "solver/tally/zone_bias.h"
+#include "solver/solution/energy_audit.h"
+#include "solver/solution/form_factor_report.h"
+#include "solver/solution/solver_settings.h"
+#include "solver/solution/zone_bias.h"
 
 namespace reemit {
 

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "solver/solver_settings.h"
+#include "solver/solution/solver_settings.h"
 
 namespace reemit {
 

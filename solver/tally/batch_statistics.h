@@ -5,9 +5,9 @@
 
 #include "mesh/zone_mesh.h"
 #include "scenes/model/scene.h"
+#include "solver/solution/energy_audit.h"
 #include "solver/solution/solution.h"
 #include "solver/tally/batch_books.h"
-#include "solver/tally/energy_audit.h"
 
 namespace reemit {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "solver/solution/solution.h"
-#include "solver/solver_settings.h"
+#include "solver/solution/solver_settings.h"
 #include "solver/tally/batch_plan.h"
 
 namespace reemit {

@@ -29,6 +29,26 @@ expect_refused(viewer_export/vertex/planted.cpp "#include <OpenMesh/Tools/Utils/
 expect_refused(mesh/planted.cpp "#include <embree3/rtcore.h>" "embree3/rtcore.h")
 expect_refused(viewer_export/formats/planted.cpp "#include <OpenImageIO/imageio.h>" "OpenImageIO/imageio.h")
 
+# Three folders of one layer in a circle, and one that only looks into it.
+file(REMOVE_RECURSE ${WORK_DIR})
+file(WRITE ${WORK_DIR}/solver/emit/one.h "#pragma once\n#include \"solver/shoot/two.h\"\n#include \"mesh/zone_mesh.h\"\n")
+file(WRITE ${WORK_DIR}/solver/shoot/two.cpp "#include \"solver/tally/three.h\"\n")
+file(WRITE ${WORK_DIR}/solver/tally/three.h "#pragma once\n#include \"solver/emit/one.h\"\n")
+file(WRITE ${WORK_DIR}/solver/gather/looks.cpp "#include \"solver/emit/one.h\"\n")
+run_checker(${WORK_DIR} result output)
+if(result EQUAL 0)
+  message(SEND_ERROR "a circle of folders was not reported")
+endif()
+foreach(part "solver/shoot -> solver/tally" "solver/tally -> solver/emit" "solver/emit -> solver/shoot"
+             "solver/shoot/two.cpp includes solver/tally/three.h")
+  if(NOT output MATCHES "${part}")
+    message(SEND_ERROR "the report of a circle of folders does not say '${part}':\n${output}")
+  endif()
+endforeach()
+if(output MATCHES "looks.cpp")
+  message(SEND_ERROR "a folder that is on no circle was reported:\n${output}")
+endif()
+
 file(REMOVE_RECURSE ${WORK_DIR})
 file(WRITE ${WORK_DIR}/viewer_export/cli/clean.cpp "#include <vector>\n#include \"scenes/model/scene.h\"\n")
 file(WRITE ${WORK_DIR}/solver/trace/clean.cpp "#include <embree3/rtcore.h>\n#include \"mesh/zone_mesh.h\"\n")

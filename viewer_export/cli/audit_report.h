@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "solver/tally/energy_audit.h"
+#include "solver/solution/energy_audit.h"
 
 namespace reemit::cli {
 

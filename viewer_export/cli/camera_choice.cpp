@@ -7,8 +7,8 @@
 
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
+#include "viewer_export/output/up_direction.h"
 #include "viewer_export/still/default_cameras.h"
-#include "viewer_export/still/up_direction.h"
 
 namespace reemit::cli {
 namespace {

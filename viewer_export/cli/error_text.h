@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "solver/tally/zone_bias.h"
+#include "solver/solution/zone_bias.h"
 
 namespace reemit::cli {
 

@@ -15,8 +15,8 @@
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/solution_report.h"
-#include "viewer_export/formats/export_info.h"
 #include "viewer_export/formats/form_factor_writer.h"
+#include "viewer_export/output/export_info.h"
 
 #include "reemit/version.h"
 

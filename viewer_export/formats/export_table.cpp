@@ -2,9 +2,9 @@
 
 #include "scenes/model/error.h"
 #include "viewer_export/formats/csv_writer.h"
-#include "viewer_export/formats/file_extension.h"
 #include "viewer_export/formats/glb_writer.h"
 #include "viewer_export/formats/ply_writer.h"
+#include "viewer_export/output/file_extension.h"
 
 namespace reemit {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "scenes/model/error.h"
 #include "solver/solution/hdf5_memory_file.h"
-#include "viewer_export/formats/file_extension.h"
+#include "viewer_export/output/file_extension.h"
 
 namespace reemit {
 namespace {

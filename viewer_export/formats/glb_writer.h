@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "scenes/io/output_file.h"
-#include "viewer_export/still/tone_map.h"
+#include "viewer_export/output/tone_map.h"
 #include "viewer_export/vertex/vertex_data.h"
 
 namespace reemit {

@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "viewer_export/still/tone_map.h"
+#include "viewer_export/output/tone_map.h"
 #include "viewer_export/vertex/vertex_data.h"
 
 namespace reemit {

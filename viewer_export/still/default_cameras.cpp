@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 
 #include "solver/sampling/sphere_lattice.h"
+#include "viewer_export/output/up_direction.h"
 #include "viewer_export/still/lit_space.h"
 #include "viewer_export/still/panorama.h"
-#include "viewer_export/still/up_direction.h"
 
 namespace reemit {
 namespace {

@@ -2,8 +2,8 @@
 #include <span>
 
 #include "scenes/io/output_file.h"
+#include "viewer_export/output/tone_map.h"
 #include "viewer_export/still/still_image.h"
-#include "viewer_export/still/tone_map.h"
 
 namespace reemit {
 

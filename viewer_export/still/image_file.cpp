@@ -1,6 +1,6 @@
 #include "viewer_export/still/image_file.h"
 
-#include "viewer_export/formats/file_extension.h"
+#include "viewer_export/output/file_extension.h"
 #include "viewer_export/still/exr_writer.h"
 #include "viewer_export/still/hdr_writer.h"
 #include "viewer_export/still/png_writer.h"

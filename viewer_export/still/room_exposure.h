@@ -4,7 +4,7 @@
 #include "scenes/model/scene.h"
 #include "solver/solution/solution.h"
 #include "solver/trace/ray_scene.h"
-#include "viewer_export/still/tone_map.h"
+#include "viewer_export/output/tone_map.h"
 
 namespace reemit {
 

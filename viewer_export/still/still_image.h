@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "scenes/model/bands.h"
-#include "viewer_export/formats/export_info.h"
+#include "viewer_export/output/export_info.h"
 
 namespace reemit {
 

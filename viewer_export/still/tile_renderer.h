@@ -5,7 +5,7 @@
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/radiance_field.h"
-#include "solver/tally/zone_bias.h"
+#include "solver/solution/zone_bias.h"
 #include "viewer_export/still/camera.h"
 #include "viewer_export/still/film.h"
 #include "viewer_export/still/render_still.h"

@@ -7,8 +7,8 @@
 #include "scenes/model/bands.h"
 #include "scenes/model/ids.h"
 #include "scenes/model/vec.h"
-#include "viewer_export/formats/export_info.h"
-#include "viewer_export/still/tone_map.h"
+#include "viewer_export/output/export_info.h"
+#include "viewer_export/output/tone_map.h"
 
 namespace reemit {
 

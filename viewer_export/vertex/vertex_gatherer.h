@@ -5,7 +5,7 @@
 
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/replicate_gather.h"
-#include "solver/tally/zone_bias.h"
+#include "solver/solution/zone_bias.h"
 #include "viewer_export/vertex/vertex_data.h"
 #include "viewer_export/vertex/vertex_radiance.h"
 #include "viewer_export/vertex/vertex_ring.h"

@@ -12,7 +12,7 @@
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
 #include "solver/tally/replicates.h"
-#include "viewer_export/still/up_direction.h"
+#include "viewer_export/output/up_direction.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_refinement.h"
 #include "viewer_export/vertex/vertex_ring.h"

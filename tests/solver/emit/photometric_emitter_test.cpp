@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "solver/emit/punctual_emitter.h"
+#include "solver/emit/punctual_packets.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"
-#include "solver/shoot/emission.h"
 #include "tests/solver/emit/luminaire_tables.h"
 #include "tests/support/test_rooms.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/test_rooms.h"
-#include "viewer_export/still/up_direction.h"
+#include "viewer_export/output/up_direction.h"
 
 namespace reemit::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer_export/still/tone_map.h"
+#include "viewer_export/output/tone_map.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "solver/solver_settings.h"
+#include "solver/solution/solver_settings.h"
 
 namespace reemit {
 

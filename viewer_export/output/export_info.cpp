@@ -1,4 +1,4 @@
-#include "viewer_export/formats/export_info.h"
+#include "viewer_export/output/export_info.h"
 
 #include <algorithm>
 

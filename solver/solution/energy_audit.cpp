@@ -1,4 +1,4 @@
-#include "solver/tally/energy_audit.h"
+#include "solver/solution/energy_audit.h"
 
 #include <algorithm>
 #include <numeric>

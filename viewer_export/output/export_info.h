@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/model/bands.h"
-#include "solver/tally/zone_bias.h"
+#include "solver/solution/zone_bias.h"
 
 namespace reemit {
 
