@@ -48,7 +48,7 @@ _{0}() {{
   elif [[ $previous == '=' ]]; then
     previous=${{COMP_WORDS[COMP_CWORD - 2]}}
   fi
-  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
+  for word in "${{COMP_WORDS[@]:1:$((COMP_CWORD - 1))}}"; do
     case $word in
       {1}) command=$word && break ;;
     esac
@@ -65,7 +65,8 @@ constexpr const char* kEnd = R"(      ' '*) words='{1}' ;;
     esac ;;
   esac
   compopt +o default 2>/dev/null
-  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  # shellcheck disable=SC2207 # words have neither blanks nor patterns, and zsh has no mapfile
+  COMPREPLY=($(compgen -W "$words" -- "$current"))
 }}
 complete -o default -F _{0} {0}
 )";

@@ -6,7 +6,7 @@
 namespace reemit::cli {
 
 /// A script for bash that completes commands, options, and values that are words; for values that are files
-/// bash completes file names. It needs nothing but bash.
+/// bash completes file names. It needs nothing but bash, or zsh with its bashcompinit.
 std::string bash_completion(const ProgramOutline& outline);
 
 }  // namespace reemit::cli
