@@ -41,8 +41,8 @@ BlockerSieve::BlockerSieve(const ZoneMesh& mesh, double tolerance)
   });
 }
 
-Sight BlockerSieve::look(std::size_t i, std::size_t j, const FacingPair& pair) const {
-  Sight sight = Sight::kOpen;
+PairSight BlockerSieve::look(std::size_t i, std::size_t j, const FacingPair& pair) const {
+  PairSight sight = PairSight::kOpen;
   for (std::size_t w = 0; w < words_; ++w) {
     const std::size_t a = i * words_ + w;
     const std::size_t b = j * words_ + w;
@@ -50,8 +50,8 @@ Sight BlockerSieve::look(std::size_t i, std::size_t j, const FacingPair& pair) c
     for (; straddled != 0; straddled &= straddled - 1) {
       const TriangleId t(64 * w + static_cast<std::size_t>(std::countr_zero(straddled)));
       if (!may_block(t, pair)) continue;
-      if (blocks_all(t, pair)) return Sight::kHidden;
-      sight = Sight::kUnknown;
+      if (blocks_all(t, pair)) return PairSight::kHidden;
+      sight = PairSight::kUnknown;
     }
   }
   return sight;

@@ -8,7 +8,7 @@
 namespace reemit {
 
 /// What can be said without rays about the view between two zones.
-enum class Sight {
+enum class PairSight {
   kOpen,  ///< No base triangle can block the line between any two points.
   kUnknown,
   kHidden,  ///< One base triangle blocks all of them.
@@ -24,7 +24,7 @@ class BlockerSieve {
   BlockerSieve(const ZoneMesh& mesh, double tolerance);
 
   /// Between `pair.a`, a part of zone i, and `pair.b`, a part of zone j.
-  Sight look(std::size_t i, std::size_t j, const FacingPair& pair) const;
+  PairSight look(std::size_t i, std::size_t j, const FacingPair& pair) const;
 
  private:
   bool may_block(TriangleId t, const FacingPair& pair) const;

@@ -126,12 +126,12 @@ class FormFactorBuilder {
       if (!(unoccluded > 0)) continue;
       ++counts.facing;
       *exchange = unoccluded;
-      const Sight sight = sieve_.look(i, j, pair);
-      if (sight == Sight::kOpen) {
+      const PairSight sight = sieve_.look(i, j, pair);
+      if (sight == PairSight::kOpen) {
         ++counts.open;
         continue;
       }
-      if (sight == Sight::kHidden) {
+      if (sight == PairSight::kHidden) {
         ++counts.walled;
         *exchange = 0;
         continue;

@@ -34,7 +34,7 @@ struct Powers {
 
 void book_matrix_solution(const TransportScene& transport, const Emission& emission,
                           const FormFactors& factors, const RowMatrix& radiosity, const RowMatrix& irradiance,
-                          const std::vector<LightLoss>& light_losses, std::int64_t batches,
+                          const std::vector<LuminaireLeak>& light_losses, std::int64_t batches,
                           EnergyAudit& audit) {
   const Eigen::VectorXd row_sums = factors.row_sums();
   audit.batches = batches;
@@ -52,7 +52,7 @@ void book_matrix_solution(const TransportScene& transport, const Emission& emiss
           area * (1 - transport.reflectance(surface)[b]) * irradiance(row, column);
       powers.leak(area * radiosity(row, column) * std::max(0.0, 1 - row_sums(row)), factors.leaks().of(i));
     }
-    for (const LightLoss& loss : light_losses) powers.leak(std::max(0.0, loss.watts(column)), loss.leaks);
+    for (const LuminaireLeak& loss : light_losses) powers.leak(std::max(0.0, loss.watts(column)), loss.leaks);
 
     const auto quanta = [&](double watts) {
       return batches * std::llround(watts / emission.watts_per_quantum[b]);

@@ -10,7 +10,7 @@
 namespace reemit {
 
 /// Power of one luminaire without area that reaches no zone.
-struct LightLoss {
+struct LuminaireLeak {
   Spectrum watts;  ///< [W] per band
   std::vector<LeakAccount> leaks;
 };
@@ -22,7 +22,7 @@ struct LightLoss {
 /// lose; it may be negative. `radiosity` and `irradiance` [W/m2]: zone x band.
 void book_matrix_solution(const TransportScene& transport, const Emission& emission,
                           const FormFactors& factors, const RowMatrix& radiosity, const RowMatrix& irradiance,
-                          const std::vector<LightLoss>& light_losses, std::int64_t batches,
+                          const std::vector<LuminaireLeak>& light_losses, std::int64_t batches,
                           EnergyAudit& audit);
 
 }  // namespace reemit

@@ -40,7 +40,7 @@ struct ZonalSystem {
   RowMatrix reflectance;
   RowMatrix punctual;             // E_p [W/m2]
   RowMatrix punctual_replicates;  // zone x (band * kReplicates + replicate)
-  std::vector<LightLoss> light_losses;
+  std::vector<LuminaireLeak> light_losses;
   std::uint64_t rays = 0;
 
   /// F x for each column x.
@@ -57,7 +57,7 @@ void add_punctual_lights(const TransportScene& transport, std::uint64_t seed, Zo
     Eigen::Index band = 0;
     if (!(emission.maxCoeff(&band) > 0)) continue;
     const std::uint64_t light_seed = matrix_seed(seed, MatrixNumbers::kLightLeaks, l, 0);
-    LightLoss loss;
+    LuminaireLeak loss;
     loss.leaks = trace_light_leaks(lights[l], transport.rays(), light_seed);
     const double known_to_arrive = loss.leaks.empty() ? power(band) / emission(band) : 0;
     const PunctualIrradiance irradiance =

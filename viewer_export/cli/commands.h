@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <memory>
 
 #include "viewer_export/cli/exit_code.h"
 
@@ -19,6 +20,9 @@ void add_render_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
 void add_audit_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
+
+/// All that the command line may hold. Nothing runs: parsing sets `action`, which must outlive the result.
+std::unique_ptr<CLI::App> make_program(Action& action);
 
 /// Reads the command line, runs the subcommand, and turns every exception into a message on stderr and an
 /// exit code.

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <memory>
 #include <new>
 #include <span>
 #include <stdexcept>
@@ -16,29 +17,8 @@
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/output_path.h"
 
-#include "reemit/version.h"
-
 namespace reemit::cli {
 namespace {
-
-constexpr const char* kDescription =
-    "Solves the light in a room once and answers every later question from that solution:\n"
-    "radiance at every vertex, stills from any viewpoint, and where every watt went.";
-
-constexpr const char* kFooter =
-    "Examples:\n"
-    "  reemit solve room.json -o room.h5 --error 1%\n"
-    "  reemit render room.h5 --camera all -o pictures/\n"
-    "  reemit export room.h5 -o room.ply\n"
-    "  reemit audit room.h5\n"
-    "'reemit COMMAND --help' explains a command.\n"
-    "Lux: 'reemit info room.h5' for every surface, 'reemit export room.h5 -o lux.csv --units lx' for\n"
-    "every vertex. Noise: a lower --error, of solve first, then of render or export; a smaller\n"
-    "--zone-area where the last line of a command says that zones are what is off.\n"
-    "Documentation in docs/: examples.md, room_format.md, command_line.md, export_formats.md,\n"
-    "solution_file.md.\n"
-    "Exit codes: 0 done, 1 a check failed, 2 bad usage, input or output, 3 out of memory,\n"
-    "130 interrupted before there was a result.";
 
 std::vector<std::string> known_words(const CLI::App& command) {
   std::vector<std::string> words;
@@ -115,18 +95,9 @@ ExitCode run_program(int argc, const char* const* argv) {
   constexpr const char* kMemoryAdvice =
       "out of memory\n  use larger zones (solve --zone-area) or a smaller picture (render --size)";
   try {
-    CLI::App program(kDescription, "reemit");
-    program.footer(kFooter);
-    program.set_version_flag("--version", fmt::format("reemit {}", kProgramVersion),
-                             "Print the version and exit");
-    program.require_subcommand(1);
     Action action;
-    add_solve_command(program, action);
-    add_render_command(program, action);
-    add_export_command(program, action);
-    add_audit_command(program, action);
-    add_info_command(program, action);
-    return parse_and_run(program, action, argc, argv);
+    const std::unique_ptr<CLI::App> program = make_program(action);
+    return parse_and_run(*program, action, argc, argv);
   } catch (const Interrupted& end) {
     return fail(fmt::format("{}; nothing was written", end.what()), ExitCode::kInterrupted);
   } catch (const ResourceError& problem) {

@@ -40,15 +40,15 @@ TEST(BlockerSieve, OpenPairsAreClearAndHiddenPairsAreBlocked) {
       if (pair.a.area() < 0.999 * mesh.zone_area(ZoneId(i)) ||
           pair.b.area() < 0.999 * mesh.zone_area(ZoneId(j)))
         continue;
-      const Sight sight = sieve.look(i, j, pair);
+      const PairSight sight = sieve.look(i, j, pair);
       ++count[static_cast<std::size_t>(sight)];
-      if (sight == Sight::kUnknown) continue;
+      if (sight == PairSight::kUnknown) continue;
       for (int k = 0; k < 24; ++k)
-        EXPECT_EQ(rays.visible(point(i), point(j)), sight == Sight::kOpen) << i << " " << j;
+        EXPECT_EQ(rays.visible(point(i), point(j)), sight == PairSight::kOpen) << i << " " << j;
     }
-  EXPECT_GT(count[static_cast<std::size_t>(Sight::kOpen)], 1000U);
-  EXPECT_GT(count[static_cast<std::size_t>(Sight::kHidden)], 100U);
-  EXPECT_GT(count[static_cast<std::size_t>(Sight::kUnknown)], 100U);
+  EXPECT_GT(count[static_cast<std::size_t>(PairSight::kOpen)], 1000U);
+  EXPECT_GT(count[static_cast<std::size_t>(PairSight::kHidden)], 100U);
+  EXPECT_GT(count[static_cast<std::size_t>(PairSight::kUnknown)], 100U);
 }
 
 }  // namespace
