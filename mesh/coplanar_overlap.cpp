@@ -67,8 +67,8 @@ class OverlapSearch {
   bool overlap(std::size_t i, std::size_t j, const PlaneFrame& plane);
   bool pokes_into(const PlanarLoops& inner, const PlanarLoops& outer) const;
   const Vec3& inner_point(std::size_t i);
-  void add_crossings(const FacePiece& a, const FacePiece& b, const PlaneFrame& plane,
-                     std::vector<std::uint32_t>& crossings);
+  HiddenLines hidden_lines(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
+  void add_crossings(std::uint32_t i, std::uint32_t j, PieceGroups& out);
 
   const Scene& scene_;
   const std::vector<FacePiece>& pieces_;
@@ -145,21 +145,49 @@ bool OverlapSearch::overlap(std::size_t i, std::size_t j, const PlaneFrame& plan
   return inside(a, inner_point(j)) || inside(b, inner_point(i));
 }
 
-void OverlapSearch::add_crossings(const FacePiece& a, const FacePiece& b, const PlaneFrame& plane,
-                                  std::vector<std::uint32_t>& crossings) {
-  for (const Loop& la : a.loops) {
+// Which of two overlapping pieces never keeps a spot that the other covers too: see winner_of.
+std::optional<std::uint32_t> always_loses(const std::vector<FacePiece>& pieces, std::uint32_t earlier,
+                                          std::uint32_t later) {
+  if (pieces[earlier].plane.normal.dot(pieces[later].plane.normal) <= 0) return std::nullopt;
+  return pieces[later].emits && !pieces[earlier].emits ? earlier : later;
+}
+
+HiddenLines OverlapSearch::hidden_lines(
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> hidden_by;
+  for (const auto& [i, j] : pairs)
+    if (const auto loser = always_loses(pieces_, i, j)) hidden_by.emplace_back(*loser, *loser == i ? j : i);
+  std::sort(hidden_by.begin(), hidden_by.end());
+  HiddenLines out(tolerances_);
+  std::vector<std::uint32_t> hiders;
+  for (std::size_t at = 0; at < hidden_by.size();) {
+    const std::uint32_t piece = hidden_by[at].first;
+    hiders.clear();
+    for (; at < hidden_by.size() && hidden_by[at].first == piece; ++at)
+      hiders.push_back(hidden_by[at].second);
+    out.find(vertices_, pieces_, piece, hiders);
+  }
+  return out;
+}
+
+void OverlapSearch::add_crossings(std::uint32_t i, std::uint32_t j, PieceGroups& out) {
+  const PlaneFrame& plane = pieces_[pieces_[i].area >= pieces_[j].area ? i : j].plane;
+  for (const Loop& la : pieces_[i].loops) {
     for (std::size_t k = 0; k < la.size(); ++k) {
       const Vec3 a0 = vertices_[la[k]];
       const Vec3 a1 = vertices_[la[(k + 1) % la.size()]];
-      for (const Loop& lb : b.loops) {
+      if (out.hidden.hide(i, a0, a1)) continue;
+      for (const Loop& lb : pieces_[j].loops) {
         for (std::size_t m = 0; m < lb.size(); ++m) {
           const Vec3 b0 = vertices_[lb[m]];
           const Vec3 b1 = vertices_[lb[(m + 1) % lb.size()]];
           const auto at = proper_crossing(plane.project(a0), plane.project(a1), plane.project(b0),
                                           plane.project(b1), tolerances_.weld);
+          if (!at) continue;
+          const Vec3 on_a = a0 + at->t * (a1 - a0);
+          if (out.hidden.hide(i, on_a) || out.hidden.hide(j, on_a)) continue;
           // Half way between the edges, so that it lies within the weld distance of both.
-          if (at)
-            crossings.push_back(vertices_.weld(0.5 * (a0 + at->t * (a1 - a0) + b0 + at->s * (b1 - b0))));
+          out.crossings.push_back(vertices_.weld(0.5 * (on_a + b0 + at->s * (b1 - b0))));
         }
       }
     }
@@ -190,12 +218,13 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_
 }
 
 PieceGroups OverlapSearch::run(const WorkStep& step) {
+  const auto pairs = overlapping_pairs(step);
   PieceGroups out;
+  out.hidden = hidden_lines(pairs);
   DisjointSets sets(pieces_.size());
-  for (const auto& [i, j] : overlapping_pairs(step)) {
+  for (const auto& [i, j] : pairs) {
     sets.join(i, j);
-    const FacePiece& large = pieces_[pieces_[i].area >= pieces_[j].area ? i : j];
-    add_crossings(pieces_[i], pieces_[j], large.plane, out.crossings);
+    add_crossings(i, j, out);
     if (out.crossings.size() > kMostPlaneCrossings)
       refuse(i, kMostPlaneCrossings, "crossings of outlines of overlapping faces lie");
   }

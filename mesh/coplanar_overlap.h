@@ -5,6 +5,7 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/face_piece.h"
+#include "mesh/hidden_lines.h"
 #include "mesh/mesh_tolerances.h"
 #include "mesh/vertex_table.h"
 #include "scenes/model/scene.h"
@@ -24,7 +25,8 @@ struct PieceGroups {
   std::vector<std::uint32_t> first;      ///< In `pieces`, by group, and one past the last.
   std::vector<const PlaneFrame*> plane;  ///< By group.
   std::vector<std::uint32_t> group_of;   ///< By piece.
-  std::vector<std::uint32_t> crossings;  ///< Vertices where outlines of overlapping pieces cross.
+  std::vector<std::uint32_t> crossings;  ///< Vertices where outlines of overlapping pieces cross in sight.
+  HiddenLines hidden;
 
   std::size_t size() const { return plane.size(); }
   PieceGroup operator[](std::size_t g) const {
@@ -36,8 +38,9 @@ struct PieceGroups {
 IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size_t index, double margin);
 
 /// Finds the pieces that overlap within the weld distance of one plane. Overlap narrower than a few weld
-/// distances is not seen. Adds the crossings of outlines to `vertices`. Throws InputError, naming a face, if
-/// there are more than a million crossings or ten million pairs, and what NearPieces throws.
+/// distances is not seen. Adds the crossings of outlines that are in sight to `vertices`. Throws InputError,
+/// naming a face, if there are more than a million crossings or ten million pairs, and what NearPieces
+/// throws.
 PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
                                      const MeshTolerances& tolerances, const WorkStep& step,
                                      VertexTable& vertices);

@@ -88,4 +88,35 @@ double PlanarLoops::distance_to_boundary(const Vec2& p) const {
   return std::sqrt(best);
 }
 
+double area_within(const PlanarLoops& loops, const std::array<Vec2, 3>& triangle) {
+  const auto cross = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
+  const double winding = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]) < 0 ? -1 : 1;
+  std::vector<Vec2> rest;
+  std::vector<Vec2> clipped;
+  double area = 0;
+  for (std::size_t l = 0; l < loops.loops.size(); ++l) {
+    // Sutherland and Hodgman: what lies beyond a side is folded onto its line, where it encloses nothing.
+    rest = loops.loops[l];
+    for (std::size_t k = 0; k < 3 && !rest.empty(); ++k) {
+      const Vec2& a = triangle[k];
+      const Vec2 along = triangle[(k + 1) % 3] - a;
+      clipped.clear();
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        const Vec2& p = rest[i];
+        const Vec2& q = rest[(i + 1) % rest.size()];
+        const double from = winding * cross(along, p - a);
+        const double to = winding * cross(along, q - a);
+        if (from >= 0) clipped.push_back(p);
+        if ((from >= 0) != (to >= 0)) clipped.push_back(p + from / (from - to) * (q - p));
+      }
+      rest.swap(clipped);
+    }
+    double twice = 0;
+    for (std::size_t i = 1; i + 1 < rest.size(); ++i)
+      twice += cross(rest[i] - rest[0], rest[i + 1] - rest[0]);
+    area += (l == 0 ? 0.5 : -0.5) * std::abs(twice);
+  }
+  return area;
+}
+
 }  // namespace reemit

@@ -84,4 +84,7 @@ struct PlanarLoops {
   double distance_to_boundary(const Vec2& p) const;
 };
 
+/// Area of the part of the loops within a triangle, of either winding [m2]. Pre: no loop crosses itself.
+double area_within(const PlanarLoops& loops, const std::array<Vec2, 3>& triangle);
+
 }  // namespace reemit

@@ -31,6 +31,16 @@ struct Region {
   double area = 0;  // [m2]
 };
 
+// Which outlines a group is cut along.
+enum class Lines { in_sight, all };
+
+// Area by winner and loser, in one number [m2].
+using OverlapAreas = std::unordered_map<std::uint64_t, double>;
+
+std::uint64_t pair_of(std::size_t winner, std::size_t loser) {
+  return (std::uint64_t{winner} << 32) | loser;
+}
+
 // Numbers of points, neighbours close together: along strips. What one point touched in memory is still near
 // when the next comes.
 std::vector<std::uint32_t> order_by_place(const std::vector<Vec2>& points) {
@@ -76,7 +86,9 @@ class GroupTriangulation {
 
  private:
   void triangulate(std::size_t g);
-  bool emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality);
+  bool emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality, Lines lines);
+  void cover_in_parts(std::size_t g, const GroupOutlines& outlines, std::span<const RawTriangle> triangles,
+                      OverlapAreas& overlap);
   std::vector<std::uint32_t> lift(const PieceGroup& group, const PlanarTriangulation& cut,
                                   std::vector<std::uint32_t> ids);
   bool conserves_area(std::size_t piece) const;
@@ -124,9 +136,37 @@ std::vector<std::uint32_t> GroupTriangulation::lift(const PieceGroup& group, con
   return ids;
 }
 
+// What triangles take of pieces that are not cut along all of their outlines.
+void GroupTriangulation::cover_in_parts(std::size_t g, const GroupOutlines& outlines,
+                                        std::span<const RawTriangle> triangles, OverlapAreas& overlap) {
+  const PieceGroup group = groups_[g];
+  std::vector<std::size_t> near;
+  for (const RawTriangle& t : triangles) {
+    const std::array corners{group.plane.project(vertices_[t.vertex[0]]),
+                             group.plane.project(vertices_[t.vertex[1]]),
+                             group.plane.project(vertices_[t.vertex[2]])};
+    outlines.near(corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]),
+                  corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]), near);
+    for (const std::size_t k : near) {
+      const std::size_t p = group.pieces[k];
+      if (p == t.piece || !groups_.hidden.any(p)) continue;
+      const double area = area_within(outlines[k], corners);
+      if (!(area > 0)) continue;
+      covered_[p] += area;
+      overlap[pair_of(t.piece, p)] += area;
+    }
+  }
+  // Neighbours that only touch take slivers of rounding from each other.
+  constexpr double kRounding = 1e-12;
+  std::erase_if(overlap, [&](const auto& entry) {
+    const double diameter = pieces_[entry.first & 0xffffffff].diameter;
+    return entry.second <= kRounding * diameter * diameter;
+  });
+}
+
 // Triangulates a group; returns false, leaving no trace but unused vertices, if area was lost.
-bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
-                              const TriangleQuality& quality) {
+bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality,
+                              Lines lines) {
   const PieceGroup group = groups_[g];
   std::vector<Vec2> points;
   std::vector<std::uint32_t> ids;
@@ -141,10 +181,18 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
     return it->second;
   };
   const GroupOutlines outlines(vertices_, pieces_, group);
+  const auto is_partial = [&](std::size_t p) { return lines == Lines::in_sight && groups_.hidden.any(p); };
+  bool any_partial = false;
   for (const std::size_t p : group.pieces) {
+    const bool partial = is_partial(p);
+    any_partial = any_partial || partial;
     for (const Loop& loop : pieces_[p].loops)
-      for (std::size_t i = 0; i < loop.size(); ++i)
-        segments.push_back({local_of(loop[i]), local_of(loop[(i + 1) % loop.size()])});
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const std::uint32_t a = loop[i];
+        const std::uint32_t b = loop[(i + 1) % loop.size()];
+        if (!partial || !groups_.hidden.hide(p, vertices_[a], vertices_[b]))
+          segments.push_back({local_of(a), local_of(b)});
+      }
   }
   for (const Segment& s : cuts) segments.push_back({local_of(s[0]), local_of(s[1])});
 
@@ -166,7 +214,7 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
     regions[r].winner = winner_of(pieces_, covering, room_centre_);
     regions[r].first_loser = losers.size();
     std::copy_if(covering.begin(), covering.end(), std::back_inserter(losers),
-                 [&](std::size_t p) { return p != regions[r].winner; });
+                 [&](std::size_t p) { return p != regions[r].winner && !is_partial(p); });
     regions[r].end_of_losers = losers.size();
   }
   const auto losers_of = [&](const Region& region) {
@@ -187,15 +235,15 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts,
     meshed_[region.winner] += area;
     out_.push_back({t, region.winner});
   }
+  OverlapAreas overlap;
+  if (any_partial) cover_in_parts(g, outlines, std::span(out_).subspan(before), overlap);
   if (!std::all_of(group.pieces.begin(), group.pieces.end(),
                    [&](std::size_t p) { return conserves_area(p); })) {
     out_.resize(before);
     return false;
   }
-  std::unordered_map<std::uint64_t, double> overlap;  // area by winner and loser
   for (const Region& region : regions)
-    for (const std::size_t p : losers_of(region))
-      overlap[(std::uint64_t{region.winner} << 32) | p] += region.area;
+    for (const std::size_t p : losers_of(region)) overlap[pair_of(region.winner, p)] += region.area;
   for (const auto& [pair, area] : overlap) overlap_[{pair >> 32, pair & 0xffffffff}] = area;
   return true;
 }
@@ -219,10 +267,13 @@ void GroupTriangulation::triangulate(std::size_t g) {
     out_.push_back({{t[0], t[1], t[2]}, group.pieces[0]});
     return;
   }
-  if (emit(g, cuts, quality_)) return;
+  const bool any_hidden = std::any_of(group.pieces.begin(), group.pieces.end(),
+                                      [&](std::size_t p) { return groups_.hidden.any(p); });
+  if (any_hidden && emit(g, cuts, quality_, Lines::in_sight)) return;  // where rounding does not defeat it
+  if (emit(g, cuts, quality_, Lines::all)) return;
   TriangleQuality plain = quality_;
   plain.most_new_points = 0;
-  if (emit(g, cuts, plain) || emit(g, {}, plain)) return;
+  if (emit(g, cuts, plain, Lines::all) || emit(g, {}, plain, Lines::all)) return;
   const auto lost = std::find_if(group.pieces.begin(), group.pieces.end(),
                                  [&](std::size_t p) { return !conserves_area(p); });
   const FacePiece& piece = pieces_[lost == group.pieces.end() ? group.pieces[0] : *lost];

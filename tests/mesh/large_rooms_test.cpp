@@ -195,6 +195,99 @@ TEST(LargeRooms, ManySquaresInOnePlaneKeepTheAreaOfTheirUnion) {
   EXPECT_THAT(r.report.warnings, testing::ElementsAre(HasSubstr("lie in one plane")));
 }
 
+TEST(LargeRooms, StackOfSquaresIsCutWhereItIsSeen) {
+  TestRoom room;
+  const MaterialId grey = room.material();
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> anywhere(0, 4);
+  for (int i = 0; i < 1500; ++i) {
+    const double x = anywhere(random);
+    const double y = anywhere(random);
+    room.polygon("square", grey, floor_rectangle(x, y, x + 0.5, y + 0.5));
+  }
+  MeshSettings coarse;
+  coarse.zone_area = 1;
+  const MeshResult r = build_mesh(room.scene(), coarse);
+  // Cut along all of the more than 100,000 crossings, these would be more than 200,000 triangles.
+  EXPECT_LT(r.mesh.triangle_count(), 6000U);
+  EXPECT_GT(r.report.overlapping_faces, 1400U);
+}
+
+// Rectangles in one plane, some turned down, some luminous: whatever lines are left out, each keeps what the
+// rule of the overlap gives it.
+TEST(LargeRooms, EveryFaceOfAStackKeepsTheSpotsItWins) {
+  struct Rectangle {
+    Vec2 low;
+    Vec2 high;
+    bool down;
+    bool emits;
+  };
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> anywhere(0, 4);
+  std::uniform_int_distribution<int> sixteenths(1, 24);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    TestRoom room;
+    const MaterialId grey = room.material(false);
+    const MaterialId lamp = room.material(false, 1);
+    std::vector<Rectangle> stack;
+    std::vector<double> xs;
+    std::vector<double> ys;
+    for (int i = 0; i < 60; ++i) {
+      Vec2 low(anywhere(random), anywhere(random));
+      if (repeat % 2 == 0) low = (16 * low).array().round() / 16;  // many edges and corners coincide
+      const Vec2 size(sixteenths(random) / 16.0, sixteenths(random) / 16.0);
+      stack.push_back({low, low + size, random() % 3 == 0, random() % 5 == 0});
+      const Rectangle& r = stack.back();
+      xs.insert(xs.end(), {r.low.x(), r.high.x()});
+      ys.insert(ys.end(), {r.low.y(), r.high.y()});
+      const std::vector<Vec3> outline = floor_rectangle(r.low.x(), r.low.y(), r.high.x(), r.high.y());
+      room.polygon("sheet", r.emits ? lamp : grey, r.down ? test::reversed(outline) : outline);
+    }
+    std::sort(xs.begin(), xs.end());
+    std::sort(ys.begin(), ys.end());
+    std::vector<double> expected(stack.size(), 0.0);
+    for (std::size_t i = 0; i + 1 < xs.size(); ++i)
+      for (std::size_t k = 0; k + 1 < ys.size(); ++k) {
+        const Vec2 middle(0.5 * (xs[i] + xs[i + 1]), 0.5 * (ys[k] + ys[k + 1]));
+        std::size_t winner = stack.size();
+        for (std::size_t p = 0; p < stack.size(); ++p) {
+          if ((middle - stack[p].low).minCoeff() <= 0 || (stack[p].high - middle).minCoeff() <= 0) continue;
+          if (winner == stack.size() || (stack[p].emits && !stack[winner].emits)) winner = p;
+        }
+        if (winner < stack.size()) expected[winner] += (xs[i + 1] - xs[i]) * (ys[k + 1] - ys[k]);
+      }
+    const MeshResult r = build_mesh(room.scene());
+    for (std::size_t p = 0; p < stack.size(); ++p) {
+      const double whole = (stack[p].high - stack[p].low).prod();
+      EXPECT_NEAR(r.report.surfaces[p].meshed, expected[p], 1e-5) << "repeat " << repeat << ", face " << p;
+      EXPECT_NEAR(r.report.surfaces[p].removed, whole - expected[p], 1e-5);
+    }
+  }
+}
+
+TEST(LargeRooms, AreaWithinATriangleIsThatOfTheClippedOutline) {
+  VertexTable vertices(0);
+  const auto loop = [&](const std::vector<Vec3>& corners) {
+    Loop out;
+    for (const Vec3& p : corners) out.push_back(vertices.weld(p));
+    return out;
+  };
+  FacePiece piece;  // the letter U, three wide and three high, with a square hole in its left leg
+  piece.loops = {
+      loop({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}),
+      loop({{0.25, 2, 0}, {0.75, 2, 0}, {0.75, 2.5, 0}, {0.25, 2.5, 0}})};
+  const PlanarLoops loops(vertices, piece, PlaneFrame{});
+  const auto area = [&](const Vec2& a, const Vec2& b, const Vec2& c) {
+    EXPECT_DOUBLE_EQ(area_within(loops, {a, b, c}), area_within(loops, {c, b, a}));
+    return area_within(loops, {a, b, c});
+  };
+  EXPECT_NEAR(area({-10, -10}, {30, -10}, {-10, 30}), 7 - 0.25, 1e-12);  // all of it
+  EXPECT_NEAR(area({0.5, 0.25}, {1, 0.25}, {0.5, 0.75}), 0.125, 1e-12);  // all of the triangle
+  EXPECT_NEAR(area({0, 2}, {3, 2}, {0, 5}), 1 - 0.25 + 0.5, 1e-12);      // both legs, and the hole
+  EXPECT_NEAR(area({1.2, 1.5}, {1.8, 1.5}, {1.5, 2.5}), 0, 1e-12);       // between the legs
+  EXPECT_NEAR(area({4, 4}, {5, 4}, {4, 5}), 0, 1e-12);
+}
+
 TEST(LargeRooms, EdgesOfPolygonsAreNumberedOnce) {
   std::mt19937 random(7);
   std::uniform_int_distribution<std::uint32_t> vertex(0, 60);
