@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "solver/emit/punctual_packets.h"
+
 namespace reemit {
 namespace {
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +19,15 @@ class LocalBooks {
   ~LocalBooks() {
     for (std::size_t i = 0; i < escaped_.size(); ++i)
       if (escaped_[i] != 0) book(books_.escaped[i], escaped_[i]);
+    const auto count = [](std::uint64_t& total, std::uint64_t more) {
+      if (more != 0) std::atomic_ref<std::uint64_t>(total).fetch_add(more, std::memory_order_relaxed);
+    };
+    count(books_.events.second_looks, events.second_looks);
+    count(books_.events.back_hits, events.back_hits);
+    count(books_.events.escapes, events.escapes);
   }
+
+  RareEvents events;
 
   /// Power that left the room in direction (x,y,z), booked under the nearest axis.
   void escape(float x, float y, float z, std::size_t band, std::int64_t quanta) {

@@ -32,10 +32,26 @@ struct BandAudit {
   std::int64_t balance() const;
 };
 
+/// Ends of packets that ought to be rare, as numbers of packets: more of them than usual point at a room or a
+/// program that has something wrong.
+struct RareEvents {
+  std::uint64_t second_looks = 0;  ///< Rays that met an edge, a back or nothing, and were traced once more.
+  std::uint64_t back_hits = 0;     ///< Packets that ended on the back of a one-sided face.
+  std::uint64_t escapes = 0;       ///< Packets that left the room.
+
+  RareEvents& operator+=(const RareEvents& more) {
+    second_looks += more.second_looks;
+    back_hits += more.back_hits;
+    escapes += more.escapes;
+    return *this;
+  }
+};
+
 struct EnergyAudit {
   std::vector<BandAudit> bands;
   std::int64_t batches = 0;
   std::int64_t weight = 0;  ///< Of all batches together (ZoneSums).
+  RareEvents events;        ///< None are counted by the matrix method.
 
   bool balanced() const;
   double unshot_share() const;  ///< Of all bands together, each band counting alike.

@@ -281,6 +281,9 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
   EnergyAudit audit;
   audit.batches = group.read_attribute<std::int64_t>("batches");
   audit.weight = group.read_attribute<std::int64_t>("weight");
+  audit.events.second_looks = group.read_attribute<std::uint64_t>("second_looks");
+  audit.events.back_hits = group.read_attribute<std::uint64_t>("back_hits");
+  audit.events.escapes = group.read_attribute<std::uint64_t>("escapes");
   require(audit.batches >= 0 && audit.weight >= audit.batches, "a negative number of batches");
   const std::vector<std::string> names = group.read_texts("band");
   require(names.size() == bands, "an audit of another number of bands");

@@ -305,6 +305,9 @@ void write_audit(const Hdf5Group& root, const Solution& solution) {
   const std::size_t surfaces = solution.surface_names.size();
   group.write_attribute("batches", solution.audit.batches);
   group.write_attribute("weight", solution.audit.weight);
+  group.write_attribute("second_looks", solution.audit.events.second_looks);
+  group.write_attribute("back_hits", solution.audit.events.back_hits);
+  group.write_attribute("escapes", solution.audit.events.escapes);
   group.write("band", column<std::string>(bands, std::mem_fn(&BandAudit::band)), "name of each band");
   put(group, "watts_per_quantum", column<double>(bands, std::mem_fn(&BandAudit::watts_per_quantum)), 1, "W",
       "power [W] = quanta * watts_per_quantum / weight");

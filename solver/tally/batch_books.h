@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include "mesh/zone_mesh.h"
+#include "solver/solution/energy_audit.h"
 
 namespace reemit {
 
@@ -68,6 +69,7 @@ struct BatchBooks {
       account->assign(account->size(), 0);
     packets = 0;
     rays = 0;
+    events = {};
   }
 
   std::size_t bands;
@@ -82,6 +84,7 @@ struct BatchBooks {
   std::vector<std::int64_t> roulette_loss;
   std::uint64_t packets = 0;  ///< Emitted by luminaires.
   std::uint64_t rays = 0;
+  RareEvents events;
 };
 
 }  // namespace reemit

@@ -45,6 +45,7 @@ void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<
 void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit) {
   ++audit.batches;
   audit.weight += weight;
+  audit.events += books.events;
   const std::size_t bands = books.bands;
   for (std::size_t b = 0; b < bands; ++b) {
     BandAudit& a = audit.bands[b];

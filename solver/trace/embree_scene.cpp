@@ -25,13 +25,16 @@ void shape_bounds_callback(const RTCBoundsFunctionArguments* args) {
   box.upper_z = above(shape.high().z());
 }
 
-/// Nearest hit of ray i of a packet of n, as a float inside the ray's range; infinity if there is none.
-float nearest_hit(const ShapeTarget& shape, RTCRayN* rays, unsigned n, unsigned i) {
+using Search = double (ShapeTarget::*)(const Vec3& origin, const Vec3& direction, double near,
+                                       double far) const;
+
+/// What a search finds of ray i of a packet of n, as a float inside the ray's range; infinity if nothing.
+float hit_by(Search search, const ShapeTarget& shape, RTCRayN* rays, unsigned n, unsigned i) {
   const Vec3 origin(RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i));
   const Vec3 direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i));
   const float near = RTCRayN_tnear(rays, n, i);
   const float far = RTCRayN_tfar(rays, n, i);
-  const auto t = static_cast<float>(shape.nearest(origin, direction, near, far));
+  const auto t = static_cast<float>((shape.*search)(origin, direction, near, far));
   return t > near && t < far ? t : kInfinity;
 }
 
@@ -41,7 +44,7 @@ void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    const float t = nearest_hit(shape, rays, args->N, i);
+    const float t = hit_by(&ShapeTarget::first, shape, rays, args->N, i);
     if (t == kInfinity) continue;
     RTCRayN_tfar(rays, args->N, i) = t;
     RTCHitN_geomID(hits, args->N, i) = args->geomID;
@@ -53,7 +56,7 @@ void intersect_shape(const RTCIntersectFunctionNArguments* args) {
 void occlude_shape(const RTCOccludedFunctionNArguments* args) {
   const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];
   for (unsigned i = 0; i < args->N; ++i)
-    if (args->valid[i] != 0 && nearest_hit(shape, args->ray, args->N, i) < kInfinity)
+    if (args->valid[i] != 0 && hit_by(&ShapeTarget::nearest, shape, args->ray, args->N, i) < kInfinity)
       RTCRayN_tfar(args->ray, args->N, i) = -kInfinity;
 }
 

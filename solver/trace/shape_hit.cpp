@@ -13,13 +13,12 @@ constexpr double kRim = 2e-7;
 /// A disk in the plane of a face is hit first: it is what was put there.
 constexpr double kProud = 1e-6;
 constexpr double kRimBand = 4 * kProud;
-/// A round shape that is met from within comes before what touches it from outside, disks included: where
-/// they touch both are equally far.
+/// How much sooner a shape is met from within.
 constexpr double kEncloses = 2 * kProud;
 
-/// Distance of a hit from within.
-double before_what_touches(double exit, double near) {
-  return exit - kEncloses > near ? exit - kEncloses : exit;
+double nearest_of(double a, double b, double near, double far) {
+  if (a > near && a < far) return a;
+  return b > near && b < far ? b : kNone;
 }
 
 }  // namespace
@@ -43,6 +42,24 @@ double ShapeTarget::nearest(const Vec3& origin, const Vec3& d, double near, doub
                              : on_disk(origin - frustum_.base, d, near, far);
 }
 
+double ShapeTarget::first(const Vec3& origin, const Vec3& d, double near, double far) const {
+  if (!encloses(origin)) return nearest(origin, d, near, far);
+  const double exact = nearest(origin, d, near, far + kEncloses);
+  const double sooner = exact - kEncloses;
+  const double hit = sooner > near ? sooner : exact;
+  return hit < far ? hit : kNone;
+}
+
+// Of a mantle, between its ends: rays that come in over a rim must meet first what closes that end.
+bool ShapeTarget::encloses(const Vec3& point) const {
+  if (is_sphere_) return (point - centre_).squaredNorm() < radius_ * radius_;
+  const Vec3 from_base = point - frustum_.base;
+  const double height = frustum_.axis.dot(from_base);
+  if (!(height > 0 && height < frustum_.height)) return false;
+  const double radius = frustum_.r0 + (frustum_.r1 - frustum_.r0) * height / frustum_.height;
+  return (from_base - height * frustum_.axis).squaredNorm() < radius * radius;
+}
+
 double ShapeTarget::nearest_on_sphere(const Vec3& to_centre, const Vec3& d, double near, double far) const {
   const double d2 = d.squaredNorm();
   const double middle = d.dot(to_centre) / d2;
@@ -50,11 +67,7 @@ double ShapeTarget::nearest_on_sphere(const Vec3& to_centre, const Vec3& d, doub
   const double rest = radius_ * radius_ - (to_centre - middle * d).squaredNorm();
   if (rest < 0) return kNone;
   const double half = std::sqrt(rest / d2);
-  if (middle - half > near) return middle - half < far ? middle - half : kNone;
-  if (!(middle + half > near)) return kNone;
-  const bool starts_within = middle - half < 0;
-  const double exit = starts_within ? before_what_touches(middle + half, near) : middle + half;
-  return exit < far ? exit : kNone;
+  return nearest_of(middle - half, middle + half, near, far);
 }
 
 double ShapeTarget::nearest_on_mantle(const Vec3& p, const Vec3& d, double near, double far) const {
@@ -66,16 +79,14 @@ double ShapeTarget::nearest_on_mantle(const Vec3& p, const Vec3& d, double near,
   const Vec3 rp = p - hp * f.axis;
   const Vec3 rd = d - hd * f.axis;
   const double a = rd.squaredNorm() - slope * slope * hd * hd;
-  const auto from_inside = [&](double t) {
-    return rd.dot(rp + t * rd) + slope * hd * (f.r0 - slope * (hp + t * hd)) > 0;
-  };
   const auto reaches = [&](double t) {
     const double h = hp + t * hd;
     if (h >= 0 && h <= f.height) return true;
     if (h < -kRim || h > f.height + kRim) return false;
     // From the inside only on the way out: a ray that comes in over the rim has met what closes the end, or
     // passes the body.
-    return !from_inside(t) || (h < 0) == (hd < 0);
+    const bool from_inside = rd.dot(rp + t * rd) + slope * hd * (f.r0 - slope * h) > 0;
+    return !from_inside || (h < 0) == (hd < 0);
   };
   double t0 = kNone;
   double t1 = kNone;
@@ -98,15 +109,9 @@ double ShapeTarget::nearest_on_mantle(const Vec3& p, const Vec3& d, double near,
     t1 = q != 0 ? c / q : kNone;
     if (t1 < t0) std::swap(t0, t1);
   }
-  // Not of rays that come in over a rim: where they meet it, what closes the end must come first.
-  const double rim_here = f.r0 - slope * hp;
-  const bool starts_within = hp > 0 && hp < f.height && rp.squaredNorm() < rim_here * rim_here;
-  for (const double t : {t0, t1}) {
-    if (!(t > near && reaches(t))) continue;
-    const double hit = starts_within ? before_what_touches(t, near) : t;
-    if (hit < far) return hit;
-  }
-  return kNone;
+  if (!(t0 > near && t0 < far && reaches(t0))) t0 = kNone;
+  if (t0 < kNone) return t0;
+  return t1 > near && t1 < far && reaches(t1) ? t1 : kNone;
 }
 
 double ShapeTarget::on_disk(const Vec3& p, const Vec3& d, double near, double far) const {

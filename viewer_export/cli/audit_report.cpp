@@ -141,7 +141,12 @@ std::string audit_text(const EnergyAudit& audit, const std::vector<std::string>&
   return table.text() +
          fmt::format("{} over {} batch{}\n",
                      audit.balanced() ? "The books balance exactly" : "THE BOOKS DO NOT BALANCE",
-                     audit.batches, audit.batches == 1 ? "" : "es");
+                     audit.batches, audit.batches == 1 ? "" : "es") +
+         fmt::format(
+             "Rays traced twice because they met an edge, a back or nothing: {}; packets that ended on "
+             "backs: {}, "
+             "outside: {}\n",
+             audit.events.second_looks, audit.events.back_hits, audit.events.escapes);
 }
 
 Json audit_json(const EnergyAudit& audit, const std::vector<std::string>& surface_names) {
@@ -151,8 +156,14 @@ Json audit_json(const EnergyAudit& audit, const std::vector<std::string>& surfac
   for (const std::size_t s : by_power(audit, &BandAudit::absorbed, surface_names.size())) {
     surfaces.push_back(surface_json(audit, surface_names[s], s));
   }
-  return {
-      {"bands", bands}, {"balanced", audit.balanced()}, {"batches", audit.batches}, {"surfaces", surfaces}};
+  return {{"bands", bands},
+          {"balanced", audit.balanced()},
+          {"batches", audit.batches},
+          {"events",
+           {{"second_looks", audit.events.second_looks},
+            {"back_hits", audit.events.back_hits},
+            {"escapes", audit.events.escapes}}},
+          {"surfaces", surfaces}};
 }
 
 }  // namespace reemit::cli

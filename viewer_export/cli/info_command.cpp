@@ -28,11 +28,6 @@ struct InfoOptions {
   OutputStyle style;
 };
 
-/// A solution file cut short at its start or empty is still meant as one.
-bool is_solution(const std::filesystem::path& path) {
-  return is_solution_file(path) || path.extension() == ".h5" || path.extension() == ".hdf5";
-}
-
 /// What is left of the room of a solution.
 struct RoomOfSolution {
   std::string status = "unchanged";  ///< Or why it cannot be read or is not the one that was solved.
@@ -86,7 +81,7 @@ ExitCode show_room(const InfoOptions& options) {
 }
 
 ExitCode show(const InfoOptions& options) {
-  const auto solution = std::find_if(options.files.begin(), options.files.end(), is_solution);
+  const auto solution = std::find_if(options.files.begin(), options.files.end(), is_meant_as_solution);
   if (solution == options.files.end()) {
     try {
       return show_room(options);

@@ -48,6 +48,10 @@ MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const Out
   return build_mesh(scene, settings, WorkWatch([&](double done) { progress.update(done); }));
 }
 
+bool is_meant_as_solution(const fs::path& file) {
+  return is_solution_file(file) || file.extension() == ".h5" || file.extension() == ".hdf5";
+}
+
 Solution load_solution(const fs::path& file, const OutputStyle& style) {
   const WaitingLine line(reading({file}), style_of(style));
   return reemit::load_solution(file);

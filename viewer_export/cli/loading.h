@@ -16,6 +16,8 @@ namespace reemit::cli {
 Scene load_room(const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                 const OutputStyle& style);
 MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style);
+/// True for a solution file, also one that is cut short at its start, empty or not there.
+bool is_meant_as_solution(const std::filesystem::path& file);
 Solution load_solution(const std::filesystem::path& file, const OutputStyle& style);
 /// As read_room_of.
 Scene load_room_of(const Solution& solution, const std::filesystem::path& solution_file,

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/model/error.h"
+#include "solver/progressive_solver.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
@@ -34,8 +36,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RenderOptions {
-  fs::path solution;
-  std::vector<fs::path> room;
+  std::vector<fs::path> files;  ///< A solution, or the files of a room.
+  ReadOptions read;             ///< Of a room.
+  std::vector<fs::path> room;   ///< Of a solution, if it was moved.
   fs::path output;
   std::string format;  ///< Of pictures in a folder: an extension with its dot.
   CameraOptions camera;
@@ -165,19 +168,45 @@ class Renderer {
   nlohmann::ordered_json pictures_ = nlohmann::ordered_json::array();
 };
 
+/// What stills are made of.
+struct Source {
+  Scene scene;
+  Solution solution;  ///< Without any batch, of a room that is not solved.
+};
+
+Source load_source(const RenderOptions& options) {
+  const fs::path& file = options.files.front();
+  if (options.files.size() == 1 && is_meant_as_solution(file)) {
+    Solution solution = load_solution(file, options.style);
+    Scene scene = load_room_of(solution, file, options.room, options.style);
+    return {std::move(scene), std::move(solution)};
+  }
+  if (options.still.integrator != Integrator::kPath)
+    throw InputError(file.string(),
+                     "is a room, and only --integrator path makes stills of one that is not solved",
+                     "Solve it first: reemit solve " + file.string() + " -o " +
+                         fs::path(file.filename()).replace_extension(".h5").string());
+  Scene scene = load_room(options.files, options.read, options.style);
+  if (!options.style.quiet) print_warnings(scene.warnings);
+  MeshResult meshed = mesh_room(scene, {}, options.style);
+  if (!options.style.quiet) print_warnings(meshed.report.warnings);
+  Solution solution = new_solution(scene, std::move(meshed), {});
+  return {std::move(scene), std::move(solution)};
+}
+
 ExitCode run_render(RenderOptions options) {
   check_view(options.camera);
   const bool into_folder = options.into_folder();
-  if (!into_folder) {
-    image_format_of(options.output);  // refuses an unknown one before the work
-    check_output_file(options.output, options.solution);
-  }
-  const Solution solution = load_solution(options.solution, options.style);
-  const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
+  if (!into_folder) image_format_of(options.output);  // refuses an unknown one before the work
+  const auto check_output = [&](const fs::path& output) {
+    for (const fs::path& file : options.files) check_output_file(output, file);
+  };
+  if (!into_folder) check_output(options.output);
+  const auto [scene, solution] = load_source(options);
   const RayScene rays = build_rays(solution.mesh, options.style);
   const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, scene, rays, into_folder));
   if (into_folder) make_output_directory(options.output);
-  for (const Job& job : jobs) check_output_file(job.file, options.solution);
+  for (const Job& job : jobs) check_output(job.file);
 
   options.still.width = options.size.width;
   options.still.height = options.size.height;
@@ -242,7 +271,7 @@ void add_quality_options(CLI::App& render, RenderOptions& options) {
       render, "--integrator", options.still.integrator,
       {{"gather", Integrator::kGather}, {"path", Integrator::kPath}, {"zones", Integrator::kZones}},
       "gather: direct light and final gather over the zones; path: path tracing, the\n"
-      "unbiased reference; zones: the zone values as they are");
+      "unbiased reference, which needs no solution; zones: the zone values as they are");
   auto* error =
       add_parsed_option(render, "--error", options.still.error_target, parse_share, "SHARE",
                         "Refine until the relative error (rms over pixels, worst band) is below: 2%");
@@ -271,15 +300,23 @@ void add_quality_options(CLI::App& render, RenderOptions& options) {
 
 void add_render_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App& render = *program.add_subcommand("render", "Make stills of a solved room from any viewpoint");
+  CLI::App& render = *program.add_subcommand(
+      "render", "Make stills of a solved room from any viewpoint; by path tracing of any room");
   render.footer(
       "Examples:\n"
       "  reemit render room.h5 --camera all --format png -o pictures/\n"
       "  reemit render room.h5 --eye 1,1.6,4 --look-at 2,1.2,0 --size 1280x720 --error 1% -o view.exr\n"
-      "  reemit render room.h5 --integrator path --spp 1024 -o reference.exr");
-  render.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
+      "  reemit render room.h5 --integrator path --spp 1024 -o reference.exr\n"
+      "  reemit render room.gltf --integrator path --error 3% -o first_look.png");
+  render
+      .add_option("solution", options->files,
+                  "Solution file; or a room (several .mgf files are one), with --integrator path")
+      ->required()
+      ->type_name("SOLUTION|ROOM");
   render.add_option("-o,--output", options->output, format_help())->required()->type_name("FILE|DIR/");
   add_room_option(render, options->room);
+  render.add_flag("--two-sided", options->read.force_two_sided, "As of solve, for a room");
+  add_gltf_unit_options(render, options->read);
   add_view_options(render, *options);
   add_quality_options(render, *options);
   render.option_defaults()->group("Output");

@@ -299,6 +299,26 @@ TEST(Methods, PerfectReflectorIsRefusedWhenClosedAndSolvedWhenOpen) {
   }
 }
 
+TEST(Methods, PacketsThatEndWhereTheyShouldNotAreCounted) {
+  // Five walls, of which one shows its back, and an opening.
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 1.0);
+  room.box(Vec3::Zero(), Vec3(1, 1, 1), {wall, wall, wall, wall, wall, MaterialId()}, 2);
+  room.quad(room.material("one-sided", 0.5),
+            {Vec3(0.2, 0.2, 0.5), Vec3(0.2, 0.8, 0.5), Vec3(0.8, 0.8, 0.5), Vec3(0.8, 0.2, 0.5)}, 1);
+  for (const SolveMethod method : kMethods) {
+    SolverSettings settings = settings_of(method, 20'000);
+    const Solution s = run(room, settings);
+    const RareEvents& events = s.audit.events;
+    EXPECT_GT(events.back_hits, 100U) << to_string(method);
+    EXPECT_GT(events.escapes, 1000U);
+    EXPECT_GE(events.second_looks, events.back_hits + events.escapes) << "each had a second look";
+    EXPECT_LT(events.second_looks, 1.05 * static_cast<double>(events.back_hits + events.escapes));
+    settings.threads = 1;
+    EXPECT_EQ(run(room, settings).audit.events.second_looks, events.second_looks);
+  }
+}
+
 TEST(Methods, InterruptKeepsTheBatchesThatAreDone) {
   std::atomic<bool> interrupt = false;
   SolverSettings settings = settings_of(SolveMethod::kShooting, 100'000'000);

@@ -120,6 +120,9 @@ void expect_same_books(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.gathered.rays, b.gathered.rays);
   EXPECT_EQ(a.audit.batches, b.audit.batches);
   EXPECT_EQ(a.audit.weight, b.audit.weight);
+  EXPECT_EQ(a.audit.events.second_looks, b.audit.events.second_looks);
+  EXPECT_EQ(a.audit.events.back_hits, b.audit.events.back_hits);
+  EXPECT_EQ(a.audit.events.escapes, b.audit.events.escapes);
   ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
   for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {
     const BandAudit& x = a.audit.bands[i];

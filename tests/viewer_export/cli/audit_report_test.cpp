@@ -50,6 +50,14 @@ TEST(AuditReport, JsonHoldsPowersThatAddUp) {
   EXPECT_EQ(band["balance_quanta"].get<std::int64_t>(), 0);
 }
 
+TEST(AuditReport, RareEventsAreCounted) {
+  EnergyAudit audit = balanced_audit();
+  audit.events = {1234, 5, 67};
+  EXPECT_THAT(audit_text(audit, {"floor", "wall"}),
+              HasSubstr("an edge, a back or nothing: 1234; packets that ended on backs: 5, outside: 67"));
+  EXPECT_EQ(audit_json(audit, {"floor", "wall"})["events"]["second_looks"], 1234);
+}
+
 TEST(AuditReport, SurfacesComeByFallingPower) {
   const auto json = audit_json(balanced_audit(), {"floor", "wall"});
   ASSERT_EQ(json["surfaces"].size(), 2U);

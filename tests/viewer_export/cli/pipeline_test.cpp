@@ -50,6 +50,26 @@ TEST_F(Pipeline, SolveEndsWithOneLine) {
     EXPECT_THAT(out, HasSubstr(word));
 }
 
+TEST_F(Pipeline, RoomsThatAreNotSolvedArePathTraced) {
+  const std::string solution = path("room.h5");
+  output_of({"solve", path("room.json"), "-o", solution, "--zone-area", "0.05", "--packets", "1000"});
+  const std::vector<std::string> how{"--integrator", "path", "--spp", "8", "--seed", "3"};
+  std::vector<std::string> of_room{"render", path("room.json"), "-o", path("of_room.hdr")};
+  std::vector<std::string> of_solution{"render", solution, "-o", path("of_solution.hdr")};
+  of_room.insert(of_room.end(), how.begin(), how.end());
+  of_solution.insert(of_solution.end(), how.begin(), how.end());
+  output_of(of_room);
+  output_of(of_solution);
+  EXPECT_EQ(read_bytes(path("of_room.hdr")), read_bytes(path("of_solution.hdr")))
+      << "no zone has a say in path tracing";
+  const ProgramRun gathered = run_reemit({"render", path("room.json"), "-o", path("x.png")});
+  EXPECT_EQ(gathered.exit_code, 2);
+  EXPECT_THAT(gathered.err, HasSubstr("only --integrator path makes stills of one that is not solved"));
+  EXPECT_EQ(
+      run_reemit({"render", path("room.json"), "-o", path("room.json"), "--integrator", "path"}).exit_code,
+      2);
+}
+
 TEST_F(Pipeline, NamesThatAreNotUtf8GiveValidJson) {
   folder_.write("room.mtl", small_obj_materials());
   folder_.write("old.obj", replaced(small_obj_room(), "o walls",
