@@ -9,6 +9,11 @@
 
 namespace reemit {
 
+/// Counts one of what is rare enough for all threads to count in one place.
+inline void count_event(std::uint64_t& events) {
+  std::atomic_ref<std::uint64_t>(events).fetch_add(1, std::memory_order_relaxed);
+}
+
 /// Accounts of one task for ends of packets that many packets share, so that threads do not contend for them.
 /// They reach the books when the object goes.
 class LocalBooks {
@@ -19,15 +24,7 @@ class LocalBooks {
   ~LocalBooks() {
     for (std::size_t i = 0; i < escaped_.size(); ++i)
       if (escaped_[i] != 0) book(books_.escaped[i], escaped_[i]);
-    const auto count = [](std::uint64_t& total, std::uint64_t more) {
-      if (more != 0) std::atomic_ref<std::uint64_t>(total).fetch_add(more, std::memory_order_relaxed);
-    };
-    count(books_.events.second_looks, events.second_looks);
-    count(books_.events.back_hits, events.back_hits);
-    count(books_.events.escapes, events.escapes);
   }
-
-  RareEvents events;
 
   /// Power that left the room in direction (x,y,z), booked under the nearest axis.
   void escape(float x, float y, float z, std::size_t band, std::int64_t quanta) {
@@ -42,6 +39,7 @@ class LocalBooks {
     else
       axis = z < 0 ? 5 : 4;
     escaped_[axis * books_.bands + band] += quanta;
+    if (band == 0) count_event(books_.events.escapes);
   }
 
  private:

@@ -27,7 +27,6 @@ struct Account {
   std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room or needs a second look.
   bool shared = false;
   std::uint64_t* place = nullptr;  ///< Among the arrival points of its zone, if they are kept.
-  bool back = false;               ///< Of the back of a one-sided face.
 };
 
 /// Accounts of 16 packets. Their memory is asked for at once, before the first is needed: with many zones the
@@ -43,8 +42,7 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
     const ZoneId zone = transport.zone_of(t, hits.u[lane], hits.v[lane], hits.front[lane]);
     if (!second_look && (!zone.valid() || transport.is_at_edge(t, hits.u[lane], hits.v[lane]))) continue;
     if (zone.valid()) {
-      accounts[lane].quanta = &incident.quanta[zone.index() * bands];
-      accounts[lane].shared = shared;
+      accounts[lane] = {&incident.quanta[zone.index() * bands], shared, nullptr};
       incident.touch(zone.index());
       if (arrivals != nullptr) {
         accounts[lane].place = arrivals->place(zone, bits[lane]);
@@ -52,7 +50,8 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
       }
     } else {
       const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
-      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true, nullptr, true};
+      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true, nullptr};
+      count_event(books.events.back_hits);
     }
     __builtin_prefetch(accounts[lane].quanta, 1);
   }
@@ -90,11 +89,9 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
         const Account& account = accounts[lane];
         if (account.quanta == nullptr && !second_look) {
           doubtful.add(transport.rays(), rays, hits, lane, id[lane], quanta);
-          ++local.events.second_looks;
+          count_event(books.events.second_looks);
           continue;
         }
-        if (account.back) ++local.events.back_hits;
-        if (account.quanta == nullptr) ++local.events.escapes;
         if (account.place != nullptr)
           arrivals->add(account.place, bits.word[0][lane], hits.u[lane], hits.v[lane]);
         for (std::size_t b = 0; b < bands; ++b)

@@ -163,18 +163,17 @@ class WalkTask {
       if (!second_look && (!zone[lane].valid() ||
                            transport_.is_at_edge(hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
         doubtful_.add(transport_.rays(), rays, hits_, lane, id[lane], quanta);
-        ++local_.events.second_looks;
+        count_event(books_.events.second_looks);
         continue;
       }
       if (hits_.triangle[lane] == RayScene::kMiss) {
-        ++local_.events.escapes;
         for (std::size_t b = 0; b < bands_; ++b)
           local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
         continue;
       }
       const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits_.triangle[lane])).surface;
       if (!zone[lane].valid()) {
-        ++local_.events.back_hits;
+        count_event(books_.events.back_hits);
         for (std::size_t b = 0; b < bands_; ++b)
           book(books_.absorbed_on_backs[surface.index() * bands_ + b], quanta[b]);
         continue;
