@@ -86,7 +86,12 @@ Reference path_reference(const Room& room, const MeshResult& mesh, const std::ve
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
       for (int first = 0; first < samples; first += kReferenceBlock)
-        renderer.render(tiles[i], {first, std::min(kReferenceBlock, samples - first), log2_samples}, film);
+        renderer.render(tiles[i],
+                        {.first = first,
+                         .samples = std::min(kReferenceBlock, samples - first),
+                         .log2_samples = log2_samples,
+                         .replicates = static_cast<int>(kReplicates)},
+                        film);
     });
   });
   const StillImage image = film.finish();
