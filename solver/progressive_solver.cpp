@@ -45,17 +45,23 @@ int thread_count(const SolverSettings& settings) {
   return settings.threads > 0 ? std::min(settings.threads, cores) : cores;
 }
 
-void tell_of_examination(const Solution& solution, const ProgressCallback& progress) {
+/// What a solution tells of the run so far.
+SolveProgress progress_of(const Solution& solution) {
   SolveProgress now;
-  now.fraction = 1;
   now.error = solution.record.error;
-  now.error_bound = kUnknown;
+  now.error_bound = now.seconds_left = kUnknown;
   now.unshot_share = solution.audit.worst_unshot_share();
   now.seconds = solution.record.seconds;
-  now.seconds_left = kUnknown;
+  if (now.seconds > 0) now.rays_per_second = static_cast<double>(solution.record.rays) / now.seconds;
   now.rays = solution.record.rays;
   now.packets = solution.record.packets;
   now.batches = solution.sums.batches;
+  return now;
+}
+
+void tell_of_examination(const Solution& solution, const ProgressCallback& progress) {
+  SolveProgress now = progress_of(solution);
+  now.fraction = 1;
   now.examines = true;
   progress(now);
 }
@@ -87,11 +93,7 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
                       const std::atomic<bool>& interrupt, Examination examination) {
   const auto start = Clock::now();
   const PreparedRoom room(scene, solution, watch.preparing);
-  if (room.is_dark()) {
-    solution.record.stopped = StopReason::kNoLuminaire;
-    solution.record.unreached_zones = solution.mesh.zone_count();
-    return solution;
-  }
+  if (room.is_dark()) return solution;
   tbb::task_arena arena(thread_count(solution.settings));
   arena.execute([&] {
     run_matrix(room, solution, watch.progress, interrupt);
@@ -124,31 +126,20 @@ Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings&
 class ProgressiveSolver::Run {
  public:
   Run(const Scene& scene, Solution start, const std::atomic<bool>& interrupt, const WorkWatch& preparing)
-      : begin_(Clock::now()),
-        scene_(scene),
+      : scene_(scene),
         interrupt_(interrupt),
         solution_(prepared_to_go_on(std::move(start))),
-        seconds_before_(solution_.record.seconds),
+        begin_(seconds_ago(solution_.record.seconds)),
         room_(scene, solution_, preparing),
         arena_(thread_count(solution_.settings)),
         schedule_(begin_, solution_),
         plan_(solution_.settings, solution_.mesh.zone_count(), solution_.record.unit_packets),
         rule_(solution_.settings, plan_, schedule_.batches_s) {
-    if (room_.is_dark()) {
-      record().stopped = StopReason::kNoLuminaire;
-      record().unreached_zones = solution_.mesh.zone_count();
-      return;
-    }
+    if (room_.is_dark()) return;
     record().unit_packets = plan_.unit_packets();
     state_.seconds = seconds_since(begin_);
-    // A batch that was foreseen to end in time may take a little longer, and a slow start must leave time for
-    // some light at least.
-    constexpr double kGrace = 0.01;
-    constexpr double kLeast = 0.1;
-    const double end = std::max(schedule_.batches_s + kGrace * schedule_.limit_s,
-                                state_.seconds + kLeast * schedule_.limit_s);
-    stop_.emplace(schedule_.token(end, interrupt));
-    ahead_.emplace(room_.transport, room_.emission, solution_.settings, thread_count(solution_.settings));
+    stop_.emplace(schedule_.token(end_of_batches(), interrupt));
+    ahead_.emplace(room_.transport, room_.emission, solution_.settings, arena_.max_concurrency());
     if (solution_.sums.batches == 0) return;
     state_.batches = solution_.sums.batches;
     state_.weight = solution_.sums.weight();
@@ -174,18 +165,11 @@ class ProgressiveSolver::Run {
   const Solution& solution() const { return solution_; }
 
   SolveProgress progress() const {
-    const double fraction = rule_.fraction_done(state_);
-    SolveProgress now;
-    now.fraction = fraction;
-    now.error = solution_.record.error;
+    SolveProgress now = progress_of(solution_);
+    now.fraction = rule_.fraction_done(state_);
     now.error_bound = bound_;
-    now.unshot_share = state_.unshot_share;
-    now.rays_per_second = static_cast<double>(solution_.record.rays) / solution_.record.seconds;
     now.seconds = state_.seconds;
-    now.seconds_left = fraction > 0 ? now.seconds * (1 - fraction) / fraction : kUnknown;
-    now.rays = solution_.record.rays;
-    now.packets = solution_.record.packets;
-    now.batches = state_.batches;
+    if (now.fraction > 0) now.seconds_left = now.seconds * (1 - now.fraction) / now.fraction;
     return now;
   }
 
@@ -202,7 +186,7 @@ class ProgressiveSolver::Run {
       if (examination == Examination::kWhole)
         examine_zones(scene_, room_, schedule_, progress, interrupt_, solution_);
       record_error(scene_, solution_);
-      record().seconds = seconds_before_ + seconds_since(begin_);
+      record().seconds = seconds_since(begin_);
     });
     if (examination == Examination::kWhole) look_for_lost_light(room_, interrupt_, solution_);
     return std::move(solution_);
@@ -231,6 +215,16 @@ class ProgressiveSolver::Run {
     record.gather_bias.reset();
     start.light_warnings.clear();
     return start;
+  }
+
+  /// Seconds after the begin at which batches are cut off.
+  double end_of_batches() const {
+    // One that was foreseen to end in time may take a little longer, and a slow start must leave time for
+    // some light at least.
+    constexpr double kGrace = 0.01;
+    constexpr double kLeast = 0.1;
+    const double end = schedule_.batches_s + kGrace * schedule_.limit_s;
+    return solution_.sums.batches > 0 ? end : std::max(end, state_.seconds + kLeast * schedule_.limit_s);
   }
 
   /// Fills the places of batches that go on at the same time with those that will be needed, as far as can be
@@ -273,7 +267,7 @@ class ProgressiveSolver::Run {
     }
     state_.seconds = seconds_since(begin_);
     state_.batch_seconds = batch.seconds / static_cast<double>(batch.weight);
-    record().seconds = seconds_before_ + state_.seconds;
+    record().seconds = state_.seconds;
   }
 
   void look_at_error() {
@@ -304,11 +298,10 @@ class ProgressiveSolver::Run {
     ahead_.reset();
   }
 
-  Clock::time_point begin_;
   const Scene& scene_;
   const std::atomic<bool>& interrupt_;
   Solution solution_;
-  double seconds_before_;  // of earlier sittings
+  Clock::time_point begin_;  // as if earlier sittings had just ended
   PreparedRoom room_;
   tbb::task_arena arena_;
   Schedule schedule_;

@@ -47,7 +47,8 @@ class ProgressiveSolver {
  public:
   /// Goes on from `start`: a new_solution, one that a checkpoint saved, or a finished one, whose settings may
   /// have other stopping rules and threads than before; with others changed the batches would not go
-  /// together. A time limit counts from here on. A batch that it or `interrupt` cuts off is left out, but if
+  /// together. A time limit is that of all sittings together: SolveRecord::seconds
+  /// are gone already. A batch that it or `interrupt` cuts off is left out, but if
   /// it is the first: then it is the solution, low by what BandAudit::unshot says, its error unknown.
   /// `preparing` is told 0 before the tree for rays is built and 1 at the end. Throws InputError when a
   /// luminaire shines into a sealed part of the room that reflects everything in some band: it has no

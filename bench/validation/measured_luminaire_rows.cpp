@@ -75,7 +75,8 @@ std::vector<ValidationRow> evaluate_measured_luminaires(const std::vector<Refere
   std::vector<ValidationRow> rows;
   for (const ReferenceCase& c : cases) {
     const std::string file = c.parameters.at("file");
-    const MeasuredLuminaire luminaire = read_ies_file(REEMIT_SOURCE_DIR "/bench/validation/luminaires/" + file);
+    const MeasuredLuminaire luminaire =
+        read_ies_file(REEMIT_SOURCE_DIR "/bench/validation/luminaires/" + file);
     const Hanging room(luminaire, c.parameters.at("h"));
     const RayScene rays(room.mesh());
     for (const ReferenceValue& v : c.values) {

@@ -63,7 +63,8 @@ Eigen::Affine3d rotation(double degrees, const Vec3& axis) {
 }
 
 Eigen::Affine3d power(Eigen::Affine3d base, std::int64_t exponent) {
-  if (base.linear() == Eigen::Matrix3d::Identity())  // most arrays: one rounding instead of one per repetition
+  if (base.linear() ==
+      Eigen::Matrix3d::Identity())  // most arrays: one rounding instead of one per repetition
     return Eigen::Affine3d(Eigen::Translation3d(static_cast<double>(exponent) * base.translation()));
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   for (; exponent > 0; exponent /= 2) {

@@ -12,7 +12,8 @@ class InputError : public std::runtime_error {
       : std::runtime_error(where + ": " + problem + (advice.empty() ? "" : "\n  " + advice)) {}
 };
 
-/// Out of memory, disk full, unwritable output. The program ends with exit code 2 when the output is at fault, else 3.
+/// Out of memory, disk full, unwritable output. The program ends with exit code 2 when the output is at
+/// fault, else 3.
 class ResourceError : public std::runtime_error {
  public:
   ResourceError(const std::string& where, const std::string& problem, const std::string& advice)

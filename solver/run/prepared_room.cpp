@@ -10,7 +10,12 @@ PreparedRoom::PreparedRoom(const Scene& scene, Solution& solution, const WorkWat
       emission(collect_emission(transport)) {
   for (std::size_t b = 0; b < scene.bands.count(); ++b)
     solution.audit.bands[b].watts_per_quantum = emission.watts_per_quantum[b];
-  if (!is_dark()) refuse_closed_perfect_reflector(transport, emission, solution.settings.seed);
+  if (is_dark()) {
+    solution.record.stopped = StopReason::kNoLuminaire;
+    solution.record.unreached_zones = solution.mesh.zone_count();
+  } else {
+    refuse_closed_perfect_reflector(transport, emission, solution.settings.seed);
+  }
   preparing.at(1);
 }
 

@@ -12,7 +12,8 @@ namespace reemit {
 /// lives.
 struct PreparedRoom {
   /// `preparing` is told 0 before the tree for rays is built and 1 at the end. Notes in the audit what a
-  /// quantum is worth. Throws what refuse_closed_perfect_reflector does.
+  /// quantum is worth, and in the record that nothing emits where that is so. Throws what
+  /// refuse_closed_perfect_reflector does.
   PreparedRoom(const Scene& scene, Solution& solution, const WorkWatch& preparing);
   PreparedRoom(const PreparedRoom&) = delete;
   PreparedRoom& operator=(const PreparedRoom&) = delete;

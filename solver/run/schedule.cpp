@@ -12,6 +12,13 @@ namespace {
 /// discretisation.
 constexpr double kLastShare = 0.03;
 
+/// Beyond what a clock can count it is as good as for ever.
+StopToken::Clock::duration clock_duration(double seconds) {
+  constexpr double kLongest = 1e9;
+  const std::chrono::duration<double> span(std::min(seconds, kLongest));
+  return std::chrono::duration_cast<StopToken::Clock::duration>(span);
+}
+
 }  // namespace
 
 bool gathers_small_zones(const Solution& solution) {
@@ -20,6 +27,10 @@ bool gathers_small_zones(const Solution& solution) {
 
 double seconds_since(StopToken::Clock::time_point start) {
   return std::chrono::duration<double>(StopToken::Clock::now() - start).count();
+}
+
+StopToken::Clock::time_point seconds_ago(double seconds) {
+  return StopToken::Clock::now() - clock_duration(seconds);
 }
 
 Schedule::Schedule(Clock::time_point begin, const Solution& solution)
@@ -31,10 +42,7 @@ Schedule::Schedule(Clock::time_point begin, const Solution& solution)
 
 StopToken Schedule::token(double seconds, const std::atomic<bool>& interrupt) const {
   if (!(limit_s > 0)) return StopToken(interrupt);
-  // Beyond what a clock can count there is no limit either.
-  constexpr double kLongest = 1e9;
-  const std::chrono::duration<double> span(std::min(seconds, kLongest));
-  return StopToken(interrupt, start + std::chrono::duration_cast<Clock::duration>(span));
+  return StopToken(interrupt, start + clock_duration(seconds));
 }
 
 }  // namespace reemit

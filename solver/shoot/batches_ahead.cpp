@@ -55,20 +55,19 @@ void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64
     spare_.pop_back();
   }
   flight.batch->weight = weight;
-  flight.stop = std::make_unique<StopToken>(stop.or_when(needless_));
-  flight.done = std::async(
-      std::launch::async, [this, number, packets, batch = flight.batch.get(), token = flight.stop.get()] {
-        using Clock = StopToken::Clock;
-        const Clock::time_point begin = Clock::now();
-        batch->books.clear();
-        const BatchTask task{transport_, emission_, settings_, number, packets, token};
-        tbb::task_arena arena(threads_per_batch_);
-        arena.execute([&] {
-          batch->whole = settings_.method == SolveMethod::kShooting ? shoot_batch(task, batch->books)
-                                                                    : walk_batch(task, batch->books);
-        });
-        batch->seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-      });
+  flight.done = std::async(std::launch::async, [this, number, packets, batch = flight.batch.get(),
+                                                token = stop.or_when(needless_)] {
+    using Clock = StopToken::Clock;
+    const Clock::time_point begin = Clock::now();
+    batch->books.clear();
+    const BatchTask task{transport_, emission_, settings_, number, packets, &token};
+    tbb::task_arena arena(threads_per_batch_);
+    arena.execute([&] {
+      batch->whole = settings_.method == SolveMethod::kShooting ? shoot_batch(task, batch->books)
+                                                                : walk_batch(task, batch->books);
+    });
+    batch->seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  });
   flights_.push_back(std::move(flight));
 }
 

@@ -28,7 +28,7 @@ class BatchesAhead {
   std::int64_t batches() const { return static_cast<std::int64_t>(flights_.size()); }
   std::int64_t weight() const;  ///< Of all batches on their way (BatchPlan).
 
-  /// Starts a batch. `stop` must outlive it. Pre: not full().
+  /// Starts a batch. Pre: not full().
   void start(std::uint32_t number, std::uint32_t packets, std::int64_t weight, const StopToken& stop);
 
   struct Batch {
@@ -45,7 +45,6 @@ class BatchesAhead {
  private:
   struct Flight {
     std::unique_ptr<Batch> batch;
-    std::unique_ptr<StopToken> stop;
     std::future<void> done;
   };
 

@@ -17,7 +17,7 @@ struct SolverSettings {
   SamplingKind sampling = SamplingKind::kSobol;  ///< Of points and directions of each flight.
   Reemission reemission = Reemission::kFromHits;
   double error_target = 0;    ///< Relative rms standard error of radiosity, worst band, as a fraction [0,1).
-  double time_limit_s = 0;    ///< Wall time of the solve [s], >= 0.
+  double time_limit_s = 0;    ///< Wall time of all sittings of the solve [s], >= 0.
   std::uint64_t packets = 0;  ///< Packets emitted by luminaires in all batches together.
   std::uint64_t batch_packets = 0;  ///< Packets emitted in one batch; 0 = from the number of zones.
   int smallest_batch_count = 16;    ///< Batches before an error is believed [2, 65536].

@@ -157,31 +157,32 @@ std::optional<ShapeFeet::Contact> ShapeFeet::contact(const CurvedShape& s, const
   return found;
 }
 
-void ShapeFeet::add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal) {
-  const std::optional<Contact> found = contact(s, face.corners[0], normal);
-  if (!found) return;
+template <class Distance>
+std::optional<std::uint32_t> ShapeFeet::rest(std::size_t shape, const CurvedShape& s, const Vec3& on_plane,
+                                             const Vec3& normal, Distance&& distance) {
+  const std::optional<Contact> found = contact(s, on_plane, normal);
+  if (!found) return std::nullopt;
   const Touch& touch = found->touch;
-  if (!comes_near(touch.from, touch.along, touch.clear,
-                  [&](const Vec3& p) { return distance_to(face.corners, p); }))
-    return;
-  at(face.triangle).touched.push_back(static_cast<std::uint32_t>(touches_.size()));
+  if (!comes_near(touch.from, touch.along, touch.clear, distance)) return std::nullopt;
   touches_.push_back(touch);
   resting_[shape].push_back(found->resting);
+  return static_cast<std::uint32_t>(touches_.size() - 1);
+}
+
+void ShapeFeet::add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal) {
+  const auto distance = [&](const Vec3& p) { return distance_to(face.corners, p); };
+  if (const auto touch = rest(shape, s, face.corners[0], normal, distance))
+    at(face.triangle).touched.push_back(*touch);
 }
 
 void ShapeFeet::add_resting_on_disk(std::size_t shape, const CurvedShape& s, std::size_t disk_shape,
                                     const Disk& disk) {
-  const std::optional<Contact> found = contact(s, disk.centre, disk.normal);
-  if (!found) return;
-  const Touch& touch = found->touch;
-  if (!comes_near(touch.from, touch.along, touch.clear, [&](const Vec3& p) {
-        const double from_centre = across(p - disk.centre, disk.normal).norm();
-        return std::max({from_centre - disk.radius, disk.inner_radius - from_centre, 0.0});
-      }))
-    return;
-  touched_[disk_shape].push_back(static_cast<std::uint32_t>(touches_.size()));
-  touches_.push_back(touch);
-  resting_[shape].push_back(found->resting);
+  const auto distance = [&](const Vec3& p) {
+    const double from_centre = across(p - disk.centre, disk.normal).norm();
+    return std::max({from_centre - disk.radius, disk.inner_radius - from_centre, 0.0});
+  };
+  if (const auto touch = rest(shape, s, disk.centre, disk.normal, distance))
+    touched_[disk_shape].push_back(*touch);
 }
 
 // Each of the two keeps clear of the plane that touches both.

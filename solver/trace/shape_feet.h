@@ -95,6 +95,11 @@ class ShapeFeet {
     Touch touch;
   };
   static std::optional<Contact> contact(const CurvedShape& s, const Vec3& on_plane, const Vec3& normal);
+  /// Notes the contact of a shape with a part of a plane, whose distance from a point is given, and returns
+  /// the number of the touch as the plane sees it; nothing if the two do not meet.
+  template <class Distance>
+  std::optional<std::uint32_t> rest(std::size_t shape, const CurvedShape& s, const Vec3& on_plane,
+                                    const Vec3& normal, Distance&& distance);
   void add_resting(std::size_t shape, const CurvedShape& s, const Target& face, const Vec3& normal);
   void add_resting_on_disk(std::size_t shape, const CurvedShape& s, std::size_t disk_shape, const Disk& disk);
   void add_spheres(std::size_t a, const Sphere& sphere_a, std::size_t b, const Sphere& sphere_b);

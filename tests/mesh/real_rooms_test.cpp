@@ -68,7 +68,8 @@ void check_room(const fs::path& file) {
     const SurfaceAreas& a = r.report.surfaces[i];
     input += a.input;
     removed += a.removed;
-    // Welding moves corners by up to the weld distance, and a face grows or shrinks by at most that along its outline.
+    // Welding moves corners by up to the weld distance, and a face grows or shrinks by at most that along its
+    // outline.
     EXPECT_LE(std::abs(a.welded), 1e-6 * a.input + weld * length_of_outlines(s)) << s.name;
     EXPECT_GE(a.removed, 0) << s.name;
   }

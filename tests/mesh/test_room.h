@@ -107,7 +107,8 @@ inline double meshed_area(const ZoneMesh& mesh, SurfaceId s) {
   return sum;
 }
 
-/// Largest relative gap of input = meshed + removed + welded over all surfaces, and of the report against the mesh.
+/// Largest relative gap of input = meshed + removed + welded over all surfaces, and of the report against the
+/// mesh.
 inline double worst_book_gap(const MeshResult& r) {
   double worst = 0;
   for (std::size_t s = 0; s < r.report.surfaces.size(); ++s) {

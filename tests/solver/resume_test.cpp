@@ -9,6 +9,7 @@
 
 #include "solver/progressive_solver.h"
 #include "solver/solution/solution_file.h"
+#include "tests/support/same_light.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_rooms.h"
 #include "tests/support/variable_furnace.h"
@@ -16,6 +17,8 @@
 namespace reemit {
 namespace {
 
+using test::expect_same_light;
+using test::expect_same_record;
 using test::RoomBuilder;
 using test::TempFolder;
 using test::VariableFurnace;
@@ -23,25 +26,17 @@ using test::VariableFurnace;
 const std::atomic<bool> never{false};
 
 void expect_same_result(const Solution& a, const Solution& b) {
-  EXPECT_EQ(a.record.stopped, b.record.stopped);
-  EXPECT_EQ(a.record.packets, b.record.packets);
-  EXPECT_EQ(a.record.rays, b.record.rays);
-  EXPECT_EQ(a.record.error, b.record.error);
-  EXPECT_EQ(a.record.error_bound, b.record.error_bound);
-  EXPECT_EQ(a.record.gathered_zones, b.record.gathered_zones);
-  EXPECT_EQ(a.record.discretisation, b.record.discretisation);
-  EXPECT_EQ(a.sums.batches, b.sums.batches);
-  EXPECT_EQ(a.sums.group_weight, b.sums.group_weight);
-  for (std::size_t c = 0; c < ZoneSums::kColumns; ++c) EXPECT_EQ(*a.sums.columns()[c], *b.sums.columns()[c]);
-  EXPECT_EQ(a.sums.group_total, b.sums.group_total);
-  ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
-  for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {
-    EXPECT_EQ(a.audit.bands[i].absorbed, b.audit.bands[i].absorbed);
-    EXPECT_EQ(a.audit.bands[i].emitted, b.audit.bands[i].emitted);
-    EXPECT_EQ(a.audit.bands[i].unshot, b.audit.bands[i].unshot);
-    EXPECT_EQ(a.audit.bands[i].roulette_gain, b.audit.bands[i].roulette_gain);
-  }
+  expect_same_record(a.record, b.record);
+  expect_same_light(a, b);
   EXPECT_EQ(a.light_warnings, b.light_warnings);
+}
+
+/// Twenty small batches.
+SolverSettings twenty_batches() {
+  SolverSettings settings;
+  settings.packets = 40'000;
+  settings.batch_packets = 2000;
+  return settings;
 }
 
 /// Large walls and a screen whose zones are too small for packets.
@@ -88,10 +83,8 @@ TEST_F(Resume, AnyNumberOfBreaksLeavesNoTrace) {
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk})
     for (const int batches : {1, 7}) {
       SCOPED_TRACE(to_string(method) + ", " + std::to_string(batches));
-      SolverSettings settings;
+      SolverSettings settings = twenty_batches();
       settings.method = method;
-      settings.packets = 40'000;
-      settings.batch_packets = 2000;
       const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
       ASSERT_GT(whole.record.gathered_zones, 0U);
       ASSERT_EQ(whole.sums.batches, 20);
@@ -143,14 +136,27 @@ TEST_F(Resume, MorePacketsThanAtFirstKeepTheSizeOfBatches) {
 TEST_F(Resume, AFirstBatchThatWasCutOffIsRunAgain) {
   const VariableFurnace furnace(4);
   const RoomBuilder& room = furnace.room();
-  SolverSettings settings;
-  settings.packets = 40'000;
-  settings.batch_packets = 2000;
+  const SolverSettings settings = twenty_batches();
   const std::atomic<bool> at_once{true};
   Solution cut_off = through_file(solve(room.scene(), mesh_of(room), settings, {}, at_once));
   ASSERT_TRUE(cut_off.record.cut_off);
   const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
   expect_same_result(whole, solve(room.scene(), std::move(cut_off), {}, never));
+}
+
+TEST_F(Resume, ATimeLimitIsThatOfAllSittings) {
+  const VariableFurnace furnace(4);
+  const RoomBuilder& room = furnace.room();
+  Solution stands = solve(room.scene(), mesh_of(room), twenty_batches(), {}, never);
+  stands.record.seconds = 3600;
+  stands.settings.packets = 0;
+  stands.settings.time_limit_s = 3600.5;
+  const Solution more = solve(room.scene(), std::move(stands), {}, never);
+  EXPECT_EQ(more.record.stopped, StopReason::kTimeLimit);
+  EXPECT_GT(more.record.seconds, 3600);
+  // Not another hour; how punctual it is depends on the machine.
+  EXPECT_LT(more.record.seconds, 3660);
+  EXPECT_EQ(more.settings.time_limit_s, 3600.5) << "as it was asked for";
 }
 
 TEST_F(Resume, TellsWhichRuleHoldsAlreadyAndChangesNothing) {

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -41,7 +40,7 @@ struct SolveOptions {
       room;                      ///< Of a run that goes on: where its room is now, if it was moved.
   std::filesystem::path resume;  ///< Solution to go on from; empty: a new run.
   std::filesystem::path output;
-  double checkpoint_s = 600;  ///< 0: none.
+  double checkpoint_s = SolveWatch{}.checkpoint_s;  ///< 0: none.
   ReadOptions read;
   MeshSettings mesh;
   SolverSettings solver;
@@ -156,11 +155,8 @@ Start resumed_run(const SolveOptions& options) {
   if (has_stopping_rule(options.solver)) {
     settings.error_target = options.solver.error_target;
     settings.time_limit_s = options.solver.time_limit_s;
+    if (settings.time_limit_s > 0) settings.time_limit_s += start.solution.record.seconds;
     settings.packets = options.solver.packets;
-  } else if (settings.time_limit_s > 0) {
-    // What is left of it. A limit of 0 would be none.
-    constexpr double kNone = 1e-3;
-    settings.time_limit_s = std::max(kNone, settings.time_limit_s - start.solution.record.seconds);
   }
   settings.threads = options.solver.threads;
   if (!options.room.empty()) keep_room_paths(options.room, start.solution);
@@ -200,17 +196,15 @@ void report(const Scene& scene, const Solution& solution, const SolveOptions& op
 }
 
 ExitCode run_solve(const SolveOptions& options) {
-  for (const fs::path& file : options.room) {
-    check_solution_output(options.output, file);
-    if (!options.log.empty()) RunLog::check(options.log, file, options.output);
-  }
+  const auto check_outputs = [&](const fs::path& room) {
+    check_solution_output(options.output, room);
+    if (!options.log.empty()) RunLog::check(options.log, room, options.output);
+  };
+  for (const fs::path& file : options.room) check_outputs(file);
   const bool resumed = !options.resume.empty();
   Start start = resumed ? resumed_run(options) : new_run(options);
   if (resumed) {
-    for (const std::string& file : room_files(start.solution)) {
-      check_solution_output(options.output, file);
-      if (!options.log.empty()) RunLog::check(options.log, file, options.output);
-    }
+    for (const std::string& file : room_files(start.solution)) check_outputs(file);
     if (is_done(options, start)) {
       if (!options.style.quiet)
         print_note(
@@ -295,8 +289,9 @@ void add_solve_command(CLI::App& program, Action& action) {
       solve
           .add_option("--resume", options->resume,
                       "Go on with a solution that is finished, was interrupted or was killed after a\n"
-                      "checkpoint, by the stopping rules given now or else by its own (--time: what\n"
-                      "is left of it). The result is that of one run without a break")
+                      "checkpoint, by the stopping rules given now or else by its own (--time given\n"
+                      "now counts from what stands, else for all sittings). The result is that of one run "
+                      "without a break")
           ->type_name("SOLUTION");
   add_parsed_option(solve, "--checkpoint", options->checkpoint_s, parse_checkpoint, "TIME",
                     "Save what stands at these intervals, for --resume: 30s, 10min; 0 = never")

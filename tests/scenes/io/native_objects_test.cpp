@@ -170,8 +170,8 @@ TEST(NativeObjects, TransformsApplyInOrder) {
 }
 
 TEST(NativeObjects, MirroringKeepsFrontsOutside) {
-  const Surface box =
-      only_surface(R"({"material": "white", "cylinder": {"base": [0,0,0], "top": [1,2,3], "radius": 1, "segments": 24},
+  const Surface box = only_surface(
+      R"({"material": "white", "cylinder": {"base": [0,0,0], "top": [1,2,3], "radius": 1, "segments": 24},
       "transform": [{"scale": [-1, 2, 0.5]}, {"rotate": {"axis": [1, 1, 0], "angle_deg": 33}}]})");
   EXPECT_GT(volume(box), 0);
   expect_normals_outside(box);

@@ -12,12 +12,14 @@
 #include "scenes/model/error.h"
 #include "solver/solution/file_seal.h"
 #include "tests/solver/solution/sample_solution.h"
+#include "tests/support/same_light.h"
 #include "tests/support/small_disk.h"
 #include "tests/support/temp_folder.h"
 
 namespace reemit {
 namespace {
 
+using test::expect_same_light;
 using test::read_bytes;
 using test::sample_solution;
 using test::SmallDisk;
@@ -102,38 +104,6 @@ void expect_same_room(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.light_warnings, b.light_warnings);
 }
 
-void expect_same_books(const Solution& a, const Solution& b) {
-  EXPECT_EQ(a.sums.batches, b.sums.batches);
-  EXPECT_EQ(a.sums.group_weight, b.sums.group_weight);
-  EXPECT_EQ(a.sums.weight_squared, b.sums.weight_squared);
-  EXPECT_EQ(a.sums.direct, b.sums.direct);
-  EXPECT_EQ(a.sums.direct_cross, b.sums.direct_cross);
-  EXPECT_EQ(a.sums.direct_squared, b.sums.direct_squared);
-  EXPECT_EQ(a.sums.indirect, b.sums.indirect);
-  EXPECT_EQ(a.sums.indirect_cross, b.sums.indirect_cross);
-  EXPECT_EQ(a.sums.indirect_squared, b.sums.indirect_squared);
-  EXPECT_EQ(a.sums.total_squared, b.sums.total_squared);
-  EXPECT_EQ(a.sums.group_total, b.sums.group_total);
-  EXPECT_EQ(a.gathered.zones, b.gathered.zones);
-  EXPECT_EQ(a.gathered.sums, b.gathered.sums);
-  EXPECT_EQ(a.gathered.group_total, b.gathered.group_total);
-  EXPECT_EQ(a.gathered.rays, b.gathered.rays);
-  EXPECT_EQ(a.audit.batches, b.audit.batches);
-  EXPECT_EQ(a.audit.weight, b.audit.weight);
-  EXPECT_EQ(a.audit.events.second_looks, b.audit.events.second_looks);
-  EXPECT_EQ(a.audit.events.back_hits, b.audit.events.back_hits);
-  EXPECT_EQ(a.audit.events.escapes, b.audit.events.escapes);
-  ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
-  for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {
-    const BandAudit& x = a.audit.bands[i];
-    const BandAudit& y = b.audit.bands[i];
-    EXPECT_EQ(std::tie(x.band, x.watts_per_quantum, x.emitted, x.absorbed, x.absorbed_on_backs, x.escaped,
-                       x.unshot, x.roulette_net, x.roulette_gain),
-              std::tie(y.band, y.watts_per_quantum, y.emitted, y.absorbed, y.absorbed_on_backs, y.escaped,
-                       y.unshot, y.roulette_net, y.roulette_gain));
-  }
-}
-
 class SolutionFile : public testing::Test {
  protected:
   // Changes one thing in a saved file through the HDF5 library itself, and makes it look unchanged.
@@ -162,7 +132,7 @@ TEST_F(SolutionFile, KeepsEverythingForEveryKindOfBands) {
     const Solution loaded = load_solution(file_);
     expect_same_settings(saved, loaded);
     expect_same_room(saved, loaded);
-    expect_same_books(saved, loaded);
+    expect_same_light(saved, loaded);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "solver/solution/solution_file.h"
 #include "tests/support/run_program.h"
+#include "tests/support/same_light.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/solved_room.h"
 #include "tests/support/temp_folder.h"
@@ -21,18 +22,11 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-void expect_same_light(const fs::path& a, const fs::path& b) {
+void expect_same_files(const fs::path& a, const fs::path& b) {
   const Solution one = load_solution(a);
   const Solution other = load_solution(b);
-  EXPECT_EQ(one.record.stopped, other.record.stopped);
-  EXPECT_EQ(one.record.packets, other.record.packets);
-  EXPECT_EQ(one.record.rays, other.record.rays);
-  EXPECT_EQ(one.record.error_bound, other.record.error_bound);
-  for (std::size_t c = 0; c < ZoneSums::kColumns; ++c)
-    EXPECT_EQ(*one.sums.columns()[c], *other.sums.columns()[c]);
-  EXPECT_EQ(one.sums.group_total, other.sums.group_total);
-  for (std::size_t i = 0; i < one.audit.bands.size(); ++i)
-    EXPECT_EQ(one.audit.bands[i].absorbed, other.audit.bands[i].absorbed);
+  expect_same_record(one.record, other.record);
+  expect_same_light(one, other);
 }
 
 TEST(ResumedProgram, KilledAtAnyMomentItGoesOnToTheSameFile) {
@@ -65,7 +59,7 @@ TEST(ResumedProgram, KilledAtAnyMomentItGoesOnToTheSameFile) {
     if (program.wait().exit_code == -SIGKILL) ++killed;
   }
   EXPECT_GT(killed, 5) << "the others were done sooner";
-  expect_same_light(folder / "whole.h5", solution);
+  expect_same_files(folder / "whole.h5", solution);
 }
 
 TEST(ResumedProgram, HasNothingToDoWhenItsRuleHolds) {
@@ -95,6 +89,19 @@ TEST(ResumedProgram, GoesOnAfterAnInterruptAndIntoAnotherFile) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(read_bytes(solution), before);
   EXPECT_GE(load_solution(more).record.packets, 2 * load_solution(solution).record.packets - 100);
+}
+
+TEST(ResumedProgram, ATimeGivenNowCountsFromWhatStands) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const std::string solution = solve_small_room(folder, "room.h5").string();
+  const double before = load_solution(solution).record.seconds;
+  ASSERT_EQ(run_reemit({"solve", "--resume", solution, "--time", "200ms"}).exit_code, 0);
+  const Solution after = load_solution(solution);
+  EXPECT_EQ(after.record.stopped, StopReason::kTimeLimit);
+  EXPECT_DOUBLE_EQ(after.settings.time_limit_s, before + 0.2);
+  EXPECT_EQ(run_reemit({"solve", "--resume", solution}).exit_code, 0);
+  EXPECT_EQ(load_solution(solution).record.packets, after.record.packets) << "nothing is left of it";
 }
 
 TEST(ResumedProgram, KeepsWhatARunHasOneOf) {
