@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "mesh/room_shapes.h"
+#include "mesh/shapes/room_shapes.h"
 
 namespace reemit::validation {
 

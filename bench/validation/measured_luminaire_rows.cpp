@@ -4,7 +4,7 @@
 #include "bench/validation/code_room.h"
 #include "bench/validation/families.h"
 #include "bench/validation/point_gather.h"
-#include "scenes/io/ies_reader.h"
+#include "scenes/io/photometry/ies_reader.h"
 #include "solver/sampling/warp.h"
 
 namespace reemit::validation {

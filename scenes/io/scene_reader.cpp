@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "scenes/io/gltf_reader.h"
-#include "scenes/io/mgf_reader.h"
-#include "scenes/io/native_reader.h"
-#include "scenes/io/obj_reader.h"
-#include "scenes/io/text_file.h"
-#include "scenes/io/text_parse.h"
+#include "scenes/io/common/text_file.h"
+#include "scenes/io/common/text_parse.h"
+#include "scenes/io/gltf/gltf_reader.h"
+#include "scenes/io/mgf/mgf_reader.h"
+#include "scenes/io/native/native_reader.h"
+#include "scenes/io/obj/obj_reader.h"
 #include "scenes/model/error.h"
 
 namespace reemit {

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "mesh/curved_patch.h"
+#include "mesh/zones/curved_patch.h"
 #include "scenes/model/shape.h"
 #include "scenes/model/vec.h"
 #include "solver/emit/luminaire_bounds.h"

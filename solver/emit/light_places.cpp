@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "mesh/box_pairs.h"
+#include "mesh/geometry/box_pairs.h"
 
 namespace reemit {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 
 namespace reemit {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "mesh/disjoint_sets.h"
+#include "mesh/geometry/disjoint_sets.h"
 #include "solver/losses/probe_flight.h"
 
 namespace reemit {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "solver/matrix/polygon_form_factor.h"
 
 namespace reemit {

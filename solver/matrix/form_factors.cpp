@@ -8,7 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
-#include "mesh/disjoint_sets.h"
+#include "mesh/geometry/disjoint_sets.h"
 #include "scenes/model/error.h"
 #include "solver/matrix/blocker_sieve.h"
 #include "solver/matrix/closure.h"

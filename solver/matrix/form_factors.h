@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "scenes/model/interrupted.h"
 #include "solver/matrix/leaks.h"
 #include "solver/matrix/symmetric_table.h"

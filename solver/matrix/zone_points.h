@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "solver/matrix/convex_polygon.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/trace/ray_scene.h"

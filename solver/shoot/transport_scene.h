@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 #include "solver/sampling/warp.h"
 #include "solver/shoot/ray_lanes.h"

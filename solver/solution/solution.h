@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mesh/build_mesh.h"
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/bands.h"
 #include "scenes/model/scene.h"

@@ -3,7 +3,7 @@
 #include <limits>
 #include <span>
 
-#include "scenes/io/text_file.h"
+#include "scenes/io/common/text_file.h"
 #include "scenes/model/error.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"

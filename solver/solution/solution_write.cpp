@@ -2,7 +2,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "scenes/io/output_file.h"
+#include "scenes/io/common/output_file.h"
 #include "scenes/model/error.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"

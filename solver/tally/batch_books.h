@@ -5,7 +5,7 @@
 
 #include <tbb/task_arena.h>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "solver/solution/energy_audit.h"
 
 namespace reemit {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 #include "solver/solution/energy_audit.h"
 #include "solver/solution/solution.h"

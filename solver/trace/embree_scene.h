@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "solver/trace/shape_hit.h"
 
 namespace reemit {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 #include "solver/trace/shape_feet.h"
 
 namespace reemit {

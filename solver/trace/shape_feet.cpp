@@ -8,8 +8,8 @@
 
 #include <Eigen/Geometry>
 
-#include "mesh/box_pairs.h"
-#include "mesh/shape_contacts.h"
+#include "mesh/geometry/box_pairs.h"
+#include "mesh/shapes/shape_contacts.h"
 
 namespace reemit {
 namespace {

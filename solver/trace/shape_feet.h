@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/zone_mesh.h"
+#include "mesh/zones/zone_mesh.h"
 
 namespace reemit {
 

@@ -19,7 +19,7 @@ function(expect_refused file line header)
   endif()
 endfunction()
 
-expect_refused(scenes/model/planted.h "#include \"mesh/zone_mesh.h\"" "mesh/zone_mesh.h")
+expect_refused(scenes/model/planted.h "#include \"mesh/zones/zone_mesh.h\"" "mesh/zones/zone_mesh.h")
 expect_refused(mesh/planted.cpp "#include \"solver/trace/ray_scene.h\"" "solver/trace/ray_scene.h")
 expect_refused(solver/shoot/planted.cpp "  #  include \"viewer_export/cli/commands.h\"" "viewer_export/cli/commands.h")
 expect_refused(viewer_export/vertex/planted.h "#include \"tests/support/anything.h\"" "tests/support/anything.h")
@@ -31,7 +31,7 @@ expect_refused(viewer_export/formats/planted.cpp "#include <OpenImageIO/imageio.
 
 # Three folders of one layer in a circle, and one that only looks into it.
 file(REMOVE_RECURSE ${WORK_DIR})
-file(WRITE ${WORK_DIR}/solver/emit/one.h "#pragma once\n#include \"solver/shoot/two.h\"\n#include \"mesh/zone_mesh.h\"\n")
+file(WRITE ${WORK_DIR}/solver/emit/one.h "#pragma once\n#include \"solver/shoot/two.h\"\n#include \"mesh/zones/zone_mesh.h\"\n")
 file(WRITE ${WORK_DIR}/solver/shoot/two.cpp "#include \"solver/tally/three.h\"\n")
 file(WRITE ${WORK_DIR}/solver/tally/three.h "#pragma once\n#include \"solver/emit/one.h\"\n")
 file(WRITE ${WORK_DIR}/solver/gather/looks.cpp "#include \"solver/emit/one.h\"\n")
@@ -51,7 +51,7 @@ endif()
 
 file(REMOVE_RECURSE ${WORK_DIR})
 file(WRITE ${WORK_DIR}/viewer_export/cli/clean.cpp "#include <vector>\n#include \"scenes/model/scene.h\"\n")
-file(WRITE ${WORK_DIR}/solver/trace/clean.cpp "#include <embree3/rtcore.h>\n#include \"mesh/zone_mesh.h\"\n")
+file(WRITE ${WORK_DIR}/solver/trace/clean.cpp "#include <embree3/rtcore.h>\n#include \"mesh/zones/zone_mesh.h\"\n")
 run_checker(${WORK_DIR} result output)
 if(NOT result EQUAL 0)
   message(SEND_ERROR "a clean tree was refused:\n${output}")

@@ -1,4 +1,4 @@
-#include "mesh/curved_patch.h"
+#include "mesh/zones/curved_patch.h"
 
 #include <cmath>
 #include <map>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/build_mesh.h"
-#include "mesh/zone_topology.h"
+#include "mesh/zones/zone_topology.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {

@@ -1,4 +1,4 @@
-#include "mesh/dropped_luminaires.h"
+#include "mesh/repair/dropped_luminaires.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,9 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "mesh/build_mesh.h"
-#include "mesh/convex_region.h"
-#include "mesh/edge_set.h"
-#include "mesh/loop_bins.h"
+#include "mesh/geometry/edge_set.h"
+#include "mesh/pieces/convex_region.h"
+#include "mesh/pieces/loop_bins.h"
 #include "tests/mesh/test_room.h"
 #include "tests/support/refusal.h"
 

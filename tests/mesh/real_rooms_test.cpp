@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "mesh/build_mesh.h"
-#include "mesh/mesh_tolerances.h"
-#include "mesh/zone_topology.h"
+#include "mesh/model/mesh_tolerances.h"
+#include "mesh/zones/zone_topology.h"
 #include "scenes/io/scene_reader.h"
 #include "tests/mesh/test_room.h"
 

@@ -1,11 +1,11 @@
-#include "mesh/zone_lookup.h"
+#include "mesh/zones/zone_lookup.h"
 
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "mesh/zone_sizing.h"
+#include "mesh/zones/zone_sizing.h"
 
 namespace reemit {
 namespace {

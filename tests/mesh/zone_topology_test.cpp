@@ -1,4 +1,4 @@
-#include "mesh/zone_topology.h"
+#include "mesh/zones/zone_topology.h"
 
 #include <cmath>
 #include <map>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/build_mesh.h"
-#include "mesh/room_shapes.h"
+#include "mesh/shapes/room_shapes.h"
 #include "scenes/model/scene.h"
 
 namespace reemit::test {

@@ -9,7 +9,7 @@
 #include "bench/hit_paths/block_comparison.h"
 #include "bench/hit_paths/photometry_file.h"
 #include "bench/hit_paths/touching_lamps.h"
-#include "scenes/io/ies_reader.h"
+#include "scenes/io/photometry/ies_reader.h"
 #include "scenes/io/scene_reader.h"
 #include "tests/support/temp_folder.h"
 

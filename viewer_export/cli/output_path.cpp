@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/io/output_file.h"
+#include "scenes/io/common/output_file.h"
 #include "scenes/model/error.h"
 #include "viewer_export/cli/interrupt.h"
 

@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "scenes/io/json_cursor.h"
+#include "scenes/io/common/json_cursor.h"
 #include "scenes/model/error.h"
 #include "scenes/model/interrupted.h"
 #include "viewer_export/cli/command_options.h"

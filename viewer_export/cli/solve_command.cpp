@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "scenes/io/text_parse.h"
+#include "scenes/io/common/text_parse.h"
 #include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
 #include "solver/solution/file_seal.h"

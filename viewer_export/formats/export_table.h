@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "scenes/io/output_file.h"
+#include "scenes/io/common/output_file.h"
 #include "viewer_export/output/tone_map.h"
 #include "viewer_export/vertex/vertex_data.h"
 

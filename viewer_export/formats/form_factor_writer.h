@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/zone_mesh.h"
-#include "scenes/io/output_file.h"
+#include "mesh/zones/zone_mesh.h"
+#include "scenes/io/common/output_file.h"
 #include "solver/matrix/form_factors.h"
 
 namespace reemit {

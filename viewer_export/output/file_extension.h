@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "scenes/io/text_parse.h"
+#include "scenes/io/common/text_parse.h"
 #include "scenes/model/error.h"
 
 namespace reemit {

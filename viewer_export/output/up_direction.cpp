@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 
-#include "scenes/io/text_parse.h"
+#include "scenes/io/common/text_parse.h"
 
 namespace reemit {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "scenes/io/output_file.h"
+#include "scenes/io/common/output_file.h"
 #include "viewer_export/output/tone_map.h"
 #include "viewer_export/still/still_image.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "scenes/io/output_file.h"
+#include "scenes/io/common/output_file.h"
 #include "viewer_export/output/tone_map.h"
 #include "viewer_export/still/still_image.h"
 

@@ -4,7 +4,7 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include "scenes/io/output_file.h"
+#include "scenes/io/common/output_file.h"
 #include "viewer_export/still/still_image.h"
 
 namespace reemit {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "mesh/disjoint_sets.h"
+#include "mesh/geometry/disjoint_sets.h"
 
 namespace reemit {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/zone_topology.h"
+#include "mesh/zones/zone_topology.h"
 #include "scenes/model/scene.h"
 #include "solver/solution/solution.h"
 

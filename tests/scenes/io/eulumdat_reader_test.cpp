@@ -1,4 +1,4 @@
-#include "scenes/io/eulumdat_reader.h"
+#include "scenes/io/photometry/eulumdat_reader.h"
 
 #include <cmath>
 #include <functional>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scenes/io/ies_reader.h"
+#include "scenes/io/photometry/ies_reader.h"
 #include "tests/support/refusal.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/temp_folder.h"

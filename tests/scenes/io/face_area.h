@@ -1,5 +1,5 @@
 #pragma once
-#include "scenes/io/polygon_loops.h"
+#include "scenes/io/common/polygon_loops.h"
 #include "scenes/model/scene.h"
 
 namespace reemit::test {

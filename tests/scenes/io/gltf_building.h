@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenes/io/gltf_reader.h"
+#include "scenes/io/gltf/gltf_reader.h"
 #include "tests/scenes/io/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

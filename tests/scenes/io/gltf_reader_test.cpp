@@ -1,4 +1,4 @@
-#include "scenes/io/gltf_reader.h"
+#include "scenes/io/gltf/gltf_reader.h"
 
 #include <filesystem>
 #include <numbers>
@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scenes/io/surface_geometry.h"
+#include "scenes/io/common/surface_geometry.h"
 #include "tests/scenes/io/gltf_building.h"
 
 namespace reemit {

@@ -1,4 +1,4 @@
-#include "scenes/io/gltf_units.h"
+#include "scenes/io/gltf/gltf_units.h"
 
 #include <numbers>
 

@@ -1,4 +1,4 @@
-#include "scenes/io/ies_reader.h"
+#include "scenes/io/photometry/ies_reader.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "scenes/io/json_cursor.h"
+#include "scenes/io/common/json_cursor.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/io/common/surface_geometry.h"
 #include "scenes/io/scene_reader.h"
-#include "scenes/io/surface_geometry.h"
 #include "scenes/model/cie_1931.h"
 #include "scenes/model/colour.h"
 

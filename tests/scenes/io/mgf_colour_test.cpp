@@ -1,10 +1,10 @@
-#include "scenes/io/mgf_colour.h"
+#include "scenes/io/mgf/mgf_colour.h"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "scenes/io/mgf_material.h"
+#include "scenes/io/mgf/mgf_material.h"
 #include "scenes/model/cie_1931.h"
 #include "scenes/model/colour.h"
 

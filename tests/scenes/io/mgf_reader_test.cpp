@@ -1,4 +1,4 @@
-#include "scenes/io/mgf_reader.h"
+#include "scenes/io/mgf/mgf_reader.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "scenes/io/mgf_shapes.h"
+#include "scenes/io/mgf/mgf_shapes.h"
 
 #include <array>
 #include <cmath>

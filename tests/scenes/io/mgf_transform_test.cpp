@@ -1,8 +1,8 @@
-#include "scenes/io/mgf_transform.h"
+#include "scenes/io/mgf/mgf_transform.h"
 
 #include <gtest/gtest.h>
 
-#include "scenes/io/text_parse.h"
+#include "scenes/io/common/text_parse.h"
 #include "scenes/model/error.h"
 #include "scenes/model/vec.h"
 

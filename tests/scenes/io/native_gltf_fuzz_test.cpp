@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "scenes/io/ply_reader.h"
+#include "scenes/io/ply/ply_reader.h"
 #include "tests/scenes/io/gltf_building.h"
 #include "tests/scenes/io/native_reading.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/io/surface_geometry.h"
+#include "scenes/io/common/surface_geometry.h"
 #include "tests/scenes/io/native_reading.h"
 
 namespace reemit {

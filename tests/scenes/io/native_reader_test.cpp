@@ -1,11 +1,11 @@
-#include "scenes/io/native_reader.h"
+#include "scenes/io/native/native_reader.h"
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "scenes/io/surface_geometry.h"
+#include "scenes/io/common/surface_geometry.h"
 #include "tests/scenes/io/native_reading.h"
 
 namespace reemit {

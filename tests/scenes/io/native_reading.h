@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "scenes/io/native_reader.h"
+#include "scenes/io/native/native_reader.h"
 #include "tests/scenes/io/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

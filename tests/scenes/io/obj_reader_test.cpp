@@ -1,4 +1,4 @@
-#include "scenes/io/obj_reader.h"
+#include "scenes/io/obj/obj_reader.h"
 
 #include <array>
 #include <cmath>

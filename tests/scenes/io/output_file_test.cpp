@@ -1,4 +1,4 @@
-#include "scenes/io/output_file.h"
+#include "scenes/io/common/output_file.h"
 
 #include <csignal>
 

@@ -1,4 +1,4 @@
-#include "scenes/io/ply_reader.h"
+#include "scenes/io/ply/ply_reader.h"
 
 #include <algorithm>
 #include <cstring>

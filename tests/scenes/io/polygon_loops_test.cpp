@@ -1,4 +1,4 @@
-#include "scenes/io/polygon_loops.h"
+#include "scenes/io/common/polygon_loops.h"
 
 #include <algorithm>
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/io/mgf_reader.h"
-#include "scenes/io/obj_reader.h"
-#include "scenes/io/text_parse.h"
+#include "scenes/io/common/text_parse.h"
+#include "scenes/io/mgf/mgf_reader.h"
+#include "scenes/io/obj/obj_reader.h"
 #include "scenes/model/error.h"
 #include "tests/support/temp_folder.h"
 

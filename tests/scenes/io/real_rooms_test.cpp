@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scenes/io/mgf_reader.h"
-#include "scenes/io/obj_reader.h"
+#include "scenes/io/mgf/mgf_reader.h"
+#include "scenes/io/obj/obj_reader.h"
 #include "tests/scenes/io/face_area.h"
 
 namespace reemit {

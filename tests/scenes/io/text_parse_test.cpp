@@ -1,4 +1,4 @@
-#include "scenes/io/text_parse.h"
+#include "scenes/io/common/text_parse.h"
 
 #include <gtest/gtest.h>
 

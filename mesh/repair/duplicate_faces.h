@@ -1,0 +1,14 @@
+#pragma once
+#include <vector>
+
+#include "mesh/model/mesh_report.h"
+#include "mesh/pieces/face_piece.h"
+
+namespace reemit {
+
+/// Drops polygons that are there twice (the same corners in either sense), books their area as removed and
+/// warns. The luminaire is kept, else the first. Of two opposite one-sided faces of one material, the way
+/// some modellers draw a sheet, the kept one becomes two-sided.
+void drop_duplicate_faces(const Scene& scene, std::vector<FacePiece>& pieces, MeshReport& report);
+
+}  // namespace reemit

@@ -1,0 +1,24 @@
+#pragma once
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+
+#include "mesh/zones/zone_mesh.h"
+
+namespace reemit {
+
+struct ZoneTopologyTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+  using Normal = OpenMesh::Vec3d;
+  VertexAttributes(OpenMesh::Attributes::Normal);
+  FaceAttributes(OpenMesh::Attributes::Normal);
+};
+
+/// Half-edge mesh of the zones: face i is zone i, wound counter-clockwise seen from the side the zone is on.
+/// A zone beside finer ones is a polygon with the finer ones' vertices on its straight sides, so neighbours
+/// always share edges. Vertices are shared within smooth parts only: split at creases, at borders between
+/// surfaces or materials, between front and back, and where more than two zones meet at an edge. Vertex
+/// normals are the shading normals (towards the side of the zone).
+using ZoneTopology = OpenMesh::PolyMesh_ArrayKernelT<ZoneTopologyTraits>;
+
+ZoneTopology make_zone_topology(const ZoneMesh& mesh, double crease_angle_deg);
+
+}  // namespace reemit

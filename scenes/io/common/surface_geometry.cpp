@@ -1,0 +1,61 @@
+#include "scenes/io/common/surface_geometry.h"
+
+#include <algorithm>
+
+namespace reemit {
+
+namespace {
+
+double loop_area(const Surface& surface, const std::vector<std::uint32_t>& loop) {
+  const Vec3& origin = surface.positions[loop[0]];  // Keeps the products small far from the room's origin.
+  Vec3 twice = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+    twice += (surface.positions[loop[i]] - origin).cross(surface.positions[loop[i + 1]] - origin);
+  }
+  return 0.5 * twice.norm();
+}
+
+void reverse_loops(Surface& surface) {
+  for (Face& face : surface.faces) {
+    std::reverse(face.outer.begin(), face.outer.end());
+    std::reverse(face.normals.begin(), face.normals.end());
+    for (auto& hole : face.holes) std::reverse(hole.begin(), hole.end());
+  }
+}
+
+}  // namespace
+
+double surface_area(const Surface& surface) {
+  double area = 0;
+  for (const Face& face : surface.faces) {
+    double face_area = loop_area(surface, face.outer);
+    for (const auto& hole : face.holes) face_area -= loop_area(surface, hole);
+    area += std::max(face_area, 0.0);
+  }
+  for (const CurvedShape& shape : surface.shapes) area += shape_area(shape);
+  return area;
+}
+
+void flip_surface(Surface& surface) {
+  reverse_loops(surface);
+  for (Vec3& normal : surface.normals) normal = -normal;
+  for (CurvedShape& shape : surface.shapes) shape = flipped(shape);
+}
+
+void transform_surface(const Eigen::Affine3d& transform, Surface& surface) {
+  for (Vec3& position : surface.positions) position = transform * position;
+  // Normals go with the cofactors, which is the inverse transpose times the determinant: no inverse is
+  // needed.
+  const Eigen::Matrix3d linear = transform.linear();
+  Eigen::Matrix3d cofactors;
+  cofactors.col(0) = linear.col(1).cross(linear.col(2));
+  cofactors.col(1) = linear.col(2).cross(linear.col(0));
+  cofactors.col(2) = linear.col(0).cross(linear.col(1));
+  const bool mirrors = linear.determinant() < 0;
+  if (mirrors) cofactors = -cofactors;
+  for (Vec3& normal : surface.normals) normal = (cofactors * normal).normalized();
+  if (mirrors) reverse_loops(surface);
+  for (CurvedShape& shape : surface.shapes) shape = transformed(shape, transform);
+}
+
+}  // namespace reemit

@@ -1,0 +1,221 @@
+#include "scenes/io/gltf/gltf_materials.h"
+
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scenes/model/error.h"
+#include "scenes/model/limits.h"
+
+namespace reemit {
+
+namespace {
+
+using Rgb = Eigen::Array3d;
+
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+/// Reads the materials of one file.
+class MaterialReader {
+ public:
+  MaterialReader(const GltfModel& gltf, const GltfAccessors& accessors, const GltfUnits& units, Scene& scene)
+      : gltf_(gltf), textures_(gltf, accessors), units_(units), scene_(scene) {}
+
+  void read_all() {
+    std::set<std::string> ignored;
+    for (std::size_t i = 0; i < gltf_.model.materials.size(); ++i) {
+      const tinygltf::Material& source = gltf_.model.materials[i];
+      where_ = fmt::format("/materials/{}", i);
+      scene_.materials.push_back(read(source));
+      if (scene_.materials.back().name.empty()) scene_.materials.back().name = fmt::format("material {}", i);
+      for (const auto& [name, value] : source.extensions) {
+        static const std::set<std::string> known{"KHR_materials_emissive_strength",
+                                                 "KHR_materials_transmission", "KHR_materials_ior",
+                                                 kSpecularGlossiness};
+        if (!known.contains(name)) ignored.insert(name);
+      }
+    }
+    if (!ignored.empty()) {
+      scene_.not_modelled["material_extensions"] += ignored.size();
+      scene_.warnings.push_back(fmt::format("material extensions are ignored: {}", fmt::join(ignored, ", ")));
+    }
+  }
+
+ private:
+  /// `pointer`: from the material, as "pbrMetallicRoughness/metallicFactor".
+  [[noreturn]] void fail(const std::string& pointer, const std::string& problem,
+                         const std::string& advice) const {
+    throw InputError(gltf_.at(where_ + "/" + pointer), problem, advice);
+  }
+
+  double checked(double value, double most, const std::string& pointer) const {
+    if (!(value >= 0 && value <= most)) {
+      fail(pointer, fmt::format("{} is {}", last_of(pointer), value),
+           fmt::format("It must lie from 0 to {}.", most));
+    }
+    return value;
+  }
+
+  static std::string last_of(const std::string& pointer) {
+    return pointer.substr(pointer.find_last_of('/') + 1);
+  }
+
+  Rgb rgb(const std::vector<double>& values, double most, const std::string& pointer) const {
+    if (values.size() < 3)
+      fail(pointer, fmt::format("{} has {} components", last_of(pointer), values.size()),
+           "Give three or four.");
+    return {checked(values[0], most, pointer), checked(values[1], most, pointer),
+            checked(values[2], most, pointer)};
+  }
+
+  static std::string in_extension(const char* extension, const char* key) {
+    return fmt::format("extensions/{}/{}", extension, key);
+  }
+
+  /// A number of an extension, or `otherwise`.
+  double number(const tinygltf::Material& source, const char* name, const char* key, double otherwise,
+                double most) const {
+    const tinygltf::Value& object = extension(source, name);
+    if (!object.IsObject() || !object.Has(key)) return otherwise;
+    const tinygltf::Value& value = object.Get(key);
+    const std::string pointer = in_extension(name, key);
+    if (!value.IsNumber()) fail(pointer, fmt::format("{} is not a number", key), "Export the file anew.");
+    return checked(value.GetNumberAsDouble(), most, pointer);
+  }
+
+  Rgb triple(const tinygltf::Material& source, const char* name, const char* key) const {
+    const tinygltf::Value& object = extension(source, name);
+    if (!object.IsObject() || !object.Has(key)) return Rgb::Ones();
+    const tinygltf::Value& value = object.Get(key);
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < value.ArrayLen(); ++i) {
+      const tinygltf::Value& item = value.Get(static_cast<int>(i));
+      numbers.push_back(item.IsNumber() ? item.GetNumberAsDouble() : -1);
+    }
+    return rgb(numbers, 1, in_extension(name, key));
+  }
+
+  const tinygltf::Value& extension(const tinygltf::Material& source, const char* name) const {
+    static const tinygltf::Value nothing;
+    const auto it = source.extensions.find(name);
+    return it == source.extensions.end() ? nothing : it->second;
+  }
+
+  /// The mean of a texture, 1 where there is none or it cannot be read; warns in both cases where there is
+  /// one.
+  Rgb mean(int texture, TextureEncoding encoding, const char* what, const std::string& name) {
+    if (texture < 0) return Rgb::Ones();
+    const std::optional<Rgb> value = textures_.mean(texture, encoding, where_);
+    if (!value) {
+      ++scene_.refused["textures"];
+      scene_.warnings.push_back(
+          fmt::format("material \"{}\": its {} texture cannot be read and counts as white", name, what));
+      return Rgb::Ones();
+    }
+    ++scene_.not_modelled["textures"];
+    scene_.warnings.push_back(
+        fmt::format("material \"{}\": its {} texture is replaced by its mean {:.3f} {:.3f} {:.3f}", name,
+                    what, (*value)[0], (*value)[1], (*value)[2]));
+    return *value;
+  }
+
+  void read_metallic_roughness(const tinygltf::Material& source, Material& material) {
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    const std::string within = "pbrMetallicRoughness/";
+    const Rgb base = rgb(pbr.baseColorFactor, 1, within + "baseColorFactor") *
+                     mean(pbr.baseColorTexture.index, TextureEncoding::kSrgb, "base colour", material.name);
+    // Green holds the roughness, blue the metallic share.
+    const Rgb packed = mean(pbr.metallicRoughnessTexture.index, TextureEncoding::kLinear,
+                            "metallic-roughness", material.name);
+    const double metallic = checked(pbr.metallicFactor, 1, within + "metallicFactor") * packed[2];
+    material.non_diffuse.roughness = checked(pbr.roughnessFactor, 1, within + "roughnessFactor") * packed[1];
+    const double transmitted = number(source, "KHR_materials_transmission", "transmissionFactor", 0, 1);
+    material.reflectance = base * ((1 - metallic) * (1 - transmitted));
+    if (metallic > 0) material.non_diffuse.specular_reflectance = base * metallic;
+    if (transmitted > 0) {
+      material.non_diffuse.specular_transmittance = base * ((1 - metallic) * transmitted);
+      material.non_diffuse.transmission_roughness = material.non_diffuse.roughness;
+      material.non_diffuse.index_of_refraction = number(source, "KHR_materials_ior", "ior", 1.5, 100);
+    }
+  }
+
+  void read_specular_glossiness(const tinygltf::Material& source, Material& material) {
+    const tinygltf::Value& object = extension(source, kSpecularGlossiness);
+    Rgb diffuse = triple(source, kSpecularGlossiness, "diffuseFactor");
+    if (object.Has("diffuseTexture")) {
+      const tinygltf::Value& texture = object.Get("diffuseTexture");
+      const bool indexed = texture.IsObject() && texture.Has("index") && texture.Get("index").IsInt();
+      if (!indexed)
+        fail(in_extension(kSpecularGlossiness, "diffuseTexture"), "diffuseTexture has no index",
+             "Export the file anew.");
+      diffuse *=
+          mean(texture.Get("index").GetNumberAsInt(), TextureEncoding::kSrgb, "diffuse", material.name);
+    }
+    material.reflectance = diffuse;
+    // The extension takes what the mirror part reflects off the diffuse part: no more than all light comes
+    // back.
+    const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor").min(1 - diffuse);
+    if ((specular > 0).any()) material.non_diffuse.specular_reflectance = specular;
+    material.non_diffuse.roughness = 1 - number(source, kSpecularGlossiness, "glossinessFactor", 1, 1);
+  }
+
+  void read_emission(const tinygltf::Material& source, Material& material) {
+    constexpr double kMostStrength = 1e30;  // before units; the limits of a room apply to the radiance
+    constexpr const char* kStrength = "KHR_materials_emissive_strength";
+    material.emitted_radiance = Rgb::Zero();
+    if (source.emissiveFactor.empty()) return;
+    const double strength = number(source, kStrength, "emissiveStrength", 1, kMostStrength);
+    const Rgb factor = rgb(source.emissiveFactor, kMostStrength, "emissiveFactor") * strength;
+    if (!(factor > 0).any()) return;
+    const Rgb emissive =
+        factor * mean(source.emissiveTexture.index, TextureEncoding::kSrgb, "emissive", material.name);
+    material.emitted_radiance = emissive * units_.radiance();
+    const std::string problem = strength_problem(material.emitted_radiance, "the radiance [W/(m2 sr)]");
+    if (!problem.empty())
+      fail(strength == 1 ? "emissiveFactor" : in_extension(kStrength, "emissiveStrength"), problem,
+           kStrengthAdvice);
+    material.emits_both_sides = source.doubleSided;
+  }
+
+  Material read(const tinygltf::Material& source) {
+    Material material;
+    material.name = source.name;
+    material.two_sided = source.doubleSided;
+    if (extension(source, kSpecularGlossiness).IsObject()) {
+      read_specular_glossiness(source, material);
+    } else {
+      read_metallic_roughness(source, material);
+    }
+    read_emission(source, material);
+    if (source.alphaMode != "OPAQUE") {
+      ++scene_.not_modelled["transparent_materials"];
+      scene_.warnings.push_back(
+          fmt::format("material \"{}\": alpha mode {} is ignored, the surface is opaque", material.name,
+                      source.alphaMode == "MASK" ? "MASK" : "BLEND"));
+    }
+    return material;
+  }
+
+  const GltfModel& gltf_;
+  GltfTextures textures_;
+  const GltfUnits& units_;
+  Scene& scene_;
+  std::string where_;  // JSON pointer of the material
+};
+
+}  // namespace
+
+void read_gltf_materials(const GltfModel& gltf, const GltfAccessors& accessors, const GltfUnits& units,
+                         Scene& scene) {
+  MaterialReader(gltf, accessors, units, scene).read_all();
+  Material plain;
+  plain.name = "no material";
+  constexpr double kPlainReflectance = 0.5;
+  plain.reflectance = Rgb::Constant(kPlainReflectance);
+  plain.emitted_radiance = Rgb::Zero();
+  scene.materials.push_back(std::move(plain));
+}
+
+}  // namespace reemit

@@ -1,0 +1,212 @@
+#include "scenes/io/gltf/gltf_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "scenes/io/common/json_cursor.h"
+#include "scenes/io/common/text_file.h"
+#include "scenes/io/gltf/gltf_document.h"
+#include "scenes/model/error.h"
+
+namespace reemit {
+
+namespace {
+
+constexpr std::uintmax_t kLargestGltf = std::uintmax_t{2} << 30;  // The parser counts bytes with 32 bits.
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+
+/// A required extension outside this list may change what the file means. Materials (KHR_materials_*) only
+/// change how a surface looks; those that are not taken over are warned of.
+constexpr std::array<std::string_view, 6> kSupportedExtensions{
+    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
+    "KHR_texture_basisu",    "EXT_texture_webp",      "EXT_mesh_gpu_instancing"};
+
+bool is_supported(const std::string& extension) {
+  return extension.starts_with("KHR_materials_") ||
+         std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) !=
+             kSupportedExtensions.end();
+}
+
+std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
+  std::array<unsigned char, 4> b;
+  std::memcpy(b.data(), bytes.data() + offset, b.size());
+  return b[0] | (std::uint32_t{b[1]} << 8) | (std::uint32_t{b[2]} << 16) | (std::uint32_t{b[3]} << 24);
+}
+
+/// The JSON text of a GLB file, after a check of all chunk lengths.
+std::string json_of_glb(const std::string& bytes, const std::string& file) {
+  const auto fail = [&](const std::string& problem) {
+    throw InputError(file, problem, "The GLB file is damaged or cut off; export it anew.");
+  };
+  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+  if (bytes.size() < kHeader + kChunkHeader) fail("the file is too short for a GLB header");
+  if (word_at(bytes, 4) != 2) {
+    throw InputError(file, fmt::format("GLB version {}", word_at(bytes, 4)), "Export glTF 2.0.");
+  }
+  const std::size_t length = word_at(bytes, 8);
+  if (length > bytes.size()) {
+    fail(fmt::format("the header promises {} bytes, the file has {}", length, bytes.size()));
+  }
+  const std::size_t json_length = word_at(bytes, kHeader);
+  if (word_at(bytes, kHeader + 4) != kJsonChunk) fail("the first chunk is not JSON");
+  if (json_length > length || kHeader + kChunkHeader + json_length > length) {
+    fail(fmt::format("the JSON chunk of {} bytes does not fit", json_length));
+  }
+  const std::size_t next = kHeader + kChunkHeader + json_length;
+  if (next + kChunkHeader <= length) {
+    const std::size_t binary_length = word_at(bytes, next);
+    if (word_at(bytes, next + 4) == kBinaryChunk && next + kChunkHeader + binary_length > length) {
+      fail(fmt::format("the binary chunk of {} bytes does not fit", binary_length));
+    }
+  }
+  return bytes.substr(kHeader + kChunkHeader, json_length);
+}
+
+bool file_exists(const std::string& path, void*) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
+}
+
+/// No expansion of ~ or $VARIABLES: a room file must not depend on who reads it.
+std::string same_path(const std::string& path, void*) {
+  return path;
+}
+
+bool read_whole_file(std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
+  try {
+    const std::string bytes = load_file(path, kLargestGltf);
+    out->assign(bytes.begin(), bytes.end());
+    return true;
+  } catch (const InputError& problem) {
+    *error = problem.what();
+    return false;
+  }
+}
+
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
+
+/// Keeps the encoded bytes. Those in a buffer view are left where they are: the view has not been checked
+/// yet.
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
+  image->as_is = true;
+  return true;
+}
+
+bool is_meshopt(const std::string& extension) {
+  return extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression";
+}
+
+bool is_compression(const std::string& extension) {
+  return extension == "KHR_draco_mesh_compression" || is_meshopt(extension);
+}
+
+/// How to make a file without this compression of the geometry.
+std::string decoding_advice(const std::string& extension, const std::string& file) {
+  std::string advice = fmt::format(
+      "The geometry is compressed; decode it with: gltf-transform copy '{}' decoded.glb (npm install -g "
+      "@gltf-transform/cli)",
+      file);
+  if (is_meshopt(extension)) advice += fmt::format(", or: gltfpack -i '{}' -o decoded.glb -noq", file);
+  return advice;
+}
+
+/// The texts of an array of the document; what is none of that is for the parser to refuse.
+std::vector<std::string> extension_names(const nlohmann::json& document, const char* key) {
+  std::vector<std::string> names;
+  const auto list = document.find(key);
+  if (list == document.end() || !list->is_array()) return names;
+  for (const nlohmann::json& name : *list)
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  return names;
+}
+
+/// Before the parser, which trips over the holes that compressed geometry leaves and says nothing of the
+/// cause.
+void check_extensions(const nlohmann::json& document, const std::string& file) {
+  for (const std::string& name : extension_names(document, "extensionsRequired"))
+    if (!is_supported(name))
+      throw InputError(
+          file, fmt::format("the file requires the glTF extension \"{}\", which is not supported", name),
+          is_compression(name) ? decoding_advice(name, file) : "Export without this extension.");
+}
+
+/// What to do about a file that the parser refuses.
+std::string parser_advice(const std::vector<std::string>& used, const std::string& file) {
+  const auto compression = std::find_if(used.begin(), used.end(), is_compression);
+  return compression != used.end() ? decoding_advice(*compression, file)
+                                   : "Check the file with the Khronos glTF validator, or export it anew.";
+}
+
+/// Messages of the parser on one line, without bytes that a terminal cannot show, and cut.
+std::string tidy(const std::string& text) {
+  constexpr std::size_t kLongest = 300;
+  std::string line;
+  for (const unsigned char c : text) {
+    if (c >= 0x20 && c < 0x7f) line += static_cast<char>(c);
+    if (c == '\n' && !line.empty() && line.back() != ' ') line += ' ';
+    if (line.size() >= kLongest) return line + "...";
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+}  // namespace
+
+GltfModel load_gltf_model(const std::filesystem::path& file) {
+  GltfModel loaded;
+  loaded.file = file.string();
+  const std::string bytes = load_file(file, kLargestGltf);
+  const bool binary = bytes.compare(0, 4, "glTF") == 0;
+  std::vector<std::string> used_extensions;
+  {
+    // Strict parse first: it bounds the nesting, which the library follows recursively.
+    const nlohmann::json document = parse_json(binary ? json_of_glb(bytes, loaded.file) : bytes, loaded.file);
+    JsonCursor(document, loaded.file).expect_object();
+    check_extensions(document, loaded.file);
+    used_extensions = extension_names(document, "extensionsUsed");
+    // Where geometry is compressed, the advice of the parser's refusal says more.
+    if (std::none_of(used_extensions.begin(), used_extensions.end(), is_compression))
+      check_gltf_document(document, loaded.file);
+  }
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(keep_encoded, nullptr);
+  parser.SetFsCallbacks({file_exists, same_path, read_whole_file, write_nothing, nullptr});
+  std::string errors, warnings;
+  bool parsed = false;
+  try {
+    const std::string folder = file.parent_path().empty() ? "." : file.parent_path().string();
+    const auto size = static_cast<unsigned int>(bytes.size());
+    parsed =
+        binary
+            ? parser.LoadBinaryFromMemory(&loaded.model, &errors, &warnings,
+                                          reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+            : parser.LoadASCIIFromString(&loaded.model, &errors, &warnings, bytes.data(), size, folder);
+  } catch (const std::exception& problem) {
+    errors = problem.what();
+  }
+  if (!parsed) {
+    throw InputError(loaded.file, tidy(errors.empty() ? "not a valid glTF file" : errors),
+                     parser_advice(used_extensions, loaded.file));
+  }
+  if (loaded.model.asset.version.substr(0, 2) != "2.") {
+    throw InputError(loaded.file, fmt::format("glTF version \"{}\"", tidy(loaded.model.asset.version)),
+                     "Export glTF 2.0.");
+  }
+  if (!warnings.empty()) loaded.warnings.push_back(tidy(warnings));
+  return loaded;
+}
+
+}  // namespace reemit

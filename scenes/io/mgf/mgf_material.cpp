@@ -1,0 +1,79 @@
+#include "scenes/io/mgf/mgf_material.h"
+
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "scenes/model/colour.h"
+#include "scenes/model/error.h"
+#include "scenes/model/limits.h"
+
+namespace reemit {
+namespace {
+
+constexpr double kLumensPerWatt = 179;  // as BandSet::rgb
+
+Eigen::Array3d to_rgb(const MgfColoured& coloured) {
+  if (coloured.colour == MgfColour{}) return Eigen::Array3d::Constant(coloured.value);  // free of round-off
+  return rec709_from_chromaticity(coloured.colour.x, coloured.colour.y, coloured.value);
+}
+
+// Moves colours that Rec.709 cannot hold into [0, most] and remembers that it did.
+Eigen::Array3d fitted(const MgfColoured& coloured, double most, bool& changed) {
+  constexpr double kVisible = 1e-4;
+  const Eigen::Array3d rgb = to_rgb(coloured);
+  const Eigen::Array3d clamped = clamp_to_gamut(rgb, most);
+  changed = changed || ((rgb - clamped).abs() > kVisible * coloured.value).any();
+  return clamped;
+}
+
+// Here the line of the number is known; the checks of the room could only name the material.
+void check_strength(const Material& material, const MgfColoured& ed, const std::string& where) {
+  const std::string problem = strength_problem(material.emitted_radiance, "the radiance [W/(m2 sr)]");
+  if (!problem.empty())
+    throw InputError(ed.given_at != nullptr ? *ed.given_at : where,
+                     fmt::format("material '{}' with ed {:g}: {}", material.name, ed.value, problem),
+                     kStrengthAdvice);
+}
+
+}  // namespace
+
+Material convert_mgf_material(const MgfMaterial& m, const std::string& name, const std::string& where,
+                              std::vector<std::string>& warnings) {
+  Material material;
+  material.name = name;
+  bool changed = false;
+  material.reflectance = fitted(m.rd, 1, changed);
+  MgfColoured radiance = m.ed;
+  radiance.value /= std::numbers::pi * kLumensPerWatt;
+  material.emitted_radiance = fitted(radiance, std::numeric_limits<double>::infinity(), changed);
+  check_strength(material, m.ed, where);
+  material.two_sided = m.sides == 2;
+  material.emits_both_sides = material.two_sided && m.ed.value > 0;
+
+  NonDiffusePart& rest = material.non_diffuse;
+  if (m.rs.value > 0) rest.specular_reflectance = fitted(m.rs, 1, changed);
+  if (m.td.value > 0) rest.diffuse_transmittance = fitted(m.td, 1, changed);
+  if (m.ts.value > 0) rest.specular_transmittance = fitted(m.ts, 1, changed);
+  rest.roughness = m.rs_roughness;
+  rest.transmission_roughness = m.ts_roughness;
+  rest.index_of_refraction = m.ir_real;
+
+  if (changed)
+    warnings.push_back(fmt::format(
+        "{}: material '{}' has a colour outside Rec.709; it was made paler, its luminance was kept.", where,
+        name));
+  const double sum = m.rd.value + m.rs.value + m.td.value + m.ts.value;
+  if (sum > 1 + 1e-9)
+    warnings.push_back(
+        fmt::format("{}: material '{}' reflects and transmits {:.4g} of the light, more than it gets.", where,
+                    name, sum));
+  if (m.ir_imaginary != 0)
+    warnings.push_back(fmt::format(
+        "{}: material '{}' is a metal; the imaginary part of its index of refraction is not kept.", where,
+        name));
+  return material;
+}
+
+}  // namespace reemit

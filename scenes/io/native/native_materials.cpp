@@ -1,0 +1,142 @@
+#include "scenes/io/native/native_materials.h"
+
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "scenes/io/common/surface_geometry.h"
+#include "scenes/model/limits.h"
+
+namespace reemit {
+
+namespace {
+
+/// Here the place of the number is known; the checks of the room could only name the material.
+void check_strength(const Spectrum& radiance, const JsonCursor& at) {
+  const std::string problem = strength_problem(radiance, "the radiance [W/(m2 sr)]");
+  if (!problem.empty()) at.fail(problem, kStrengthAdvice);
+}
+
+/// The keys that set the emission; at most one of them may stand in a material.
+constexpr const char* kEmissionKeys[] = {"radiance",       "exitance",    "luminance_cd_m2",
+                                         "exitance_lm_m2", "total_power", "total_flux_lm"};
+
+const char* emission_key(const JsonCursor& at) {
+  const char* found = nullptr;
+  for (const char* key : kEmissionKeys) {
+    if (!at.find(key)) continue;
+    if (found)
+      at.at(key).fail(fmt::format("the emission is already given by \"{}\"", found), "Keep one of the two.");
+    found = key;
+  }
+  return found;
+}
+
+bool is_photometric(const std::string& key) {
+  return key == "luminance_cd_m2" || key == "exitance_lm_m2" || key == "total_flux_lm";
+}
+
+void read_sides(const JsonCursor& at, Material& material) {
+  const std::vector<std::string> choices{"front", "both"};
+  if (const auto sides = at.find("sides")) material.two_sided = sides->choice(choices) == "both";
+  if (const auto sides = at.find("emission_sides")) {
+    material.emits_both_sides = sides->choice(choices) == "both";
+    if (material.emits_both_sides && !material.two_sided) {
+      sides->fail("a one-sided surface cannot emit from its back", "Set \"sides\": \"both\".");
+    }
+  }
+}
+
+/// Radiance along the normal; of a Lambertian surface, M / pi.
+Spectrum radiance_of_exitance(const Spectrum& exitance, const Material& material) {
+  return (material.emission_exponent + 2) / (2 * std::numbers::pi) * exitance;
+}
+
+}  // namespace
+
+NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
+  for (const auto& [name, at] : materials.members()) {
+    at.expect_object({"reflectance", "radiance", "exitance", "luminance_cd_m2", "exitance_lm_m2",
+                      "total_power", "total_flux_lm", "emission_color", "emission_exponent", "sides",
+                      "emission_sides"});
+    if (name.empty()) at.fail("a material needs a name", "Name it.");
+    Material material;
+    material.name = name;
+    material.reflectance = Spectrum::Zero(static_cast<Eigen::Index>(scene.bands.count()));
+    material.emitted_radiance = material.reflectance;
+    if (const auto reflectance = at.find("reflectance")) {
+      material.reflectance = read_reflectance(*reflectance, scene.bands);
+    }
+    read_sides(at, material);
+    const MaterialId id(scene.materials.size());
+    const char* emission = emission_key(at);
+    const std::string key = emission ? emission : "";
+    const auto colour = at.find("emission_color");
+    if (colour && !is_photometric(key)) {
+      colour->fail("a colour without a photometric emission",
+                   fmt::format("Use it with luminance_cd_m2, {}", "exitance_lm_m2 or total_flux_lm."));
+    }
+    if (const auto exponent = at.find("emission_exponent")) {
+      if (!emission)
+        exponent->fail("an exponent without an emission", "Say how much it emits, or remove the exponent.");
+      material.emission_exponent = exponent->number_in(0, 1e4);
+    }
+    if (emission) {
+      const JsonCursor given = at.at(emission);
+      const Spectrum value =
+          is_photometric(key) ? photometric_emission(given.number_in(0, std::numeric_limits<double>::max()),
+                                                     colour, scene.bands)
+                              : read_emission(given, scene.bands);
+      if (!(value > 0).any())
+        given.fail(fmt::format("the material \"{}\" emits nothing, though its emission is given", name),
+                   "Remove the emission or give it power.");
+      if (key == "total_power" || key == "total_flux_lm") {
+        totals_.push_back({given, id, value});
+      } else {
+        const bool is_exitance = key == "exitance" || key == "exitance_lm_m2";
+        material.emitted_radiance = is_exitance ? radiance_of_exitance(value, material) : value;
+        check_strength(material.emitted_radiance, given);
+      }
+    }
+    ids_.emplace(name, id);
+    scene.materials.push_back(std::move(material));
+  }
+}
+
+MaterialId NativeMaterials::find(const JsonCursor& name) const {
+  const auto it = ids_.find(name.string());
+  if (it != ids_.end()) return it->second;
+  std::vector<std::string> names;
+  for (const auto& [known, id] : ids_) names.push_back(known);
+  name.fail(fmt::format("there is no material \"{}\"", name.string()), known_names(name.string(), names));
+}
+
+MaterialId NativeMaterials::import(Material material, Scene& scene) {
+  const std::string wanted = material.name;
+  for (int i = 2; ids_.contains(material.name); ++i) material.name = fmt::format("{} #{}", wanted, i);
+  const MaterialId id(scene.materials.size());
+  ids_.emplace(material.name, id);
+  scene.materials.push_back(std::move(material));
+  return id;
+}
+
+void NativeMaterials::share_total_powers(Scene& scene) const {
+  for (const TotalPower& total : totals_) {
+    Material& material = scene.materials[total.material.index()];
+    double area = 0;
+    for (const Surface& surface : scene.surfaces) {
+      if (surface.material == total.material) area += surface_area(surface);
+    }
+    if (material.emits_both_sides) area *= 2;
+    if (!(area > 0)) {
+      total.at.fail(
+          fmt::format("no surface of the room has the material \"{}\", so its power has nowhere to go",
+                      material.name),
+          "Use the material, or remove its emission.");
+    }
+    material.emitted_radiance = radiance_of_exitance(total.power / area, material);
+    check_strength(material.emitted_radiance, total.at);
+  }
+}
+
+}  // namespace reemit

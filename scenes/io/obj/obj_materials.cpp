@@ -1,0 +1,252 @@
+#include "scenes/io/obj/obj_materials.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tiny_obj_loader.h>
+
+#include "scenes/io/common/text_file.h"
+#include "scenes/io/common/text_parse.h"
+#include "scenes/io/common/texture_average.h"
+#include "scenes/io/obj/obj_light_shares.h"
+#include "scenes/model/error.h"
+#include "scenes/model/limits.h"
+
+namespace reemit {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uintmax_t kLargestMtl = std::uintmax_t{64} << 20;
+constexpr double kGrey = 0.5;  // reflectance of materials that nobody defines
+
+// Numbers a statement of a MTL file must have. tinyobjloader reads what is missing or garbled as 0.
+struct NumberRule {
+  std::string_view keyword;
+  std::size_t least, most;  // how many
+  double low, high;         // allowed values
+};
+constexpr double kAny = 1e300;
+constexpr std::array kRules = {
+    NumberRule{"Kd", 1, 3, 0, 1},        NumberRule{"Ks", 1, 3, 0, 1}, NumberRule{"Ke", 1, 3, 0, kAny},
+    NumberRule{"Ka", 1, 3, -kAny, kAny}, NumberRule{"Tf", 1, 3, 0, 1}, NumberRule{"Ns", 1, 1, 0, kAny},
+    NumberRule{"Ni", 1, 1, 0, kAny},     NumberRule{"d", 1, 1, 0, 1},  NumberRule{"Tr", 1, 1, 0, 1},
+    NumberRule{"illum", 1, 1, 0, 10},
+};
+
+// The words of a numeric statement up to a comment.
+std::vector<std::string_view> without_comment(const TextLine& line) {
+  const auto comment =
+      std::find_if(line.words.begin(), line.words.end(), [](auto word) { return word[0] == '#'; });
+  return {line.words.begin(), comment};
+}
+
+std::string checked_numbers(const NumberRule& rule, const TextLine& line, const std::string& where) {
+  const std::vector<std::string_view> words = without_comment(line);
+  const std::size_t count = words.size() - 1;
+  if (count > 0 && (words[1] == "spectral" || words[1] == "xyz"))
+    throw InputError(where, fmt::format("'{} {}' is not supported", rule.keyword, words[1]),
+                     "Give red, green, blue.");
+  if (count < rule.least || count > rule.most || count == 2)
+    throw InputError(where, fmt::format("'{}' has {} numbers", rule.keyword, count),
+                     rule.most == 3 ? "Give red, green, blue." : "Give one number.");
+  std::string text(rule.keyword);
+  Spectrum values = Spectrum::Zero(static_cast<Eigen::Index>(count));
+  for (std::size_t i = 1; i <= count; ++i) {
+    const auto value = parse_number(words[i]);
+    if (!value || *value < rule.low || *value > rule.high)
+      throw InputError(
+          where, fmt::format("'{} {}' is not a number in its range", rule.keyword, words[i]),
+          rule.high == 1 ? "Give a fraction from 0 to 1." : "Give a finite number of 0 or more.");
+    values[static_cast<Eigen::Index>(i - 1)] = *value;
+    text += fmt::format(" {}", words[i]);
+  }
+  if (rule.keyword == "Ke") {
+    const std::string problem = strength_problem(values, "the radiance Ke [W/(m2 sr)]");
+    if (!problem.empty()) throw InputError(where, problem, kStrengthAdvice);
+  }
+  if (rule.most == 3 && count == 1)
+    text += fmt::format(" {0} {0}", words[1]);  // one number stands for all three
+  return text + "\n";
+}
+
+// What tinyobjloader gets to read: checked, one statement per line, numbers without comments.
+std::string checked_text(const std::string& text, const std::string& name) {
+  std::string clean;
+  bool in_material = false;
+  for (const TextLine& line : split_lines(text)) {
+    if (line.words[0][0] == '#') continue;
+    const std::string where = at_line(name, line.number);
+    if (line.words[0] == "newmtl") {
+      if (line.words.size() < 2) throw InputError(where, "'newmtl' has no name", "Name the material.");
+      in_material = true;
+    } else if (!in_material) {
+      throw InputError(where, fmt::format("'{}' before the first 'newmtl'", line.words[0]),
+                       "Is this a MTL file, and is it complete?");
+    }
+    const auto* rule = std::find_if(kRules.begin(), kRules.end(),
+                                    [&](const NumberRule& r) { return r.keyword == line.words[0]; });
+    if (rule != kRules.end())
+      clean += checked_numbers(*rule, line, where);
+    else
+      clean += fmt::format("{} {}\n", line.words[0], rest_of(line, 1));
+  }
+  return clean;
+}
+
+Spectrum spectrum_of(const tinyobj::real_t (&rgb)[3]) {
+  return Eigen::Array3d(rgb[0], rgb[1], rgb[2]);
+}
+
+std::string ignored_maps(const tinyobj::material_t& m) {
+  std::string maps;
+  const auto add = [&maps](const char* keyword, const std::string& file) {
+    if (!file.empty()) maps += fmt::format("{}{} {}", maps.empty() ? "" : ", ", keyword, file);
+  };
+  add("map_Ke", m.emissive_texname);
+  add("map_Ks", m.specular_texname);
+  add("map_Ns", m.specular_highlight_texname);
+  add("map_d", m.alpha_texname);
+  add("bump", m.bump_texname);
+  add("norm", m.normal_texname);
+  add("disp", m.displacement_texname);
+  add("refl", m.reflection_texname);
+  return maps;
+}
+
+// Where what is said of a material goes.
+struct Telling {
+  std::vector<std::string>& warnings;
+  KindCounts& refused;
+  KindCounts& not_modelled;
+};
+
+Spectrum textured_reflectance(const tinyobj::material_t& m, const fs::path& folder, const std::string& where,
+                              Telling& tell) {
+  const Spectrum kd = spectrum_of(m.diffuse);
+  if (m.diffuse_texname.empty()) return kd;
+  std::string relative = m.diffuse_texname;
+  std::replace(relative.begin(), relative.end(), '\\', '/');
+  const TextureAverage average = average_texture(folder / relative);
+  if (!average.problem.empty()) {
+    ++tell.refused["textures"];
+    tell.warnings.push_back(fmt::format("{}: Kd {:.3g} {:.3g} {:.3g} is used in place of the texture: {}",
+                                        where, kd[0], kd[1], kd[2], average.problem));
+    return kd;
+  }
+  ++tell.not_modelled["textures"];
+  tell.warnings.push_back(
+      fmt::format("{}: the texture {} is used as its average colour {:.3g} {:.3g} {:.3g}.", where, relative,
+                  average.rgb[0], average.rgb[1], average.rgb[2]));
+  return average.rgb;
+}
+
+Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tell) {
+  const std::string where = fmt::format("{}: material '{}'", file.string(), m.name);
+  Material material;
+  material.name = m.name;
+  const ObjLightShares shares =
+      obj_light_shares({textured_reflectance(m, file.parent_path(), where, tell), spectrum_of(m.specular),
+                        spectrum_of(m.transmittance), m.dissolve, m.ior, m.illum});
+  material.reflectance = shares.diffuse;
+  material.emitted_radiance = spectrum_of(m.emission);
+  NonDiffusePart& rest = material.non_diffuse;
+  if ((shares.specular > 0).any()) rest.specular_reflectance = shares.specular;
+  if ((shares.transmitted > 0).any()) rest.specular_transmittance = shares.transmitted;
+  if (!shares.doubt.empty()) {
+    ++tell.not_modelled["glass_and_mirrors_as_paint"];
+    tell.warnings.push_back(fmt::format("{}: {}.", where, shares.doubt));
+  }
+  rest.roughness = std::sqrt(2 / (m.shininess + 2));  // Phong exponent to microfacet roughness [WAL07]
+  rest.index_of_refraction = m.ior;
+  if (const std::string maps = ignored_maps(m); !maps.empty()) {
+    ++tell.not_modelled["other_maps"];
+    tell.warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));
+  }
+  return material;
+}
+
+// The file as it is named; else one of that name beside the room, whatever its case: paths of another
+// computer and file systems that ignore case leave both. Empty if there is none.
+fs::path find_library(const fs::path& folder, const std::string& name) {
+  std::error_code ignored;
+  if (fs::is_regular_file(folder / name, ignored)) return folder / name;
+  const std::string wanted = lower_case(fs::path(name).filename().string());
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored))
+    if (lower_case(entry.path().filename().string()) == wanted)
+      found.push_back(folder / entry.path().filename());
+  std::sort(found.begin(), found.end());  // folders are listed in any order
+  return found.empty() ? fs::path() : found.front();
+}
+
+}  // namespace
+
+void ObjMaterials::read(const fs::path& folder, const std::string& name, const std::string& where) {
+  const fs::path file = find_library(folder, name);
+  if (file.empty()) {
+    ++refused["material_files"];
+    warnings_.push_back(fmt::format("{}: there is no material file '{}'; its materials are taken as grey.",
+                                    where, (folder / name).string()));
+    return;
+  }
+  if (file != folder / name)
+    warnings_.push_back(fmt::format("{}: there is no material file '{}'; '{}' is taken.", where,
+                                    (folder / name).string(), file.string()));
+  std::string text;
+  try {
+    text = load_file(file, kLargestMtl);
+  } catch (const InputError& error) {
+    ++refused["material_files"];
+    warnings_.push_back(
+        fmt::format("{}: the material file cannot be read, and its materials are taken as grey: {}", where,
+                    error.what()));
+    return;
+  }
+  std::istringstream stream(checked_text(text, file.string()));
+  std::map<std::string, int> names;
+  std::vector<tinyobj::material_t> loaded;
+  std::string ignored_warning, ignored_error;  // about what checked_text has refused
+  tinyobj::LoadMtl(&names, &loaded, &stream, &ignored_warning, &ignored_error);
+  for (const tinyobj::material_t& m : loaded) {
+    if (m.name.empty()) continue;
+    if (!index_.try_emplace(m.name, materials.size()).second) {
+      warnings_.push_back(fmt::format("{}: material '{}' is defined again; the first definition counts.",
+                                      file.string(), m.name));
+      continue;
+    }
+    materials.push_back(convert(m, file, {warnings_, refused, not_modelled}));
+  }
+}
+
+std::size_t ObjMaterials::index_of(const std::string& name, const std::string& where) {
+  const auto [entry, added] = index_.try_emplace(name, materials.size());
+  if (!added) return entry->second;
+  Material material;
+  material.name = name.empty() ? "no material" : name;
+  material.reflectance = Spectrum::Constant(3, kGrey);
+  material.emitted_radiance = Spectrum::Zero(3);
+  materials.push_back(std::move(material));
+  if (undefined_.empty()) first_undefined_at_ = where;
+  ++refused["materials"];
+  undefined_.push_back(name.empty() ? "faces without 'usemtl'" : fmt::format("'{}'", name));
+  return entry->second;
+}
+
+std::vector<std::string> ObjMaterials::warnings() const {
+  std::vector<std::string> all = warnings_;
+  if (undefined_.empty()) return all;
+  constexpr std::size_t kMostNames = 8;
+  const std::size_t named = std::min(undefined_.size(), kMostNames);
+  all.push_back(fmt::format(
+      "{}: {} material(s) are not defined and are taken as grey, reflectance {}: {}{}.", first_undefined_at_,
+      undefined_.size(), kGrey,
+      fmt::join(undefined_.begin(), undefined_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+      undefined_.size() > named ? ", ..." : ""));
+  return all;
+}
+
+}  // namespace reemit

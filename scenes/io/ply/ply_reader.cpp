@@ -1,0 +1,201 @@
+#include "scenes/io/ply/ply_reader.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "scenes/io/common/text_file.h"
+#include "scenes/io/ply/ply_header.h"
+#include "scenes/model/error.h"
+
+namespace reemit {
+
+namespace {
+
+/// Reads one value after the other from the body of a PLY file, all as double (exact for every PLY type).
+class PlyBody {
+ public:
+  PlyBody(const std::string& bytes, const PlyHeader& header, const std::string& file)
+      : bytes_(bytes), at_(header.size), line_(header.lines + 1), format_(header.format), file_(file) {}
+
+  double next(PlyType type) { return format_ == PlyFormat::kAscii ? next_word() : next_binary(type); }
+
+  std::size_t next_list_length(const PlyProperty& list) {
+    const double length = next(list.count_type);
+    const std::size_t each = format_ == PlyFormat::kAscii ? 2 : size_of(list.type);
+    if (!(length >= 0) || length != std::floor(length) ||
+        length > double(bytes_.size() - at_ + 1) / double(each)) {
+      fail(fmt::format("a list of length {} does not fit into the file", length));
+    }
+    return static_cast<std::size_t>(length);
+  }
+
+  void skip(const PlyProperty& property) {
+    const std::size_t count = property.is_list ? next_list_length(property) : 1;
+    for (std::size_t i = 0; i < count; ++i) next(property.type);
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    const std::string where = format_ == PlyFormat::kAscii ? fmt::format("{}:{}", file_, line_)
+                                                           : fmt::format("{} (byte {})", file_, at_);
+    throw InputError(where, problem, "The file is damaged or cut off; write it anew.");
+  }
+
+  std::uint32_t line() const { return format_ == PlyFormat::kAscii ? static_cast<std::uint32_t>(line_) : 0; }
+
+ private:
+  double next_word() {
+    const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+    while (at_ < bytes_.size() && is_space(bytes_[at_])) line_ += bytes_[at_++] == '\n' ? 1 : 0;
+    const std::size_t start = at_;
+    while (at_ < bytes_.size() && !is_space(bytes_[at_])) ++at_;
+    const std::string_view word(bytes_.data() + start, at_ - start);
+    if (word.empty()) fail("the file ends too early");
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) fail("expected a number");
+    return value;
+  }
+
+  double next_binary(PlyType type) {
+    switch (type) {
+      case PlyType::kInt8:
+        return raw<std::int8_t>();
+      case PlyType::kUint8:
+        return raw<std::uint8_t>();
+      case PlyType::kInt16:
+        return raw<std::int16_t>();
+      case PlyType::kUint16:
+        return raw<std::uint16_t>();
+      case PlyType::kInt32:
+        return raw<std::int32_t>();
+      case PlyType::kUint32:
+        return raw<std::uint32_t>();
+      case PlyType::kFloat:
+        return double{raw<float>()};
+      case PlyType::kDouble:
+        break;
+    }
+    return raw<double>();
+  }
+
+  template <class T>
+  T raw() {
+    if (bytes_.size() - at_ < sizeof(T)) fail("the file ends too early");
+    unsigned char buffer[sizeof(T)];
+    std::memcpy(buffer, bytes_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    constexpr bool kLittleHost = std::endian::native == std::endian::little;
+    if ((format_ == PlyFormat::kLittleEndian) != kLittleHost)
+      std::reverse(std::begin(buffer), std::end(buffer));
+    return std::bit_cast<T>(buffer);
+  }
+
+  const std::string& bytes_;
+  std::size_t at_;
+  std::size_t line_;
+  PlyFormat format_;
+  const std::string& file_;
+};
+
+/// Which of x y z nx ny nz a property is; nothing for any other.
+std::optional<std::size_t> coordinate_of(const PlyProperty& property) {
+  static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+  const auto it = std::find(std::begin(kNames), std::end(kNames), property.name);
+  if (it == std::end(kNames) || property.is_list) return std::nullopt;
+  return static_cast<std::size_t>(it - std::begin(kNames));
+}
+
+void read_vertices(const PlyElement& element, PlyBody& body, Surface& surface) {
+  bool given[6] = {};
+  for (const PlyProperty& property : element.properties) {
+    if (const auto k = coordinate_of(property)) given[*k] = true;
+  }
+  if (!given[0] || !given[1] || !given[2]) body.fail("the vertices have no x, y and z");
+  const bool has_normals = given[3] && given[4] && given[5];
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    double values[6] = {};
+    for (const PlyProperty& property : element.properties) {
+      if (const auto k = coordinate_of(property)) {
+        values[*k] = body.next(property.type);
+        if (!std::isfinite(values[*k])) body.fail(fmt::format("vertex {} is not finite", i));
+      } else {
+        body.skip(property);
+      }
+    }
+    surface.positions.emplace_back(values[0], values[1], values[2]);
+    if (has_normals) surface.normals.push_back(Vec3(values[3], values[4], values[5]).normalized());
+  }
+}
+
+void read_faces(const PlyElement& element, std::uint64_t vertices, PlyBody& body, Surface& surface) {
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    Face face;
+    for (const PlyProperty& property : element.properties) {
+      if (!property.is_list || (property.name != "vertex_indices" && property.name != "vertex_index")) {
+        body.skip(property);
+        continue;
+      }
+      face.outer.resize(body.next_list_length(property));
+      for (std::uint32_t& index : face.outer) {
+        const double value = body.next(property.type);
+        if (!(value >= 0 && value < double(vertices)) || value != std::floor(value)) {
+          body.fail(fmt::format("face {} names vertex {}, but there are {} vertices", i, value, vertices));
+        }
+        index = static_cast<std::uint32_t>(value);
+      }
+    }
+    if (face.outer.size() < 3) body.fail(fmt::format("face {} has fewer than 3 vertices", i));
+    face.source_line = body.line();
+    surface.faces.push_back(std::move(face));
+  }
+}
+
+/// Normals are used only where every face has proper ones.
+void attach_normals(Surface& surface) {
+  const bool proper = surface.normals.size() == surface.positions.size() &&
+                      std::all_of(surface.normals.begin(), surface.normals.end(),
+                                  [](const Vec3& normal) { return std::abs(normal.norm() - 1) < 1e-6; });
+  if (!proper) {
+    surface.normals.clear();
+    return;
+  }
+  for (Face& face : surface.faces) face.normals = face.outer;
+}
+
+}  // namespace
+
+Surface read_ply_surface(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const std::string bytes = load_file(file);
+  const PlyHeader header = read_ply_header(bytes, name);
+  const auto vertices = std::find_if(header.elements.begin(), header.elements.end(),
+                                     [](const PlyElement& element) { return element.name == "vertex"; });
+  if (vertices == header.elements.end()) throw InputError(name, "the file has no vertices", "Export a mesh.");
+  PlyBody body(bytes, header, name);
+  Surface surface;
+  surface.source = name;
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "vertex") {
+      read_vertices(element, body, surface);
+    } else if (element.name == "face") {
+      read_faces(element, vertices->count, body, surface);
+    } else {
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        for (const PlyProperty& property : element.properties) body.skip(property);
+      }
+    }
+  }
+  if (surface.faces.empty())
+    throw InputError(name, "the file has no faces", "Export a mesh, not a cloud of points.");
+  attach_normals(surface);
+  return surface;
+}
+
+}  // namespace reemit
