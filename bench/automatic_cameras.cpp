@@ -14,6 +14,7 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
+#include "solver/room/room.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/output/tone_map.h"
@@ -71,9 +72,9 @@ void add_room(const Settings& settings, std::size_t number, OIIO::ImageBuf& shee
   const int top = static_cast<int>(number) / settings.columns * kRoomHeight;
   const Solution solution = load_solution(file);
   const Scene scene = read_room_of(solution, file);
-  const RayScene rays(solution.mesh);
+  const Room walls(scene, solution.mesh);
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<Camera> cameras = default_cameras(scene, rays);
+  const std::vector<Camera> cameras = default_cameras(walls);
   fmt::print("{}: {:.3f} s\n", file.stem().string(),
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   constexpr float kBlack[3] = {0, 0, 0};
@@ -91,7 +92,7 @@ void add_room(const Settings& settings, std::size_t number, OIIO::ImageBuf& shee
     still.height = kHeight;
     still.spp = settings.spp;
     still.threads = settings.threads;
-    const StillImage image = render_still(scene, solution, rays, camera, still, {}, no_interrupt);
+    const StillImage image = render_still(walls, solution, camera, still, {}, no_interrupt);
     require(OIIO::ImageBufAlgo::paste(sheet, left + static_cast<int>(i) * (kWidth + kGap), top + kLabel, 0, 0,
                                       shown(image)),
             sheet);

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "tests/support/variable_furnace.h"
 #include "viewer_export/still/film.h"
 #include "viewer_export/still/render_still.h"
@@ -65,7 +66,7 @@ void measure(const Options& options) {
   const test::VariableFurnace furnace(8);
   const test::RoomBuilder& room = furnace.room();
   const ZoneMesh mesh = room.mesh().mesh;
-  const RayScene rays(mesh);
+  const Room walls(room.scene(), mesh);
   const std::atomic<bool> never{false};
   const Camera camera = test::VariableFurnace::camera();
 
@@ -98,7 +99,7 @@ void measure(const Options& options) {
     gather.seed = settings.seed;
     for (const bool average : {false, true}) {
       gather.average_zones = average;
-      const VertexData data = gather_vertices(room.scene(), solution, rays, gather, {}, never);
+      const VertexData data = gather_vertices(walls, solution, gather, {}, never);
       for (std::size_t v = 0; v < data.vertex_count(); ++v)
         (average ? averaged : vertices)
             .add(std::numbers::pi * static_cast<double>(data.radiance[v]),
@@ -107,7 +108,7 @@ void measure(const Options& options) {
     StillSettings still;
     still.seed = settings.seed;
     const auto render = [&](Coverage& coverage) {
-      const StillImage image = render_still(room.scene(), solution, rays, camera, still, {}, never);
+      const StillImage image = render_still(walls, solution, camera, still, {}, never);
       for (std::size_t p = 0; p < image.pixel_count(); ++p)
         coverage.add(std::numbers::pi * static_cast<double>(image.radiance[p]),
                      std::numbers::pi * static_cast<double>(image.radiance_stderr[p]), kRadiosity);

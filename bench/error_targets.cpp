@@ -13,6 +13,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "viewer_export/still/render_still.h"
 
 namespace {
@@ -131,14 +132,14 @@ void measure(const Options& options) {
   print(fmt::format("solve --error {:g}%", 100 * options.solve_target), options.solve_target, solves,
         reference.record.error);
 
-  const RayScene rays(solutions.front().mesh);
+  const Room walls(scene, solutions.front().mesh);
   StillSettings still;
   still.width = still.height = options.size;
   still.integrator = Integrator::kPath;
   still.spp = options.reference_samples;
   still.seed = 1'000'000;
   const Camera& camera = scene.cameras.at(0);
-  const StillImage traced = render_still(scene, reference, rays, camera, still, {}, never);
+  const StillImage traced = render_still(walls, reference, camera, still, {}, never);
   still.integrator = Integrator::kGather;
   still.error_target = options.render_target;
   double reference_error = 0;
@@ -146,7 +147,7 @@ void measure(const Options& options) {
   for (int seed = 1; seed <= options.seeds; ++seed) {
     still.seed = static_cast<std::uint64_t>(seed);
     const StillImage image =
-        render_still(scene, solutions[static_cast<std::size_t>(seed - 1)], rays, camera, still, {}, never);
+        render_still(walls, solutions[static_cast<std::size_t>(seed - 1)], camera, still, {}, never);
     stills.push_back(
         {true_still_error(image, traced, still.error_floor, &reference_error), image.info.error});
   }

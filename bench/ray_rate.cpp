@@ -20,6 +20,7 @@
 
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
+#include "solver/room/room.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/tally/batch_plan.h"
 
@@ -111,8 +112,8 @@ void measure(const Case& c, int threads, int rounds) {
   MeshSettings mesh_settings;
   mesh_settings.default_zone_count = static_cast<int>(c.zones);
   const MeshResult built = build_mesh(scene, mesh_settings);
-  const RayScene rays(built.mesh);
-  const TransportScene transport(scene, built.mesh, rays);
+  const Room walls(scene, built.mesh);
+  const TransportScene transport(walls);
   const Emission emission = collect_emission(transport);
   SolverSettings settings;
   settings.method = c.method;
@@ -139,7 +140,7 @@ void measure(const Case& c, int threads, int rounds) {
       part = {};
     }
     partial = books.rays - 16 * blocks.size();
-    const BareEmbree bare(built.mesh, rays);
+    const BareEmbree bare(built.mesh, walls.rays());
     std::vector<double> ours;
     std::vector<double> theirs;
     for (int round = 0; round <= rounds; ++round) {

@@ -14,6 +14,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "solver/tally/batch_books.h"
 #include "tests/support/transformed_room.h"
 #include "tests/support/variable_furnace.h"
@@ -37,11 +38,11 @@ Result run(const Scene& scene, double zone_area) {
   settings.packets = 2'000'000;
   Result result;
   result.solution = solve(scene, build_mesh(scene, mesh), settings, {}, kNever);
-  const RayScene rays(result.solution.mesh);
+  const Room walls(scene, result.solution.mesh);
   StillSettings still;
   still.width = still.height = 64;
   still.spp = 64;
-  result.still = render_still(scene, result.solution, rays, scene.cameras.at(0), still, {}, kNever);
+  result.still = render_still(walls, result.solution, scene.cameras.at(0), still, {}, kNever);
   return result;
 }
 

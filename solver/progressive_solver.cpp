@@ -83,10 +83,10 @@ void run_matrix(const PreparedRoom& room, Solution& solution, const ProgressCall
 }
 
 /// What follows the last batch, or the matrix, in the arena of the run.
-void examine_zones(const Scene& scene, const PreparedRoom& room, const Schedule& schedule,
-                   const ProgressCallback& progress, const std::atomic<bool>& interrupt, Solution& solution) {
+void examine_zones(const PreparedRoom& room, const Schedule& schedule, const ProgressCallback& progress,
+                   const std::atomic<bool>& interrupt, Solution& solution) {
   if (progress && !interrupt) tell_of_examination(solution, progress);
-  compare_points_with_zones(scene, room.rays, schedule, interrupt, solution);
+  compare_points_with_zones(room.room, schedule, interrupt, solution);
 }
 
 Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& watch,
@@ -98,8 +98,8 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
   arena.execute([&] {
     run_matrix(room, solution, watch.progress, interrupt);
     if (examination == Examination::kWhole)
-      examine_zones(scene, room, Schedule(start, solution), watch.progress, interrupt, solution);
-    record_error(scene, solution);
+      examine_zones(room, Schedule(start, solution), watch.progress, interrupt, solution);
+    record_error(room.room.surfaces(), solution);
     solution.record.seconds = seconds_since(start);
   });
   if (examination == Examination::kWhole) look_for_lost_light(room, interrupt, solution);
@@ -126,8 +126,7 @@ Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings&
 class ProgressiveSolver::Run {
  public:
   Run(const Scene& scene, Solution start, const std::atomic<bool>& interrupt, const WorkWatch& preparing)
-      : scene_(scene),
-        interrupt_(interrupt),
+      : interrupt_(interrupt),
         solution_(prepared_to_go_on(std::move(start))),
         begin_(seconds_ago(solution_.record.seconds)),
         room_(scene, solution_, preparing),
@@ -174,7 +173,7 @@ class ProgressiveSolver::Run {
   }
 
   const Solution& checkpoint() {
-    arena_.execute([&] { record_error(scene_, solution_); });
+    arena_.execute([&] { record_error(room_.room.surfaces(), solution_); });
     return solution_;
   }
 
@@ -182,10 +181,10 @@ class ProgressiveSolver::Run {
     if (room_.is_dark()) return std::move(solution_);
     if (record().stopped == StopReason::kUnderWay) end_batches(StopReason::kInterrupted);
     arena_.execute([&] {
-      gather_what_is_small(scene_, room_.rays, schedule_, interrupt_, solution_);
+      gather_what_is_small(room_.room, schedule_, interrupt_, solution_);
       if (examination == Examination::kWhole)
-        examine_zones(scene_, room_, schedule_, progress, interrupt_, solution_);
-      record_error(scene_, solution_);
+        examine_zones(room_, schedule_, progress, interrupt_, solution_);
+      record_error(room_.room.surfaces(), solution_);
       record().seconds = seconds_since(begin_);
     });
     if (examination == Examination::kWhole) look_for_lost_light(room_, interrupt_, solution_);
@@ -272,13 +271,13 @@ class ProgressiveSolver::Run {
 
   void look_at_error() {
     state_.unshot_share = solution_.audit.worst_unshot_share();
-    record().error = zone_rms_error(scene_, solution_.mesh, solution_.sums);
+    record().error = zone_rms_error(room_.room.surfaces(), solution_.mesh, solution_.sums);
     state_.error = record().error;
     // The bound takes a longer look than the error: where it may end the run, and for information whenever
     // the work has doubled.
     const bool decides = rule_.may_reach_target(state_.batches, record().error);
     if (!decides && state_.weight < 2 * weight_of_bound_) return;
-    bound_ = zone_error(scene_, solution_.mesh, solution_.sums).bound;
+    bound_ = zone_error(room_.room.surfaces(), solution_.mesh, solution_.sums).bound;
     weight_of_bound_ = state_.weight;
     if (std::isfinite(bound_) && record().error > 0) bound_over_error_ = bound_ / record().error;
     if (decides) state_.error = bound_;
@@ -298,7 +297,6 @@ class ProgressiveSolver::Run {
     ahead_.reset();
   }
 
-  const Scene& scene_;
   const std::atomic<bool>& interrupt_;
   Solution solution_;
   Clock::time_point begin_;  // as if earlier sittings had just ended
@@ -345,7 +343,7 @@ std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution
   GatheredZones gathered;
   gathered.keep(solution.sums, bands, solution.gathered.zones);
   solution.gathered.restore(solution.sums, bands);
-  const double bound = zone_error(scene, solution.mesh, solution.sums).bound;
+  const double bound = zone_error(SurfaceModel(scene, solution.mesh), solution.mesh, solution.sums).bound;
   gathered.restore(solution.sums, bands);
 
   const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);

@@ -48,7 +48,7 @@ Table measure(const Options& options, const Jobs& jobs, const std::vector<std::s
   table.notes.push_back(machine_note(options));
   const ReferenceCache cache(options.reference_cache);
   const double seconds = seconds_of([&] {
-    for (const Room& room : find_rooms(options, table)) {
+    for (const StudiedRoom& room : find_rooms(options, table)) {
       if (!only.empty() && std::find(only.begin(), only.end(), room.name) == only.end()) continue;
       if (jobs.zones && !room.stills_only) measure_zones(room, options, cache, table);
       if (jobs.vertices && !room.stills_only) measure_vertices(room, options, cache, table);

@@ -23,7 +23,7 @@ struct Options {
 };
 
 /// A room and how much of it is measured.
-struct Room {
+struct StudiedRoom {
   std::string name;
   Scene scene;
   Camera camera;
@@ -37,16 +37,19 @@ struct Room {
 };
 
 /// The rooms that are there; what is missing is noted in `table`.
-std::vector<Room> find_rooms(const Options& options, Table& table);
+std::vector<StudiedRoom> find_rooms(const Options& options, Table& table);
 
 /// Zone solution by walks and by shooting, random and quasi-random: error over time. Adds rows and notes.
-void measure_zones(const Room& room, const Options& options, const ReferenceCache& cache, Table& table);
+void measure_zones(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
+                   Table& table);
 
 /// Vertex values by averaging zones and by gathering, solve included. Adds rows and notes.
-void measure_vertices(const Room& room, const Options& options, const ReferenceCache& cache, Table& table);
+void measure_vertices(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
+                      Table& table);
 
 /// Stills by the three integrators, solve included where a zone solution is read. Adds rows and notes.
-void measure_stills(const Room& room, const Options& options, const ReferenceCache& cache, Table& table);
+void measure_stills(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
+                    Table& table);
 
 /// Adds the row and prints it to stderr.
 void report(const Measurement& row, Table& table);

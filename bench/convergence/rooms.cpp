@@ -7,7 +7,7 @@
 #include "bench/convergence/jobs.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/room/room.h"
 #include "viewer_export/still/default_cameras.h"
 
 namespace reemit::bench {
@@ -29,8 +29,8 @@ Scene grey(Scene scene) {
 Camera first_camera(const Scene& scene) {
   if (!scene.cameras.empty()) return scene.cameras.front();
   const MeshResult mesh = build_mesh(scene);
-  const RayScene rays(mesh.mesh);
-  return default_cameras(scene, rays).front();
+  const Room walls(scene, mesh.mesh);
+  return default_cameras(walls).front();
 }
 
 /// A file below a folder, wherever it is.
@@ -46,11 +46,11 @@ std::optional<std::filesystem::path> find_below(const std::filesystem::path& fol
 
 }  // namespace
 
-std::vector<Room> find_rooms(const Options& options, Table& table) {
+std::vector<StudiedRoom> find_rooms(const Options& options, Table& table) {
   const std::filesystem::path library = std::filesystem::path(REEMIT_SOURCE_DIR) / "scenes/library";
-  std::vector<Room> rooms;
+  std::vector<StudiedRoom> rooms;
   {
-    Room box;
+    StudiedRoom box;
     box.name = "cornell_box";
     box.scene = read_scene(library / "cornell_box.json");
     box.camera = first_camera(box.scene);
@@ -60,7 +60,7 @@ std::vector<Room> find_rooms(const Options& options, Table& table) {
     box.path_samples = {16, 64, 256};
     box.vertex_stride = 13;
     box.vertex_zone_area = 3.1e-5;
-    Room grey_box = box;
+    StudiedRoom grey_box = box;
     grey_box.name = "cornell_box grey";
     grey_box.scene = grey(box.scene);
     grey_box.stills_only = true;
@@ -68,8 +68,8 @@ std::vector<Room> find_rooms(const Options& options, Table& table) {
     rooms.push_back(std::move(grey_box));
   }
   const auto add = [&](const std::string& name, const std::filesystem::path& file,
-                       double vertex_zone_area) -> Room& {
-    Room room;
+                       double vertex_zone_area) -> StudiedRoom& {
+    StudiedRoom room;
     room.name = name;
     room.scene = read_scene(file);
     room.camera = first_camera(room.scene);
@@ -78,7 +78,7 @@ std::vector<Room> find_rooms(const Options& options, Table& table) {
     return rooms.emplace_back(std::move(room));
   };
   {
-    Room& office = add("office", library / "office.json", 0.02);
+    StudiedRoom& office = add("office", library / "office.json", 0.02);
     office.vertex_stride = 19;
     office.picture_size = 96;  // its paths cost ten times those of the other rooms
     office.reference_samples = 2048;

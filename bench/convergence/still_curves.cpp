@@ -13,6 +13,7 @@
 #include "bench/convergence/jobs.h"
 #include "mesh/build_mesh.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "viewer_export/still/render_still.h"
 #include "viewer_export/still/tile_renderer.h"
 
@@ -32,7 +33,7 @@ constexpr std::array<Effort, 4> kZoneEfforts{{{1U << 15, 8}, {1U << 17, 8}, {1U 
 constexpr int kReferenceBlock = 16;
 
 /// Every so manyeth tile, shifted from row to row so that all parts of the picture have their share.
-std::vector<Tile> chosen_tiles(const Room& room) {
+std::vector<Tile> chosen_tiles(const StudiedRoom& room) {
   std::vector<Tile> tiles;
   const int size = room.picture_size;
   for (int y = 0; y < size; y += Tile::kSize)
@@ -58,12 +59,12 @@ std::vector<float> chosen_values(const StillImage& image, const std::vector<floa
   return values;
 }
 
-int reference_samples(const Room& room, const Options& options) {
+int reference_samples(const StudiedRoom& room, const Options& options) {
   return room.reference_samples / (options.quick ? 4 : 1);
 }
 
 /// Path tracing of the chosen tiles alone.
-Reference path_reference(const Room& room, const MeshResult& mesh, const std::vector<Tile>& tiles,
+Reference path_reference(const StudiedRoom& room, const MeshResult& mesh, const std::vector<Tile>& tiles,
                          const Options& options) {
   const std::atomic<bool> never{false};
   // Path tracing reads no zone value: any solution will do.
@@ -71,14 +72,14 @@ Reference path_reference(const Room& room, const MeshResult& mesh, const std::ve
   solver.threads = options.threads;
   solver.packets = 1U << 14;
   const Solution solution = solve(room.scene, mesh, solver, {}, never);
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene, solution.mesh);
   StillSettings settings;
   settings.integrator = Integrator::kPath;
   settings.seed = kReferenceSeed;
-  const PinholeCamera camera(room.camera, room.picture_size, room.picture_size, rays);
+  const PinholeCamera camera(room.camera, room.picture_size, room.picture_size, walls.rays());
   constexpr std::size_t kReplicates = Film::kReplicates;
   const StopToken stop(never);
-  const TileRenderer renderer(room.scene, solution, rays, camera, settings, kReplicates, stop);
+  const TileRenderer renderer(walls, solution, camera, settings, kReplicates, stop);
   Film film(room.scene.bands, room.picture_size, room.picture_size, kReplicates, renderer.parts());
   const int samples = reference_samples(room, options) / static_cast<int>(kReplicates);
   const int log2_samples = std::bit_width(static_cast<unsigned>(samples - 1));
@@ -101,7 +102,7 @@ Reference path_reference(const Room& room, const MeshResult& mesh, const std::ve
 
 class StillCurves {
  public:
-  StillCurves(const Room& room, const Options& options, const ReferenceCache& cache, Table& table)
+  StillCurves(const StudiedRoom& room, const Options& options, const ReferenceCache& cache, Table& table)
       : room_(room),
         options_(options),
         table_(table),
@@ -151,8 +152,8 @@ class StillCurves {
         seconds_of([&] { solution = solve(room_.scene, std::move(own_mesh), solver, {}, never_); });
     StillImage image;
     const double render_seconds = seconds_of([&] {
-      const RayScene rays(solution.mesh);
-      image = render_still(room_.scene, solution, rays, room_.camera, still, {}, never_);
+      const Room walls(room_.scene, solution.mesh);
+      image = render_still(walls, solution, room_.camera, still, {}, never_);
     });
     // What a picture of the zones costs, and how good it is, depends on their packets.
     const bool of_zones = integrator == Integrator::kZones;
@@ -165,7 +166,7 @@ class StillCurves {
   }
 
   const std::atomic<bool> never_{false};
-  const Room& room_;
+  const StudiedRoom& room_;
   const Options& options_;
   Table& table_;
   MeshResult mesh_;
@@ -177,7 +178,8 @@ class StillCurves {
 
 }  // namespace
 
-void measure_stills(const Room& room, const Options& options, const ReferenceCache& cache, Table& table) {
+void measure_stills(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
+                    Table& table) {
   StillCurves curves(room, options, cache, table);
   const std::size_t levels = kGatherEfforts.size() - (options.quick ? 1 : 0);
   for (int seed = 1; seed <= options.seeds; ++seed)

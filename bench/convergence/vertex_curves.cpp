@@ -15,6 +15,7 @@
 #include "bench/convergence/jobs.h"
 #include "mesh/build_mesh.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_radiance.h"
 
@@ -56,7 +57,7 @@ VertexKey key_of(const Vec3& position, const Vec3& normal, SurfaceId surface) {
 }
 
 /// Long gather at the chosen vertices.
-Reference gather_reference(const Room& room, const Solution& solution, const RayScene& rays,
+Reference gather_reference(const StudiedRoom& room, const Solution& solution, const Room& walls,
                            const VertexRings& rings, const std::vector<std::size_t>& chosen,
                            const Options& options) {
   VertexSettings settings;
@@ -66,7 +67,7 @@ Reference gather_reference(const Room& room, const Solution& solution, const Ray
   settings.light_samples = kReferenceLightSamples / (options.quick ? 4 : 1);
   const int points = settings.points_per_replicate();
   const std::atomic<bool> never{false};
-  const VertexGatherer gatherer(room.scene, solution, rays, rings, settings, points, StopToken(never));
+  const VertexGatherer gatherer(walls, solution, rings, settings, points, StopToken(never));
   const std::size_t bands = room.scene.bands.count();
   VertexData data;
   for (auto* values : {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance})
@@ -89,7 +90,7 @@ Reference gather_reference(const Room& room, const Solution& solution, const Ray
 
 class VertexCurves {
  public:
-  VertexCurves(const Room& room, const Options& options, const ReferenceCache& cache, Table& table)
+  VertexCurves(const StudiedRoom& room, const Options& options, const ReferenceCache& cache, Table& table)
       : room_(room),
         options_(options),
         cache_(cache),
@@ -114,7 +115,7 @@ class VertexCurves {
   }
 
  private:
-  static MeshSettings mesh_settings(const Room& room) {
+  static MeshSettings mesh_settings(const StudiedRoom& room) {
     MeshSettings settings;
     settings.zone_area = room.vertex_zone_area;
     return settings;
@@ -127,8 +128,8 @@ class VertexCurves {
     settings.seed = kReferenceSeed;
     settings.packets = 1U << 17;
     Solution solution = solve(room_.scene, mesh_, settings, {}, never_);
-    const RayScene rays(solution.mesh);
-    const VertexRings rings(room_.scene, solution, false);
+    const Room walls(room_.scene, solution.mesh);
+    const VertexRings rings(walls.surfaces(), solution, false);
     vertex_count_ = rings.size();
     std::vector<std::size_t> chosen;
     for (std::size_t v = 0; v < rings.size(); v += static_cast<std::size_t>(room_.vertex_stride)) {
@@ -144,7 +145,7 @@ class VertexCurves {
                                          chosen.size(), settings.packets);
     reference_ = cache_.get(name, [&] {
       const Solution longer = solve(room_.scene, mesh_, settings, {}, never_);
-      return gather_reference(room_, longer, rays, rings, chosen, options_);
+      return gather_reference(room_, longer, walls, rings, chosen, options_);
     });
     for (std::size_t k = 0; k < emitted_.size(); ++k) reference_.value[k] -= emitted_[k];
   }
@@ -184,8 +185,8 @@ class VertexCurves {
     double rays_traced = 0;
     const double seconds = seconds_of([&] {
       const Solution solution = solve(room_.scene, std::move(own_mesh), solver, {}, never_);
-      const RayScene rays(solution.mesh);
-      data = gather_vertices(room_.scene, solution, rays, vertices, {}, never_);
+      const Room walls(room_.scene, solution.mesh);
+      data = gather_vertices(walls, solution, vertices, {}, never_);
       rays_traced = static_cast<double>(solution.record.rays);
     });
     rays_traced += static_cast<double>(data.vertex_count()) * (effort.gather_rays + effort.light_samples);
@@ -195,7 +196,7 @@ class VertexCurves {
   }
 
   const std::atomic<bool> never_{false};
-  const Room& room_;
+  const StudiedRoom& room_;
   const Options& options_;
   const ReferenceCache& cache_;
   Table& table_;
@@ -210,7 +211,8 @@ class VertexCurves {
 
 }  // namespace
 
-void measure_vertices(const Room& room, const Options& options, const ReferenceCache& cache, Table& table) {
+void measure_vertices(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
+                      Table& table) {
   VertexCurves curves(room, options, cache, table);
   for (int seed = 1; seed <= options.seeds; ++seed)
     for (std::size_t level = 0; level < std::max(kAveragePackets.size(), kGatherEfforts.size()); ++level)

@@ -36,7 +36,8 @@ std::string method_name(SolveMethod method, SamplingKind sampling) {
 
 }  // namespace
 
-void measure_zones(const Room& room, const Options& options, const ReferenceCache& cache, Table& table) {
+void measure_zones(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
+                   Table& table) {
   const std::atomic<bool> never{false};
   const MeshResult mesh = build_mesh(room.scene);
   const std::size_t levels = kPackets.size() - (options.quick ? 1 : 0);

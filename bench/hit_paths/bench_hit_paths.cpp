@@ -44,7 +44,7 @@ std::vector<Camera> cameras_of(const Scene& scene, std::size_t most) {
   std::vector<Camera> cameras = scene.cameras;
   if (cameras.empty()) {
     const ZoneMesh mesh = build_mesh(scene).mesh;
-    cameras = default_cameras(scene, RayScene(mesh));
+    cameras = default_cameras(Room(scene, mesh));
   }
   cameras.resize(std::min(cameras.size(), most));
   return cameras;

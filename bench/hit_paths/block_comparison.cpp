@@ -10,6 +10,7 @@
 
 #include "bench/hit_paths/hit_path_tracer.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 
 namespace reemit::hit_paths {
 namespace {
@@ -132,8 +133,8 @@ std::vector<CheckedBlock> render(const Scene& scene, const Camera& camera,
     solver.seed = settings.seed * kRenderings + static_cast<std::uint64_t>(rendering);
     still.seed = solver.seed;
     const Solution solution = solve_zones(scene, mesh, solver, {}, never);
-    const RayScene rays(solution.mesh);
-    const StillImage image = render_still(scene, solution, rays, camera, still, {}, never);
+    const Room walls(scene, solution.mesh);
+    const StillImage image = render_still(walls, solution, camera, still, {}, never);
     auto next = found.begin();
     for (int i = 0; i < blocks; ++i)
       for (std::size_t b = 0; b < scene.bands.count(); ++b)

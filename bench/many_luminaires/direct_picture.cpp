@@ -64,8 +64,8 @@ class PixelRenderer {
       if (hit.front || surface.back_emits)
         for (std::size_t b = 0; b < bands; ++b) emitted[b] += surface.emitted[b];
       if (hit.front || surface.back_reflects)
-        light_->add_sample(surface_point(room_->rays(), hit), sampler.light(s, 0, 1), surface.brdf.data(),
-                           reflected.data());
+        light_->add_sample(surface_point(room_->rays(), hit, ray.direction), sampler.light(s, 0, 1),
+                           surface.brdf.data(), reflected.data());
     }
     store(emitted, &picture.emitted[3 * pixel]);
     store(reflected, &picture.reflected[3 * pixel]);

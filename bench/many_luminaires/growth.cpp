@@ -47,9 +47,10 @@ std::vector<SurfacePoint> wall_points(const LitRoom& room, std::size_t count) {
   for (std::size_t i = 0; points.size() < count; ++i) {
     const std::array<float, 4> u = rng.uniform4(i, 0, 0);
     Hit hit;
-    if (!room.rays().closest(middle, sample_sphere(u[0], u[1]), hit)) continue;
+    const Vec3f direction = sample_sphere(u[0], u[1]);
+    if (!room.rays().closest(middle, direction, hit)) continue;
     if (room.rays().mesh().triangle(hit.triangle).surface.index() != 0) continue;
-    points.push_back(surface_point(room.rays(), hit));
+    points.push_back(surface_point(room.rays(), hit, direction));
   }
   return points;
 }

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "solver/gather/direct_light.h"
-#include "solver/gather/surface_point.h"
+#include "solver/trace/surface_point.h"
 
 namespace reemit::bench {
 

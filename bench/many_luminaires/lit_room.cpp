@@ -8,10 +8,11 @@
 
 namespace reemit::bench {
 
-LitRoom::LitRoom(Scene scene) : scene_(std::move(scene)), mesh_(build_mesh(scene_)), rays_(mesh_.mesh) {}
+LitRoom::LitRoom(Scene scene)
+    : scene_(std::move(scene)), mesh_(build_mesh(scene_)), room_(scene_, mesh_.mesh) {}
 
 DirectLight LitRoom::light(std::optional<Selection> selection) const {
-  return {scene_, rays_, DirectLightSettings{.selection = selection}};
+  return DirectLight(room_, DirectLightSettings{.selection = selection});
 }
 
 const Camera& camera_named(const Scene& scene, const std::string& name) {
@@ -29,7 +30,7 @@ std::vector<SurfacePoint> seen_points(const LitRoom& room, const Camera& camera,
       const PinholeCamera::Ray ray = pinhole.ray(x + 0.5, y + 0.5);
       Hit hit;
       if (room.rays().closest_for_camera(ray.origin, ray.direction, hit))
-        points.push_back(surface_point(room.rays(), hit));
+        points.push_back(surface_point(room.rays(), hit, ray.direction));
     }
   return points;
 }

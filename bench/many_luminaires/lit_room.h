@@ -7,8 +7,8 @@
 #include "scenes/model/scene.h"
 #include "solver/emit/selection.h"
 #include "solver/gather/direct_light.h"
-#include "solver/gather/surface_point.h"
 #include "solver/trace/ray_scene.h"
+#include "solver/trace/surface_point.h"
 
 namespace reemit::bench {
 
@@ -20,14 +20,14 @@ class LitRoom {
   LitRoom& operator=(const LitRoom&) = delete;
 
   const Scene& scene() const { return scene_; }
-  const RayScene& rays() const { return rays_; }
+  const RayScene& rays() const { return room_.rays(); }
   /// Unset: the selection that the program takes by default.
   DirectLight light(std::optional<Selection> selection) const;
 
  private:
   Scene scene_;
   MeshResult mesh_;
-  RayScene rays_;
+  Room room_;
 };
 
 /// Throws std::runtime_error if the room has no camera of this name.

@@ -20,11 +20,10 @@ constexpr int kMostSamples = 1 << 18;
 
 /// Rows need the standard error aimed at: a pilot run with numbers of its own says how many samples that
 /// takes, so that the choice does not depend on the numbers that are then averaged.
-Estimates estimate(const Scene& scene, const RayScene& rays, const SurfacePoint& x, const std::string& id,
-                   const Effort& effort) {
+Estimates estimate(const Room& room, const SurfacePoint& x, const std::string& id, const Effort& effort) {
   const std::uint64_t seed = seed_of(id);
   constexpr int kPilot = 64;
-  const Estimates pilot = direct_irradiance(scene, rays, x, kPilot, ~seed);
+  const Estimates pilot = direct_irradiance(room, x, kPilot, ~seed);
   const ValidationRow about = make_row({}, {}, {}, pilot, 0);
   double samples = kPilot;
   if (about.measured > 0) {
@@ -33,7 +32,7 @@ Estimates estimate(const Scene& scene, const RayScene& rays, const SurfacePoint&
   }
   int count = kFewestSamples;
   while (count < samples && count < kMostSamples) count *= 2;
-  return direct_irradiance(scene, rays, x, count, seed);
+  return direct_irradiance(room, x, count, seed);
 }
 
 Vec3 middle_of(const Surface& luminaire) {
@@ -88,11 +87,12 @@ ValidationRow lit_point(const ReferenceCase& c, const ReferenceValue& v, CodeRoo
   const double distance = (middle_of(room.scene().surfaces.front()) - point).norm();
   const Receiver receiver(room, point, normal, 1e-3 * distance);
   const MeshResult mesh = room.exact_zones();
-  const RayScene rays(mesh.mesh);
+  const Room walls(room.scene(), mesh.mesh);
   constexpr float kThird = 1.0F / 3;
   // The receiver is the last flat triangle: patches of round shapes come after all flat ones.
-  const SurfacePoint x = surface_point(rays, TriangleId(mesh.mesh.flat_count() - 1), kThird, kThird, true);
-  return make_row(c, v, "direct light", estimate(room.scene(), rays, x, v.id, effort), kPointBound);
+  const SurfacePoint x =
+      surface_point(walls.rays(), TriangleId(mesh.mesh.flat_count() - 1), kThird, kThird, true);
+  return make_row(c, v, "direct light", estimate(walls, x, v.id, effort), kPointBound);
 }
 
 ValidationRow from_luminaire(const ReferenceCase& c, const Effort& effort) {
@@ -135,12 +135,12 @@ void add_point_source(const ReferenceCase& c, const Effort& effort, std::vector<
   room.scene().lights.push_back(PointLight{"lamp", to_vec3(p.at("source")),
                                            Spectrum::Constant(1, p.at("flux").get<double>() / (4 * kPi))});
   const MeshResult mesh = room.exact_zones();
-  const RayScene rays(mesh.mesh);
+  const Room walls(room.scene(), mesh.mesh);
   for (std::size_t i = 0; i < c.values.size(); ++i) {
     const json& r = p.at("receivers")[i];
-    const SurfacePoint x = point_on(rays, to_vec3(r.at("point")), to_vec3(r.at("normal")));
-    rows.push_back(make_row(c, c.values[i], "direct light",
-                            estimate(room.scene(), rays, x, c.values[i].id, effort), kPointBound));
+    const SurfacePoint x = point_on(walls.rays(), to_vec3(r.at("point")), to_vec3(r.at("normal")));
+    rows.push_back(
+        make_row(c, c.values[i], "direct light", estimate(walls, x, c.values[i].id, effort), kPointBound));
   }
 }
 
@@ -151,15 +151,15 @@ void add_cornell_blocks(const std::vector<ReferenceCase>& cases, const Effort& e
   for (Material& m : scene.materials)
     if (m.emits()) m.emitted_radiance.setConstant(1);
   const MeshResult mesh = build_mesh(scene);
-  const RayScene rays(mesh.mesh);
+  const Room walls(scene, mesh.mesh);
   for (const ReferenceCase& c : cases) {
     if (c.kind != "irr_cornell_blocks") continue;
     constexpr double kMetresPerMillimetre = 1e-3;
     const json& r = c.parameters.at("receiver");
     const SurfacePoint x =
-        point_on(rays, kMetresPerMillimetre * to_vec3(r.at("point")), to_vec3(r.at("normal")));
+        point_on(walls.rays(), kMetresPerMillimetre * to_vec3(r.at("point")), to_vec3(r.at("normal")));
     const ReferenceValue& v = c.values.front();
-    rows.push_back(make_row(c, v, "direct light", estimate(scene, rays, x, v.id, effort), kPointBound));
+    rows.push_back(make_row(c, v, "direct light", estimate(walls, x, v.id, effort), kPointBound));
   }
 }
 

@@ -5,6 +5,7 @@
 #include "bench/validation/families.h"
 #include "bench/validation/point_gather.h"
 #include "scenes/io/photometry/ies_reader.h"
+#include "solver/room/room.h"
 #include "solver/sampling/warp.h"
 
 namespace reemit::validation {
@@ -44,9 +45,9 @@ class Hanging {
 };
 
 /// Area mean over a disk about the foot of the luminaire.
-Estimates mean_on_disk(const Hanging& room, const RayScene& rays, double radius, const std::string& id,
+Estimates mean_on_disk(const Hanging& room, const Room& walls, double radius, const std::string& id,
                        const Effort& effort) {
-  const DirectLight direct(room.scene(), rays);
+  const DirectLight direct(walls);
   int samples = 64;
   while (samples < 4096 * effort.work) samples *= 2;
   Estimates estimates;
@@ -58,7 +59,7 @@ Estimates mean_on_disk(const Hanging& room, const RayScene& rays, double radius,
       const auto at = [&](int dimension) { return numbers.sample(static_cast<std::uint32_t>(k), dimension); };
       const Point2 d = sample_disk(at(3), at(4));
       direct.add_sample(
-          room.place(rays, radius * static_cast<double>(d.x), radius * static_cast<double>(d.y)),
+          room.place(walls.rays(), radius * static_cast<double>(d.x), radius * static_cast<double>(d.y)),
           {at(0), at(1), at(2)}, &weight, &sum);
     }
     estimates.push_back(static_cast<double>(sum));
@@ -78,21 +79,20 @@ std::vector<ValidationRow> evaluate_measured_luminaires(const std::vector<Refere
     const MeasuredLuminaire luminaire =
         read_ies_file(REEMIT_SOURCE_DIR "/bench/validation/luminaires/" + file);
     const Hanging room(luminaire, c.parameters.at("h"));
-    const RayScene rays(room.mesh());
+    const Room walls(room.scene(), room.mesh());
     for (const ReferenceValue& v : c.values) {
       if (v.quantity == "total_flux_lm") {
         rows.push_back(make_row(c, v, "closed form",
                                 Estimates(SolvedRoom::kReplicates, luminaire.table->total_flux()),
                                 kClosedForm));
       } else if (v.point) {
-        rows.push_back(
-            make_row(c, v, "direct light",
-                     direct_irradiance(room.scene(), rays, room.place(rays, v.point->x(), v.point->y()),
-                                       kSamples, seed_of(v.id)),
-                     kPointBound));
+        rows.push_back(make_row(c, v, "direct light",
+                                direct_irradiance(walls, room.place(walls.rays(), v.point->x(), v.point->y()),
+                                                  kSamples, seed_of(v.id)),
+                                kPointBound));
       } else if (v.quantity == "E_mean_disk") {
         rows.push_back(make_row(c, v, "direct light",
-                                mean_on_disk(room, rays, c.parameters.at("disk_radius"), v.id, effort),
+                                mean_on_disk(room, walls, c.parameters.at("disk_radius"), v.id, effort),
                                 kPointBound));
       } else {
         throw std::invalid_argument("unknown quantity " + v.quantity);

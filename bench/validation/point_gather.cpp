@@ -70,12 +70,11 @@ SurfacePoint point_on(const RayScene& rays, const Vec3& point, const Vec3& norma
 }
 
 PointGather::PointGather(const SolvedRoom& room, std::uint64_t seed, double close_hit)
-    : room_(&room), seed_(seed), direct_(room.scene(), room.rays()) {
+    : room_(&room), seed_(seed), direct_(room.room()) {
   fields_.reserve(room.solutions().size());
-  for (const Solution& s : room.solutions())
-    fields_.emplace_back(room.scene(), s, room.rays(), ZoneSums::kGroups);
+  for (const Solution& s : room.solutions()) fields_.emplace_back(room.room(), s, ZoneSums::kGroups);
   for (const RadianceField& field : fields_)
-    gathers_.emplace_back(room.rays(), field, direct_, GatherSettings{.close_hit = close_hit, .seed = seed});
+    gathers_.emplace_back(field, direct_, GatherSettings{.close_hit = close_hit, .seed = seed});
 }
 
 template <class PlaceOf>
@@ -141,13 +140,12 @@ std::vector<Estimates> PointGather::means(const std::vector<SurfaceId>& surfaces
                 [&](const std::array<float, 2>& u) { return area.place(room_->rays(), u); });
 }
 
-Estimates direct_irradiance(const Scene& scene, const RayScene& rays, const SurfacePoint& x, int samples,
-                            std::uint64_t seed) {
-  const DirectLight direct(scene, rays);
+Estimates direct_irradiance(const Room& room, const SurfacePoint& x, int samples, std::uint64_t seed) {
+  const DirectLight direct(room);
   Estimates result(SolvedRoom::kReplicates, 0.0);
   tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t r) {
     const std::array<std::uint32_t, 4> bits = CounterRng(seed, RngPurpose::kProbe).bits4(r, 0, 0);
-    std::vector<double> sum(scene.bands.count(), 0.0);
+    std::vector<double> sum(room.band_count(), 0.0);
     direct.add_samples(x, SobolSequence(std::uint64_t{bits[0]} << 32 | bits[1]), 0, samples, sum.data());
     result[r] = sum[0] / samples;
   });

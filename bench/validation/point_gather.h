@@ -49,8 +49,7 @@ class PointGather {
 };
 
 /// Direct irradiance [W/m2] at a point in kReplicates independent estimates of `samples` shadow rays each.
-Estimates direct_irradiance(const Scene& scene, const RayScene& rays, const SurfacePoint& x, int samples,
-                            std::uint64_t seed);
+Estimates direct_irradiance(const Room& room, const SurfacePoint& x, int samples, std::uint64_t seed);
 
 /// Relative bound of what single precision and ray starts 1e-6 of the room off their surface do to light at
 /// points.

@@ -25,7 +25,7 @@ SolvedRoom::SolvedRoom(const Scene& scene, const MeshResult& mesh, SolveMethod m
     if (solutions_.back().sums.batches != static_cast<std::int64_t>(ZoneSums::kGroups))
       throw std::logic_error("a validation solve has not run the batches it was asked for");
   }
-  rays_ = std::make_unique<RayScene>(this->mesh());
+  room_ = std::make_unique<Room>(scene, this->mesh());
 }
 
 SurfaceId SolvedRoom::surface(const std::string& name) const {

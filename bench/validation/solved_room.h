@@ -6,8 +6,8 @@
 #include "bench/validation/validation_row.h"
 #include "mesh/build_mesh.h"
 #include "scenes/model/scene.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 
 namespace reemit::validation {
 
@@ -25,7 +25,8 @@ class SolvedRoom {
 
   const Scene& scene() const { return *scene_; }
   const ZoneMesh& mesh() const { return solutions_.front().mesh; }
-  const RayScene& rays() const { return *rays_; }
+  const Room& room() const { return *room_; }
+  const RayScene& rays() const { return room_->rays(); }
   const std::vector<Solution>& solutions() const { return solutions_; }
   SurfaceId surface(const std::string& name) const;  ///< Throws std::out_of_range.
   double area(SurfaceId s) const;                    ///< Of the fronts [m2].
@@ -51,7 +52,7 @@ class SolvedRoom {
 
   const Scene* scene_;
   std::vector<Solution> solutions_;
-  std::unique_ptr<RayScene> rays_;
+  std::unique_ptr<Room> room_;
 };
 
 /// Each estimate times a factor.

@@ -28,7 +28,7 @@ ZoneMesh::ZoneMesh(BaseMesh base) : base_(std::move(base)) {
   const std::size_t count = base_.triangles.size();
   triangle_area_.reserve(count);
   triangle_normal_.reserve(count);
-  first_zone_.reserve(2 * count);
+  sides_.reserve(2 * count);
   std::size_t zones = 0;
   for (const BaseTriangle& t : base_.triangles) {
     for (const std::uint32_t v : t.vertex)
@@ -49,8 +49,8 @@ ZoneMesh::ZoneMesh(BaseMesh base) : base_(std::move(base)) {
       triangle_normal_.push_back(length > 0 ? Vec3(cross / length) : Vec3(Vec3::UnitZ()));
     }
     const std::size_t per_side = std::size_t{t.divisions} * t.divisions;
-    first_zone_.emplace_back(zones);
-    first_zone_.push_back(t.two_sided ? ZoneId(zones + per_side) : ZoneId());
+    sides_.push_back({ZoneId(zones), t.divisions});
+    sides_.push_back({t.two_sided ? ZoneId(zones + per_side) : ZoneId(), t.divisions});
     zones += (t.two_sided ? 2 : 1) * per_side;
     if (zones >= std::numeric_limits<std::uint32_t>::max())
       throw std::invalid_argument("more than 2^32-2 zones");

@@ -36,9 +36,17 @@ struct BaseMesh {
   std::vector<CurvedShape> shapes;
 };
 
-/// Base triangles and their zones. A zone is one cell of a base triangle seen from one side; the back of a
-/// two-sided triangle has zones of its own, numbered like those of its front. No radiometric value is stored
-/// here.
+/// A point on one side of a base triangle.
+struct SidePoint {
+  TriangleId triangle;
+  Barycentric at;
+  bool front = true;
+};
+
+/// Base triangles and their zones: the one place that knows what a zone is, which zone a point belongs to,
+/// and where the points of a zone are. A zone is one cell of a base triangle seen from one side; the back of
+/// a two-sided triangle has zones of its own, numbered like those of its front. No radiometric value is
+/// stored here.
 class ZoneMesh {
  public:
   /// Throws std::invalid_argument when an index is out of range, patches are not in order, divisions is 0 or
@@ -68,10 +76,24 @@ class ZoneMesh {
   TriangleId first_patch(std::size_t shape) const { return first_patch_[shape]; }
 
   /// First zone on the given side; not valid for the back of a one-sided triangle.
-  ZoneId first_zone(TriangleId t, bool front) const { return first_zone_[2 * t.index() + (front ? 0 : 1)]; }
-  /// Zone that holds barycentric point (u,v) of the given side, in constant time. Pre: that side has zones.
+  ZoneId first_zone(TriangleId t, bool front) const { return side(t, front).first_zone; }
+  /// The back of a one-sided triangle has none.
+  bool has_zones(TriangleId t, bool front) const { return first_zone(t, front).valid(); }
+  /// Zone that holds barycentric point (u,v) of the given side, in constant time; not valid if that side has
+  /// none.
   ZoneId zone_at(TriangleId t, float u, float v, bool front) const {
-    return ZoneId(first_zone(t, front).index() + zone_in_triangle(triangle(t).divisions, u, v));
+    const Side& s = side(t, front);
+    return s.first_zone.valid() ? ZoneId(s.first_zone.index() + zone_in_triangle(s.divisions, u, v))
+                                : ZoneId();
+  }
+  /// The point of a zone that is a and b of its edges away from its first corner: uniform over the zone for
+  /// a, b uniform over the triangle a, b >= 0, a + b <= 1.
+  SidePoint zone_point(ZoneId z, float a, float b) const {
+    const auto corner = zone_barycentrics(z);
+    const auto inside = [&](double Barycentric::*k) {
+      return (1 - a - b) * corner[0].*k + a * corner[1].*k + b * corner[2].*k;
+    };
+    return {zone_triangle(z), {inside(&Barycentric::u), inside(&Barycentric::v)}, zone_is_front(z)};
   }
 
   TriangleId zone_triangle(ZoneId z) const { return zone_triangle_[z.index()]; }  ///< The zone's parent.
@@ -87,6 +109,12 @@ class ZoneMesh {
   Vec3 zone_centroid(ZoneId z) const;  ///< [m]
 
  private:
+  struct Side {
+    ZoneId first_zone;
+    std::uint32_t divisions;
+  };
+
+  const Side& side(TriangleId t, bool front) const { return sides_[2 * t.index() + (front ? 0 : 1)]; }
   ZoneId back_begin(TriangleId t) const {
     const BaseTriangle& tri = triangle(t);
     return ZoneId(first_zone(t, true).index() + std::size_t{tri.divisions} * tri.divisions);
@@ -100,7 +128,7 @@ class ZoneMesh {
   std::vector<TriangleId> first_patch_;
   std::vector<double> triangle_area_;
   std::vector<Vec3> triangle_normal_;
-  std::vector<ZoneId> first_zone_;  // front, back of each triangle
+  std::vector<Side> sides_;  // front, back of each triangle
   std::vector<TriangleId> zone_triangle_;
 };
 

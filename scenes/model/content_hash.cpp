@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <iterator>
 #include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -27,11 +30,29 @@ class Hasher {
     add(static_cast<std::uint64_t>(s.size()));
     for (const double x : s) add(x);
   }
+  void add(const std::vector<double>& numbers) {
+    add(std::uint64_t{numbers.size()});
+    for (const double x : numbers) add(x);
+  }
   std::uint64_t state() const { return state_; }
 
  private:
   std::uint64_t state_ = 0xcbf29ce484222325ULL;
 };
+
+/// Nothing is added for a material without such a part.
+void add_non_diffuse(Hasher& hash, const NonDiffusePart& part) {
+  const NonDiffusePart none;
+  const Spectrum* shares[] = {&part.specular_reflectance, &part.diffuse_transmittance,
+                              &part.specular_transmittance};
+  const double numbers[] = {part.roughness, part.transmission_roughness, part.index_of_refraction};
+  const double defaults[] = {none.roughness, none.transmission_roughness, none.index_of_refraction};
+  if (std::all_of(std::begin(shares), std::end(shares), [](const Spectrum* s) { return s->size() == 0; }) &&
+      std::equal(std::begin(numbers), std::end(numbers), std::begin(defaults)))
+    return;
+  for (const Spectrum* share : shares) hash.add(*share);
+  for (const double number : numbers) hash.add(number);
+}
 
 void add_material(Hasher& hash, const Material& m) {
   hash.add(m.reflectance);
@@ -39,6 +60,7 @@ void add_material(Hasher& hash, const Material& m) {
   hash.add(m.two_sided);
   hash.add(m.emits_both_sides);
   if (m.emission_exponent != 0) hash.add(m.emission_exponent);
+  add_non_diffuse(hash, m.non_diffuse);
 }
 
 // The corners themselves rather than their indices, so that vertices no face uses do not count.
@@ -75,42 +97,6 @@ void add_surface(Hasher& hash, const Surface& surface) {
   for (const CurvedShape& shape : surface.shapes) add_shape(hash, shape);
 }
 
-void add_numbers(Hasher& hash, const std::vector<double>& numbers) {
-  hash.add(std::uint64_t{numbers.size()});
-  for (const double x : numbers) hash.add(x);
-}
-
-void add_light(Hasher& hash, const PointLight& l) {
-  hash.add(l.position);
-  hash.add(l.intensity);
-}
-
-void add_light(Hasher& hash, const SpotLight& l) {
-  hash.add(l.position);
-  hash.add(l.intensity);
-  hash.add(l.direction);
-  hash.add(l.inner_angle);
-  hash.add(l.outer_angle);
-}
-
-void add_light(Hasher& hash, const DirectionalLight& l) {
-  hash.add(l.irradiance);
-  hash.add(l.direction);
-}
-
-void add_light(Hasher& hash, const PhotometricLight& l) {
-  hash.add(l.position);
-  for (int axis = 0; axis < 3; ++axis) hash.add(Vec3(l.orientation.col(axis)));
-  hash.add(l.intensity_per_candela);
-  hash.add(static_cast<std::uint64_t>(l.table->type()));
-  add_numbers(hash, l.table->polar());
-  add_numbers(hash, l.table->azimuth());
-  add_numbers(hash, l.table->candela());
-  hash.add(static_cast<std::uint64_t>(l.opening.shape));
-  hash.add(static_cast<std::uint64_t>(l.opening.axis));
-  hash.add(l.opening.size());
-}
-
 }  // namespace
 
 std::string content_hash(const Scene& scene) {
@@ -126,7 +112,7 @@ std::string content_hash(const Scene& scene) {
   hash.add(std::uint64_t{scene.lights.size()});
   for (const PunctualLight& light : scene.lights) {
     hash.add(std::uint64_t{light.index()});
-    std::visit([&hash](const auto& l) { add_light(hash, l); }, light);
+    std::visit([&hash](const auto& l) { l.for_each_value([&hash](const auto& x) { hash.add(x); }); }, light);
   }
   return fmt::format("{:016x}", hash.state());
 }

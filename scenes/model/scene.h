@@ -49,8 +49,8 @@ struct Box {
 /// Bounding box of all faces and shapes [m]; a box of zero size if there are none.
 Box bounds(const Scene& scene);
 
-/// Content hash of everything that light transport depends on (geometry, materials, lights, bands; not
-/// cameras, names or paths), as 16 hex digits.
+/// Content hash of everything that light transport depends on, or will once it is simulated (geometry, all of
+/// the materials, lights, bands; not cameras, names or paths), as 16 hex digits.
 std::string content_hash(const Scene& scene);
 
 }  // namespace reemit

@@ -215,6 +215,7 @@ bool AreaLuminaire::sample(const Vec3& x, const Vec3& n, double u0, double u1, A
   result.point = drawn.point;
   result.normal = drawn.normal;
   result.factor = drawn.irradiance;
+  result.pdf_per_sr = drawn.pdf_per_sr;
   if (exponent_ > 0) result.factor *= std::pow(drawn.cos_emit, exponent_);
   return true;
 }

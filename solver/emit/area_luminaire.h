@@ -19,6 +19,7 @@ struct AreaSample {
   /// What arrives per unit of radiance along the normal over the density of the point [sr]: cos(theta) over
   /// the density per solid angle, times cos^e at the luminaire.
   double factor = 0;
+  double pdf_per_sr = 0;  ///< Density of the direction to the point [1/sr].
 };
 
 /// One emitting side of a shape with an area, in the normalised space, as direct light sees it. Which density

@@ -59,12 +59,13 @@ Vec3 front_of_piece(const ZoneMesh& mesh, TriangleId t, const Pieces& pieces) {
 
 }  // namespace
 
-std::vector<LuminaireFace> luminaire_faces(const Scene& scene, const ZoneMesh& mesh) {
+std::vector<LuminaireFace> luminaire_faces(const Room& room) {
+  const ZoneMesh& mesh = room.mesh();
   std::map<std::pair<SurfaceId, std::uint32_t>, Pieces> by_face;
   for (std::size_t i = 0; i < mesh.flat_count(); ++i) {
     const TriangleId t(i);
     const BaseTriangle& triangle = mesh.triangle(t);
-    if (!scene.material_of(scene.surfaces[triangle.surface.index()]).emits()) continue;
+    if (!room.surfaces().emits(triangle.surface)) continue;
     if (!(mesh.triangle_area(t) > 0)) continue;
     Pieces& pieces = by_face[{triangle.surface, triangle.face}];
     pieces.triangles.push_back(t);
@@ -73,8 +74,8 @@ std::vector<LuminaireFace> luminaire_faces(const Scene& scene, const ZoneMesh& m
   }
   std::vector<LuminaireFace> faces;
   for (const auto& [key, pieces] : by_face) {
-    const Surface& surface = scene.surfaces[key.first.index()];
-    const bool two_sided = mesh.triangle(pieces.triangles.front()).two_sided;
+    const Surface& surface = room.scene().surfaces[key.first.index()];
+    const bool both_sides = room.surfaces().emits(pieces.triangles.front(), false);
     std::vector<Vec3> corners;
     if (key.second < surface.faces.size()) corners = convex_corners(surface, surface.faces[key.second]);
     const Vec3 outline_area = vector_area(corners);
@@ -82,14 +83,14 @@ std::vector<LuminaireFace> luminaire_faces(const Scene& scene, const ZoneMesh& m
       // The outline knows the plane, the mesh which of its sides is the front.
       const Vec3 normal = outline_area.normalized();
       const bool reversed = normal.dot(pieces.vector_area) < 0;
-      faces.push_back({std::move(corners), reversed ? Vec3(-normal) : normal, key.first, two_sided});
+      faces.push_back({std::move(corners), reversed ? Vec3(-normal) : normal, key.first, both_sides});
       continue;
     }
     for (const TriangleId t : pieces.triangles)
       faces.push_back({{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)},
                        front_of_piece(mesh, t, pieces),
                        key.first,
-                       two_sided});
+                       both_sides});
   }
   return faces;
 }

@@ -3,27 +3,21 @@
 #include <cstdint>
 #include <vector>
 
-#include "scenes/model/scene.h"
 #include "solver/emit/area_luminaire.h"
 #include "solver/emit/light_tree.h"
+#include "solver/emit/luminaire_sample.h"
 #include "solver/emit/punctual_emitter.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/room/room.h"
 
 namespace reemit {
-
-/// Where a shadow ray for one luminaire goes, and what arrives if it gets through.
-struct LuminaireSample {
-  float factor = 0;          ///< Irradiance per unit of emission() over the density of the sample.
-  bool at_infinity = false;  ///< `target` is a unit direction towards the luminaire, else a point.
-  Vec3f target{0, 0, 0};     ///< Normalised; a ray origin just off the luminaire.
-};
 
 /// Everything that emits, as seen by direct light: one entry per emitting side of a convex polygon, of a
 /// curved shape, or of a base triangle of any other face; then the lights that rays do not see. Entries of
 /// zero power are left out.
 class LuminaireTable {
  public:
-  LuminaireTable(const Scene& scene, const RayScene& rays);
+  /// The room must outlive it.
+  explicit LuminaireTable(const Room& room);
 
   std::size_t size() const { return brightness_.size(); }
   bool empty() const { return brightness_.empty(); }
@@ -48,18 +42,15 @@ class LuminaireTable {
   const std::vector<std::uint32_t>& entries_at_infinity() const { return at_infinity_; }
 
  private:
-  void add_surfaces(const Scene& scene);
+  void add_surfaces(const Room& room);
   void add_lights(const Scene& scene);
-  LuminaireBounds bounds_of_light(std::size_t i) const;
   void build_tree();
-  void add_area(AreaLuminaire luminaire, const Material& material);
   void add_emission(const Spectrum& emission);
 
   const RayScene* rays_;
   std::size_t bands_;
   std::vector<AreaLuminaire> areas_;
   std::vector<PunctualEmitter> punctual_;
-  std::vector<const PunctualLight*> lights_;  // of the room, as punctual_
   std::vector<float> emission_;
   std::vector<float> brightness_;
   LightTree tree_;

@@ -10,20 +10,40 @@
 #include "solver/emit/opening_sampler.h"
 
 namespace reemit {
+namespace {
 
-PhotometricEmitter::PhotometricEmitter(const PhotometricLight& light, const RayScene& rays)
-    : table_(light.table),
-      opening_(light.opening),
-      centre_(rays.normalised(light.position).cast<double>()),
-      to_room_(light.orientation),
-      metres_(rays.metres_per_unit()) {
-  const double extent = opening_extent(opening_) / metres_;
-  extent2_ = extent * extent;
-  nearest2_ = kNearest * kNearest * extent2_;
+/// Mean direction of the light, or the nadir where it goes to all sides alike; luminaire coordinates.
+Vec3 main_direction(const IntensityTable& table) {
+  constexpr int kSteps = 64;
+  constexpr double kAllSidesAlike = 0.02;
+  Vec3 sum = Vec3::Zero();
+  double total = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < 2 * kSteps; ++j) {
+      const double z = 1 - (2 * i + 1.0) / kSteps;
+      const double azimuth = std::numbers::pi * (j + 0.5) / kSteps;
+      const double r = std::sqrt(1 - z * z);
+      const Vec3 direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
+      const double candela = table.intensity(direction);
+      sum += candela * direction;
+      total += candela;
+    }
+  return sum.norm() > kAllSidesAlike * total ? Vec3(sum.normalized()) : Vec3(0, 0, -1);
+}
+
+}  // namespace
+
+PhotometricEmitter::PhotometricEmitter(const Light& light, const RayScene& rays) {
+  const double metres = rays.metres_per_unit();
+  const double extent = opening_extent(light.opening) / metres;
+  const double extent2 = extent * extent;
+  data_ = std::make_shared<const Data>(Data{light.table, light.opening,
+                                            rays.normalised(light.position).cast<double>(), light.orientation,
+                                            metres, kNearest * kNearest * extent2, extent2});
 }
 
 Vec3 PhotometricEmitter::point(double u0, double u1) const {
-  return centre_ + to_room_ * sample_opening(opening_, u0, u1) / metres_;
+  return data_->centre + data_->to_room * sample_opening(data_->opening, u0, u1) / data_->metres;
 }
 
 // I cos / r^2 for a point of the opening [cd/m2].
@@ -31,23 +51,24 @@ double PhotometricEmitter::kernel(const Vec3& to_light, const Vec3& n) const {
   const double height = n.dot(to_light);
   const double distance2 = to_light.squaredNorm();
   if (!(height > 0) || !(distance2 > 0)) return 0;
-  const double intensity = table_->intensity(to_room_.transpose() * -to_light);
-  return intensity * height / (std::sqrt(distance2) * std::max(distance2, nearest2_) * metres_ * metres_);
+  const double intensity = data_->table->intensity(data_->to_room.transpose() * -to_light);
+  return intensity * height /
+         (std::sqrt(distance2) * std::max(distance2, data_->nearest2) * data_->metres * data_->metres);
 }
 
 float PhotometricEmitter::expected_irradiance(const Vec3f& x, const Vec3f& n) const {
   const Vec3 from = x.cast<double>();
   const Vec3 normal = n.cast<double>();
-  const Vec3 to_centre = centre_ - from;
-  if (!(extent2_ > 0)) return static_cast<float>(kernel(to_centre, normal));
-  const double height =
-      normal.dot(to_centre) + opening_reach(opening_, to_room_.transpose() * normal) / metres_;
+  const Vec3 to_centre = data_->centre - from;
+  if (!(data_->extent2 > 0)) return static_cast<float>(kernel(to_centre, normal));
+  const double height = normal.dot(to_centre) +
+                        opening_reach(data_->opening, data_->to_room.transpose() * normal) / data_->metres;
   if (!(height > 0)) return 0;
   // Beyond five sizes the centre stands for the rest to about 1 % ([ZIM98] appendix, the five-times rule).
   constexpr double kFar2 = 25;
   const double distance2 = to_centre.squaredNorm();
   double mean = 0;
-  if (distance2 > kFar2 * extent2_) {
+  if (distance2 > kFar2 * data_->extent2) {
     mean = kernel(to_centre, normal);
   } else {
     constexpr std::array<std::array<double, 2>, 4> kPoints{{{0.2, 0.3}, {0.7, 0.2}, {0.3, 0.8}, {0.8, 0.7}}};
@@ -55,16 +76,16 @@ float PhotometricEmitter::expected_irradiance(const Vec3f& x, const Vec3f& n) co
   }
   // What these points miss must keep a weight.
   constexpr double kLeastShare = 1e-3;
-  const double around = table_->total_flux() / (4 * std::numbers::pi * metres_ * metres_);
-  const double least = kLeastShare * around * height / std::pow(distance2 + extent2_, 1.5);
+  const double around = data_->table->total_flux() / (4 * std::numbers::pi * data_->metres * data_->metres);
+  const double least = kLeastShare * around * height / std::pow(distance2 + data_->extent2, 1.5);
   return static_cast<float>(std::max(mean, least));
 }
 
-PunctualSample PhotometricEmitter::sample(const Vec3f& x, const Vec3f& n, float u0, float u1) const {
+LuminaireSample PhotometricEmitter::sample(const Vec3f& x, const Vec3f& n, float u0, float u1) const {
   const Vec3 from = x.cast<double>();
   const Vec3 p = point(static_cast<double>(u0), static_cast<double>(u1));
   const Vec3 to_light = p - from;
-  PunctualSample result;
+  LuminaireSample result;
   result.factor = static_cast<float>(kernel(to_light, n.cast<double>()));
   if (!(result.factor > 0)) return result;
   const double distance = to_light.norm();
@@ -72,16 +93,23 @@ PunctualSample PhotometricEmitter::sample(const Vec3f& x, const Vec3f& n, float 
   return result;
 }
 
-void start_photometric_ray(const PhotometricLight& light, const RayScene& rays, float u0, float u1, float u2,
-                           float u3, Vec3f& origin, Vec3f& direction) {
+LuminaireBounds PhotometricEmitter::bounds(float strength) const {
+  const double reach = 0.5 * data_->opening.size().norm() / data_->metres;
+  return sphere_bounds(data_->centre.cast<float>(), static_cast<float>(reach),
+                       strength * static_cast<float>(data_->table->greatest_intensity()));
+}
+
+Vec3f PhotometricEmitter::mouth() const {
+  const Vec3 aim = main_direction(*data_->table);
+  const double reach = opening_reach(data_->opening, aim) / data_->metres + kClear;
+  return (data_->centre + data_->to_room * (reach * aim)).cast<float>();
+}
+
+LightRay PhotometricEmitter::start_ray(float u0, float u1, float u2, float u3) const {
   const Vec3 away =
-      light.orientation * sample_intensity(*light.table, static_cast<double>(u2), static_cast<double>(u3));
-  const Vec3 from = rays.normalised(light.position).cast<double>() +
-                    light.orientation *
-                        sample_opening(light.opening, static_cast<double>(u0), static_cast<double>(u1)) /
-                        rays.metres_per_unit();
-  origin = (from + PhotometricEmitter::kClear * away).cast<float>();
-  direction = away.cast<float>().normalized();
+      data_->to_room * sample_intensity(*data_->table, static_cast<double>(u2), static_cast<double>(u3));
+  const Vec3 from = point(static_cast<double>(u0), static_cast<double>(u1));
+  return {(from + kClear * away).cast<float>(), away.cast<float>().normalized()};
 }
 
 }  // namespace reemit

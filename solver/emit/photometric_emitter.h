@@ -2,23 +2,27 @@
 #include <memory>
 
 #include "scenes/model/luminaire.h"
+#include "solver/emit/light_ray.h"
+#include "solver/emit/luminaire_bounds.h"
+#include "solver/emit/luminaire_sample.h"
 #include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
-/// Where a shadow ray for a luminaire without area goes, and what arrives if it gets through.
-struct PunctualSample {
-  float factor = 0;          ///< Irradiance per unit of emission_of over the density; 0 if x is not lit.
-  bool at_infinity = false;  ///< `target` is a unit direction towards the luminaire, else a point.
-  Vec3f target{0, 0, 0};     ///< Normalised.
-};
-
-/// A measured luminaire in the normalised space. Every point of the opening sends out the distribution of the
-/// table, so irradiance is the mean of I cos/r^2 over the opening at every distance: there is no distance at
-/// which a point takes over, and so no seam.
+/// A measured luminaire in the normalised space, as PunctualEmitter asks every kind. Every point of the
+/// opening sends out the distribution of the table, so irradiance is the mean of I cos/r^2 over the opening
+/// at every distance: there is no distance at which a point takes over, and so no seam.
 class PhotometricEmitter {
  public:
-  PhotometricEmitter(const PhotometricLight& light, const RayScene& rays);
+  using Light = PhotometricLight;
+  static constexpr bool kAtInfinity = false;
+
+  PhotometricEmitter(const Light& light, const RayScene& rays);
+
+  static const Spectrum& emission(const Light& light) { return light.intensity_per_candela; }
+  static Spectrum power(const Light& light, double /*metres_per_unit*/) {
+    return light.table->total_flux() * light.intensity_per_candela;
+  }
 
   /// About the irradiance at x (normal n) per unit of intensity_per_candela [cd/m2] if nothing is in the way:
   /// exact for points, a mean over a few points of the opening else. Above 0 wherever a point of the opening
@@ -27,7 +31,12 @@ class PhotometricEmitter {
 
   /// A point of the opening for two uniform numbers: factor = I cos/r^2 [cd/m2], r in metres. Within
   /// kNearest of the size of the opening r counts as that much.
-  PunctualSample sample(const Vec3f& x, const Vec3f& n, float u0, float u1) const;
+  LuminaireSample sample(const Vec3f& x, const Vec3f& n, float u0, float u1) const;
+
+  LuminaireBounds bounds(float strength) const;
+  /// Just outside the opening, in the mean direction of the light.
+  Vec3f mouth() const;
+  LightRay start_ray(float u0, float u1, float u2, float u3) const;
 
   /// Distance, in sizes of the opening, below which irradiance grows no more. A homogeneous opening says
   /// nothing about what is that close, and without a bound the irradiance of a surface that touches it at a
@@ -41,18 +50,16 @@ class PhotometricEmitter {
   Vec3 point(double u0, double u1) const;  // normalised
   double kernel(const Vec3& to_light, const Vec3& n) const;
 
-  std::shared_ptr<const IntensityTable> table_;
-  LuminousOpening opening_;
-  Vec3 centre_;              // normalised
-  Eigen::Matrix3d to_room_;  // luminaire coordinates to the room
-  double metres_;            // per normalised unit
-  double nearest2_;          // [normalised units^2]
-  double extent2_;           // [normalised units^2]
+  struct Data {
+    std::shared_ptr<const IntensityTable> table;
+    LuminousOpening opening;
+    Vec3 centre;              // normalised
+    Eigen::Matrix3d to_room;  // luminaire coordinates to the room
+    double metres;            // per normalised unit
+    double nearest2;          // [normalised units^2]
+    double extent2;           // [normalised units^2]
+  };
+  std::shared_ptr<const Data> data_;  // aside: it is large, and tables of luminaires should stay in cache
 };
-
-/// Start of a packet of a measured luminaire in the normalised space; all packets carry the same power. u0,
-/// u1 place it, u2, u3 turn it.
-void start_photometric_ray(const PhotometricLight& light, const RayScene& rays, float u0, float u1, float u2,
-                           float u3, Vec3f& origin, Vec3f& direction);
 
 }  // namespace reemit

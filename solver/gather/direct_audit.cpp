@@ -33,7 +33,7 @@ std::vector<ZoneId> zones_to_compare(const Solution& solution) {
 
 /// Mean over a zone of the irradiance from sampled luminaires, all bands together, and its standard error
 /// [W/m2].
-ReplicateMean sampled_irradiance(const DirectLight& light, const RayScene& rays, ZoneId zone, int points,
+ReplicateMean sampled_irradiance(const DirectLight& light, const Room& room, ZoneId zone, int points,
                                  std::uint64_t seed) {
   const int per_replicate = (points + kReplicates - 1) / kReplicates;
   const auto log2_points = std::countr_zero(std::bit_ceil(static_cast<unsigned>(per_replicate)));
@@ -44,7 +44,7 @@ ReplicateMean sampled_irradiance(const DirectLight& light, const RayScene& rays,
                                log2_points);
     std::fill(found.begin(), found.end(), 0.0F);
     for (int i = 0; i < per_replicate; ++i)
-      light.add_sample(point_in_zone(rays, zone, sampler.place(i)), sampler.light(i, 0, 1), weight.data(),
+      light.add_sample(point_in_zone(room, zone, sampler.place(i)), sampler.light(i, 0, 1), weight.data(),
                        found.data());
     return static_cast<double>(std::reduce(found.begin(), found.end()));
   });
@@ -52,7 +52,7 @@ ReplicateMean sampled_irradiance(const DirectLight& light, const RayScene& rays,
 
 }  // namespace
 
-DirectAudit audit_direct_light(const Scene& scene, const RayScene& rays, const Solution& solution,
+DirectAudit audit_direct_light(const Room& room, const Solution& solution,
                                const DirectAuditSettings& settings,
                                const std::function<void(double)>& progress,
                                const std::atomic<bool>& interrupt) {
@@ -61,7 +61,7 @@ DirectAudit audit_direct_light(const Scene& scene, const RayScene& rays, const S
                      "solve the room with --method shooting or walk");
   const ZoneMesh& mesh = solution.mesh;
   const std::vector<ZoneId> zones = zones_to_compare(solution);
-  const DirectLight light(scene, rays);
+  const DirectLight light(room);
 
   const double emitted =
       std::transform_reduce(solution.audit.bands.begin(), solution.audit.bands.end(), 0.0, std::plus<>(),
@@ -87,9 +87,9 @@ DirectAudit audit_direct_light(const Scene& scene, const RayScene& rays, const S
   const auto compare = [&](std::size_t i, int points, std::uint64_t seed) {
     DirectDifference& d = found[i].difference;
     d.by_packets = 0;
-    for (std::size_t b = 0; b < scene.bands.count(); ++b)
+    for (std::size_t b = 0; b < room.band_count(); ++b)
       d.by_packets += solution.direct_irradiance(zones[i], b).mean;
-    const ReplicateMean samples = sampled_irradiance(light, rays, zones[i], points, seed);
+    const ReplicateMean samples = sampled_irradiance(light, room, zones[i], points, seed);
     const double per_packet = watts_per_packet / mesh.zone_area(zones[i]);
     d.by_samples = samples.mean;
     d.limit =
@@ -123,8 +123,8 @@ DirectAudit audit_direct_light(const Scene& scene, const RayScene& rays, const S
 
   DirectAudit audit;
   audit.left_out = mesh.zone_count() - zones.size();
-  audit.surfaces.resize(scene.surfaces.size());
-  std::vector<double> variances(scene.surfaces.size(), 0.0);  // of SurfaceDirect::by_samples
+  audit.surfaces.resize(room.surfaces().surface_count());
+  std::vector<double> variances(room.surfaces().surface_count(), 0.0);  // of SurfaceDirect::by_samples
   for (const auto& [d, variance] : found) {
     if (!d.zone.valid()) continue;
     const double area = mesh.zone_area(d.zone);

@@ -6,9 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "scenes/model/scene.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
@@ -54,7 +53,7 @@ struct DirectAudit {
 /// together, and 0.3 % for float arithmetic; likewise for surfaces. Pre: the room of the solution. Throws
 /// InputError when the solution has no packets (matrix method). When `interrupt` becomes true, returns what
 /// was compared. `progress` (may be empty): share done [0,1].
-DirectAudit audit_direct_light(const Scene& scene, const RayScene& rays, const Solution& solution,
+DirectAudit audit_direct_light(const Room& room, const Solution& solution,
                                const DirectAuditSettings& settings,
                                const std::function<void(double)>& progress,
                                const std::atomic<bool>& interrupt);

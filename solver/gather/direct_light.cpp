@@ -2,9 +2,10 @@
 
 namespace reemit {
 
-DirectLight::DirectLight(const Scene& scene, const RayScene& rays, const DirectLightSettings& settings)
-    : rays_(&rays),
-      table_(scene, rays),
+DirectLight::DirectLight(const Room& room, const DirectLightSettings& settings)
+    : rays_(&room.rays()),
+      surfaces_(&room.surfaces()),
+      table_(room),
       selection_(settings.selection.value_or(LuminaireChoice::default_for(table_.size()))) {}
 
 std::size_t DirectLight::luminaires_weighed() const {
@@ -13,48 +14,54 @@ std::size_t DirectLight::luminaires_weighed() const {
   return selection_ == Selection::kConstant ? 0 : table_.size();
 }
 
-const float* DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin,
-                                   const std::array<float, kDimensions>& u, float& factor) const {
+DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin,
+                                           const std::array<float, kDimensions>& u) const {
   // u[0] chooses and is then used again; u[2] places the candidates where there are many luminaires.
   const LuminaireChoice choice(table_, selection_, origin, x.normal, u[2]);
   float u_choice = u[0];
   float inverse_probability = 0;
   std::size_t entry = 0;
-  if (!choice.pick(u_choice, entry, inverse_probability)) return nullptr;
+  if (!choice.pick(u_choice, entry, inverse_probability)) return {};
   LuminaireSample sample;
-  if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return nullptr;
-  const Vec3f towards = sample.at_infinity ? sample.target : Vec3f(sample.target - origin);
-  if (!(towards.dot(side_normal(*rays_, x)) > 0)) return nullptr;
+  if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return {};
+  const Vec3f towards = sample.towards(origin);
+  if (!(towards.dot(side_normal(*rays_, x)) > 0)) return {};
   const bool visible =
       sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
-  if (!visible) return nullptr;
-  factor = sample.factor * inverse_probability;
-  return table_.emission(entry);
+  if (!visible) return {};
+  return {table_.emission(entry), sample.factor * inverse_probability, towards.normalized()};
 }
 
 void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
                              const float* weight, float* sum) const {
   if (empty()) return;
-  const Vec3f origin = rays_->ray_origin(x.triangle, x.u, x.v, x.front);
-  float factor = 0;
-  const float* emission = estimate(x, origin, u, factor);
-  if (emission == nullptr) return;
-  for (std::size_t b = 0; b < band_count(); ++b) sum[b] += weight[b] * factor * emission[b];
+  const Arrival light = estimate(x, ray_origin(*rays_, x), u);
+  if (light.emission == nullptr) return;
+  for (std::size_t b = 0; b < band_count(); ++b) sum[b] += weight[b] * light.factor * light.emission[b];
+}
+
+void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
+                                       float chance, const float* weight, float* sum) const {
+  if (empty()) return;
+  const Arrival light = estimate(x, ray_origin(*rays_, x), u);
+  if (light.emission == nullptr) return;
+  const BrdfValue brdf = surfaces_->value(x, light.from);
+  for (std::size_t b = 0; b < band_count(); ++b)
+    sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.emission[b];
 }
 
 void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first,
                               int count, double* sum, double* sum_of_squares) const {
   if (empty()) return;
-  const Vec3f origin = rays_->ray_origin(x.triangle, x.u, x.v, x.front);
+  const Vec3f origin = ray_origin(*rays_, x);
   for (int i = 0; i < count; ++i) {
     const std::uint32_t index = first + static_cast<std::uint32_t>(i);
     const std::array<float, kDimensions> u{sequence.sample(index, 0), sequence.sample(index, 1),
                                            sequence.sample(index, 2)};
-    float factor = 0;
-    const float* emission = estimate(x, origin, u, factor);
-    if (emission == nullptr) continue;
+    const Arrival light = estimate(x, origin, u);
+    if (light.emission == nullptr) continue;
     for (std::size_t b = 0; b < band_count(); ++b) {
-      const double e = static_cast<double>(factor) * static_cast<double>(emission[b]);
+      const double e = static_cast<double>(light.factor) * static_cast<double>(light.emission[b]);
       sum[b] += e;
       if (sum_of_squares != nullptr) sum_of_squares[b] += e * e;
     }

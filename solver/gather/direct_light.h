@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "scenes/model/scene.h"
 #include "solver/emit/luminaire_choice.h"
 #include "solver/emit/luminaire_table.h"
-#include "solver/gather/surface_point.h"
+#include "solver/room/room.h"
 #include "solver/sampling/sobol.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/surface_point.h"
 
 namespace reemit {
 
@@ -25,7 +24,8 @@ class DirectLight {
   static constexpr int kDimensions =
       3;  ///< Uniform numbers that one sample takes; the first two matter most.
 
-  DirectLight(const Scene& scene, const RayScene& rays, const DirectLightSettings& settings = {});
+  /// The room must outlive it.
+  explicit DirectLight(const Room& room, const DirectLightSettings& settings = {});
 
   std::size_t band_count() const { return table_.band_count(); }
   bool empty() const { return table_.empty(); }
@@ -38,17 +38,27 @@ class DirectLight {
   void add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
                   float* sum) const;
 
+  /// One sample of what the surface at x sends towards x.towards of it: adds weight[b] f_b E_b / `chance` to
+  /// sum[b], f the BRDF [1/sr].
+  void add_reflected_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, float chance,
+                            const float* weight, float* sum) const;
+
   /// Adds, for samples first .. first+count-1 of the sequence (dimensions 0-2), E_b to sum[b] [W/m2] and, if
   /// given, E_b^2 to sum_of_squares[b].
   void add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first, int count,
                    double* sum, double* sum_of_squares = nullptr) const;
 
  private:
-  /// Estimates the irradiance as factor * emission; null if nothing arrives.
-  const float* estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u,
-                        float& factor) const;
+  /// What arrives at a point: the irradiance is estimated as factor * emission[b].
+  struct Arrival {
+    const float* emission = nullptr;  ///< Null if nothing arrives.
+    float factor = 0;
+    Vec3f from{0, 0, 0};  ///< Unit, towards the luminaire.
+  };
+  Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
 
   const RayScene* rays_;
+  const SurfaceModel* surfaces_;
   LuminaireTable table_;
   Selection selection_;
 };

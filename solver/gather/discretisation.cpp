@@ -24,15 +24,15 @@ constexpr double kSmallEnough = 0.03;
 
 }  // namespace
 
-std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays, const Solution& solution,
+std::optional<double> discretisation_error(const Room& room, const Solution& solution,
                                            const StopToken& stop) {
   if (stop.requested()) return std::nullopt;
-  const RadianceField field(scene, solution, rays, kHalves);
+  const RadianceField field(room, solution, kHalves);
   if (field.parts() != kHalves) return std::nullopt;
-  const std::size_t bands = scene.bands.count();
+  const std::size_t bands = room.band_count();
   const std::uint64_t seed = solution.settings.seed;
-  const DirectLight direct(scene, rays);
-  const HemisphereGather gather(rays, field, direct, GatherSettings{.continue_uneven = false, .seed = seed});
+  const DirectLight direct(room);
+  const HemisphereGather gather(field, direct, GatherSettings{.continue_uneven = false, .seed = seed});
   const CounterRng rng(seed, RngPurpose::kDiscretisation);
   const std::vector<ZoneProbe> probes =
       choose_probes(solution, kProbes, static_cast<double>(rng.uniform4(0, 1, 0)[0]));
@@ -50,7 +50,7 @@ std::optional<double> discretisation_error(const Scene& scene, const RayScene& r
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i) {
       const std::array<float, 4> u = rng.uniform4(i, 0, 0);
-      const SurfacePoint x = point_in_zone(rays, probes[i].zone, {u[0], u[1]});
+      const SurfacePoint x = point_in_zone(room, probes[i].zone, {u[0], u[1]});
       for (std::size_t half = 0; half < kHalves; ++half, next += 2 * bands) {
         const PointSampler sampler(seed, RngPurpose::kDiscretisation, i, static_cast<int>(half),
                                    std::countr_zero(static_cast<unsigned>(kEffort.points)));
@@ -62,14 +62,13 @@ std::optional<double> discretisation_error(const Scene& scene, const RayScene& r
     }
     batch.flush();
     for (std::size_t i = first; i < last; ++i) {
-      const float* reflectance = field.reflectance(solution.mesh.zone_triangle(probes[i].zone).index(),
-                                                   solution.mesh.zone_is_front(probes[i].zone));
+      const double* reflectance = room.surfaces().reflectance(room.mesh().zone_surface(probes[i].zone));
       for (std::size_t b = 0; b < bands; ++b) {
         double difference = probes[i].area;
         double value = probes[i].area;
         for (std::size_t half = 0; half < kHalves; ++half) {
           const float* light = &found[((i - first) * kHalves + half) * 2 * bands];
-          const double rho = static_cast<double>(reflectance[b]);
+          const double rho = static_cast<double>(static_cast<float>(reflectance[b]));
           const double at_point = rho * (static_cast<double>(light[b]) / std::numbers::pi +
                                          static_cast<double>(light[bands + b]));
           const double of_zone = static_cast<double>(field.reflected(probes[i].zone, half)[b]);

@@ -1,10 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "scenes/model/scene.h"
 #include "scenes/model/stop_token.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
@@ -15,7 +14,6 @@ namespace reemit {
 /// independent halves of the batches give two differences, whose product has no noise on the mean. Takes
 /// about 160,000 rays. Nothing with fewer than two batches, without light, when noise leaves it uncertain by
 /// more than a factor of two, or when `stop` is requested before the end.
-std::optional<double> discretisation_error(const Scene& scene, const RayScene& rays, const Solution& solution,
-                                           const StopToken& stop);
+std::optional<double> discretisation_error(const Room& room, const Solution& solution, const StopToken& stop);
 
 }  // namespace reemit

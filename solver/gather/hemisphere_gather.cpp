@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "solver/gather/uneven_zones.h"
@@ -12,61 +11,61 @@ namespace reemit {
 namespace {
 
 /// By zone, the distance within which a hit is continued [normalised units].
-std::vector<float> reach_of_zones(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
+std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight& direct,
                                   const GatherSettings& settings, const StopToken* stop) {
-  const ZoneMesh& mesh = rays.mesh();
+  const ZoneMesh& mesh = field.room().mesh();
   std::vector<float> reach(mesh.zone_count(), 0.0F);
   if (settings.close_hit == 0) return reach;
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
-  if (settings.continue_uneven) uneven = uneven_zones(rays, field, direct, settings.seed, stop);
+  if (settings.continue_uneven) uneven = uneven_zones(field, direct, settings.seed, stop);
   for (std::size_t z = 0; z < reach.size(); ++z)
-    reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
-                              : static_cast<float>(settings.close_hit) *
-                                    field.zone_size(mesh.zone_triangle(ZoneId(z)).index());
+    reach[z] = uneven[z] != 0
+                   ? std::numeric_limits<float>::infinity()
+                   : static_cast<float>(settings.close_hit) * field.zone_size(mesh.zone_triangle(ZoneId(z)));
   return reach;
 }
 
 }  // namespace
 
-HemisphereGather::HemisphereGather(const RayScene& rays, const RadianceField& field,
-                                   const DirectLight& direct, const GatherSettings& settings,
-                                   const StopToken* stop)
-    : rays_(&rays),
-      field_(&field),
+HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight& direct,
+                                   const GatherSettings& settings, const StopToken* stop)
+    : field_(&field),
       direct_(&direct),
-      reach_(reach_of_zones(rays, field, direct, settings, stop)),
+      reach_(reach_of_zones(field, direct, settings, stop)),
       most_bounces_(settings.most_bounces),
       rng_(settings.seed, RngPurpose::kHemisphere) {}
 
-void HemisphereGather::add_continued(const Hit& y, const PathKey& key, float* weight, float* sum) const {
+void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
+                                     float* sum) const {
+  const RayScene& rays = room().rays();
+  const SurfaceModel& surfaces = room().surfaces();
   const std::size_t bands = band_count();
   Hit hit = y;
+  Vec3f along = direction;
   for (int bounce = 0;; ++bounce) {
-    const std::size_t t = hit.triangle.index();
-    const std::size_t zone = field_->zone_number(t, hit.u, hit.v, hit.front);
-    if (zone == RadianceField::kNoZone) return;
+    const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+    if (!zone.valid()) return;
     if (bounce == most_bounces_ || !continues(zone, hit.distance)) {
-      const float* radiance = field_->reflected(ZoneId(zone), key.part);
+      const float* radiance = field_->reflected(zone, key.part);
       for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
       return;
     }
-    const float* reflectance = field_->reflectance(t, hit.front);
-    bool dark = true;
-    for (std::size_t b = 0; b < bands; ++b) {
-      weight[b] *= lambert_brdf_per_sr(reflectance[b]);
-      dark = dark && weight[b] == 0;
-    }
-    if (dark) return;
     const auto number = static_cast<std::uint32_t>(2 * bounce);
     const std::array<float, 4> u = rng_.uniform4(key.index, key.batch, key.step(number));
     const std::array<float, 4> u_ray = rng_.uniform4(key.index, key.batch, key.step(number + 1));
-    const SurfacePoint point = surface_point(*rays_, hit);
-    direct_->add_sample(point, {u[0], u[1], u[2]}, weight, sum);
-    // A cosine-distributed ray estimates E/pi, so the weight of what it reads is rho again.
-    for (std::size_t b = 0; b < bands; ++b) weight[b] *= std::numbers::pi_v<float>;
-    if (!rays_->closest(rays_->ray_origin(point.triangle, point.u, point.v, point.front),
-                        sample_lambert(point.normal, u_ray[0], u_ray[1]), hit))
-      return;
+    const SurfacePoint point = surface_point(rays, hit, along);
+    const ScatterSample next = surfaces.sample(point, u_ray[0], u_ray[1]);
+    const BrdfValue brdf = surfaces.value(point, next.direction);
+    bool dark = true;
+    for (std::size_t b = 0; b < bands; ++b) dark = dark && weight[b] * brdf(b) == 0;
+    if (dark) return;
+    direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, 1, weight, sum);
+    for (std::size_t b = 0; b < bands; ++b) {
+      weight[b] *= brdf(b);
+      weight[b] *= next.cosine_over_pdf;
+    }
+    along = next.direction;
+    if (!rays.closest(ray_origin(rays, point), along, hit)) return;
   }
 }
 
@@ -81,12 +80,11 @@ GatherBatch::GatherBatch(const HemisphereGather& gather)
 
 void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
                       float* sum) {
-  const RayScene& rays = gather_->rays();
+  const RayScene& rays = gather_->room().rays();
   const Vec3f direction = sample_lambert(x.normal, u0, u1);
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(side_normal(rays, x)) > 0)) return;
-  const Vec3f origin = rays.ray_origin(x.triangle, x.u, x.v, x.front);
-  rays_.set(count_, origin, direction);
+  rays_.set(count_, ray_origin(rays, x), direction);
   const auto lane = static_cast<std::size_t>(count_);
   second_look_[lane] = false;
   keys_[lane] = key;
@@ -103,7 +101,8 @@ void GatherBatch::flush() {
 // Puts a ray back into the queue, turned a little, where it costs no block of its own.
 void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
   const int ray = static_cast<int>(lane);
-  rays_.set(count_, rays_.origin(ray), gather_->rays().second_direction(rays_.direction(ray), hits, ray));
+  rays_.set(count_, rays_.origin(ray),
+            gather_->room().rays().second_direction(rays_.direction(ray), hits, ray));
   const auto to = static_cast<std::size_t>(count_++);
   second_look_[to] = true;
   keys_[to] = keys_[lane];
@@ -113,7 +112,8 @@ void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
 
 void GatherBatch::trace() {
   const RadianceField& field = gather_->field();
-  const RayScene& rays = gather_->rays();
+  const RayScene& rays = gather_->room().rays();
+  const ZoneMesh& mesh = gather_->room().mesh();
   Hit16 hits;
   rays.closest16(rays_, count_, hits);
   const auto count = static_cast<std::size_t>(std::exchange(count_, 0));
@@ -125,14 +125,14 @@ void GatherBatch::trace() {
     }
     if (t == RayScene::kMiss) continue;
     float* weight = &weights_[i * bands_];
-    const std::size_t zone = field.zone_number(t, hits.u[i], hits.v[i], hits.front[i]);
-    if (zone == RadianceField::kNoZone) continue;
+    const ZoneId zone = mesh.zone_at(TriangleId(t), hits.u[i], hits.v[i], hits.front[i]);
+    if (!zone.valid()) continue;
     if (gather_->continues(zone, hits.distance[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
-      gather_->add_continued(hit, keys_[i], weight, sums_[i]);
+      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], weight, sums_[i]);
       continue;
     }
-    const float* radiance = field.reflected(ZoneId(zone), keys_[i].part);
+    const float* radiance = field.reflected(zone, keys_[i].part);
     for (std::size_t b = 0; b < bands_; ++b) sums_[i][b] += weight[b] * radiance[b];
   }
 }

@@ -5,9 +5,10 @@
 
 #include "scenes/model/stop_token.h"
 #include "solver/gather/direct_light.h"
+#include "solver/gather/path_key.h"
 #include "solver/gather/radiance_field.h"
-#include "solver/gather/surface_point.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/sampling/counter_rng.h"
+#include "solver/trace/surface_point.h"
 
 namespace reemit {
 
@@ -31,20 +32,21 @@ class HemisphereGather {
  public:
   /// When `stop` (may be null) is requested, the look for uneven zones ends early, and what is gathered means
   /// little.
-  HemisphereGather(const RayScene& rays, const RadianceField& field, const DirectLight& direct,
-                   const GatherSettings& settings, const StopToken* stop = nullptr);
+  HemisphereGather(const RadianceField& field, const DirectLight& direct, const GatherSettings& settings,
+                   const StopToken* stop = nullptr);
 
-  const RayScene& rays() const { return *rays_; }
+  const Room& room() const { return field_->room(); }
   std::size_t band_count() const { return field_->band_count(); }
   /// True if a hit of this zone at this distance [normalised units] is continued instead of read.
-  bool continues(std::size_t zone, float distance) const { return distance < reach_[zone]; }
+  bool continues(ZoneId zone, float distance) const { return distance < reach_[zone.index()]; }
   const RadianceField& field() const { return *field_; }
 
-  /// Adds weight[b] times the reflected radiance of a hit y that is continued to sum[b]. `weight` is used up.
-  void add_continued(const Hit& y, const PathKey& key, float* weight, float* sum) const;
+  /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued,
+  /// sends back along it to sum[b]. `weight` is used up.
+  void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
+                     float* sum) const;
 
  private:
-  const RayScene* rays_;
   const RadianceField* field_;
   const DirectLight* direct_;
   std::vector<float> reach_;  // by zone: hits nearer than this are continued

@@ -3,8 +3,10 @@
 #include <vector>
 
 #include "solver/gather/direct_light.h"
-#include "solver/gather/radiance_field.h"
-#include "solver/gather/surface_point.h"
+#include "solver/gather/path_key.h"
+#include "solver/room/room.h"
+#include "solver/sampling/counter_rng.h"
+#include "solver/trace/surface_point.h"
 
 namespace reemit {
 
@@ -17,8 +19,7 @@ class PathTracer {
   /// Survival at most: ends paths in rooms of reflectance 1. The weight grows to match.
   static constexpr float kLongestSurvival = 0.98F;
 
-  PathTracer(const RayScene& rays, const RadianceField& materials, const DirectLight& direct,
-             std::uint64_t seed);
+  PathTracer(const Room& room, const DirectLight& direct, std::uint64_t seed);
 
   /// Adds weight[b] times the reflected radiance seen along a cosine-distributed ray (u0,u1) from x to
   /// sum[b]: pi times its mean is the indirect irradiance at x. `weight` is used up.
@@ -26,8 +27,7 @@ class PathTracer {
                     float* sum) const;
 
  private:
-  const RayScene* rays_;
-  const RadianceField* materials_;
+  const Room* room_;
   const DirectLight* direct_;
   CounterRng rng_;
 };

@@ -12,47 +12,20 @@
 
 namespace reemit {
 
-RadianceField::RadianceField(const Scene& scene, const Solution& solution, const RayScene& rays,
-                             std::size_t parts)
-    : bands_(scene.bands.count()), parts_(parts), zero_(bands_, 0.0F) {
+RadianceField::RadianceField(const Room& room, const Solution& solution, std::size_t parts)
+    : room_(&room), bands_(room.band_count()), parts_(parts), zero_(bands_, 0.0F) {
+  const Scene& scene = room.scene();
   if (!(scene.bands == solution.bands) || scene.surfaces.size() != solution.surface_names.size())
     throw InputError(scene.source, "the room is not the one that was solved",
                      "Solve it again: its surfaces or bands have changed since.");
-  const ZoneMesh& mesh = rays.mesh();
-  read_surfaces(scene);
-  sides_.resize(2 * mesh.triangle_count());
+  const ZoneMesh& mesh = room.mesh();
   zone_size_.resize(mesh.triangle_count());
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const TriangleId t(i);
-    const BaseTriangle& triangle = mesh.triangle(t);
-    const Material& material = scene.material_of(scene.surfaces[triangle.surface.index()]);
-    for (const bool front : {true, false}) {
-      TriangleSide& side = sides_[2 * i + (front ? 0 : 1)];
-      side.surface = static_cast<std::uint32_t>(triangle.surface.index());
-      side.emits = material.emits() && (front || (material.emits_both_sides && triangle.two_sided));
-      if (!front && !triangle.two_sided) continue;
-      side.first_zone = mesh.first_zone(t, front).index();
-      side.divisions = triangle.divisions;
-    }
-    zone_size_[i] = static_cast<float>(std::sqrt(2 * mesh.triangle_area(t)) / triangle.divisions /
-                                       rays.metres_per_unit());
+    zone_size_[i] = static_cast<float>(std::sqrt(2 * mesh.triangle_area(t)) / mesh.triangle(t).divisions /
+                                       room.rays().metres_per_unit());
   }
   read_zones(solution);
-}
-
-void RadianceField::read_surfaces(const Scene& scene) {
-  surface_emitted_.reserve(scene.surfaces.size() * bands_);
-  surface_reflectance_.reserve(scene.surfaces.size() * bands_);
-  for (const Surface& surface : scene.surfaces) {
-    const Material& material = scene.material_of(surface);
-    const Spectrum emitted = material.exitance() / std::numbers::pi;
-    surface_exponent_.push_back(static_cast<float>(material.emission_exponent));
-    for (std::size_t b = 0; b < bands_; ++b) {
-      const auto k = static_cast<Eigen::Index>(b);
-      surface_emitted_.push_back(static_cast<float>(emitted[k]));
-      surface_reflectance_.push_back(static_cast<float>(material.reflectance[k]));
-    }
-  }
 }
 
 void RadianceField::read_zones(const Solution& solution) {
@@ -73,10 +46,10 @@ void RadianceField::read_zones(const Solution& solution) {
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
     part_weight[g % parts_] += static_cast<double>(sums.group_weight[g]);
   const auto read = [&](std::size_t z) {
-    const std::size_t surface = solution.mesh.zone_surface(ZoneId(z)).index();
+    const double* rho = room_->surfaces().reflectance(solution.mesh.zone_surface(ZoneId(z)));
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = z * bands_ + b;
-      const float reflectance = surface_reflectance_[surface * bands_ + b];
+      const auto reflectance = static_cast<float>(rho[b]);
       reflected_direct_[k] =
           lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / weight));
       for (std::size_t p = 0; p < parts_; ++p) {

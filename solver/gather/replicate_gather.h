@@ -11,15 +11,11 @@
 namespace reemit {
 
 /// A point of a zone, uniform over it for uniform u.
-inline SurfacePoint point_in_zone(const RayScene& rays, ZoneId zone, const std::array<float, 2>& u) {
-  const ZoneMesh& mesh = rays.mesh();
-  const auto [s, t] = sample_triangle(u[0], u[1]);
-  const auto corners = mesh.zone_barycentrics(zone);
-  const auto inside = [&](double Barycentric::*k) {
-    return static_cast<float>((1 - s - t) * corners[0].*k + s * corners[1].*k + t * corners[2].*k);
-  };
-  return surface_point(rays, mesh.zone_triangle(zone), inside(&Barycentric::u), inside(&Barycentric::v),
-                       mesh.zone_is_front(zone));
+inline SurfacePoint point_in_zone(const Room& room, ZoneId zone, const std::array<float, 2>& u) {
+  const auto [a, b] = sample_triangle(u[0], u[1]);
+  const SidePoint x = room.mesh().zone_point(zone, a, b);
+  return surface_point(room.rays(), x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v),
+                       x.front);
 }
 
 /// How many rays one replicate of the light at a place takes.

@@ -74,14 +74,14 @@ struct ZoneReplicates {
 /// Gathers at zones; every replicate reads its own part of the zone solution.
 class Gatherer {
  public:
-  Gatherer(const Scene& scene, const RayScene& rays, const Solution& solution, const StopToken& stop)
-      : rays_(rays),
+  Gatherer(const Room& room, const Solution& solution, const StopToken& stop)
+      : room_(room),
         stop_(stop),
-        bands_(scene.bands.count()),
+        bands_(room.band_count()),
         seed_(solution.settings.seed),
-        field_(scene, solution, rays, kReplicates),
-        direct_(scene, rays),
-        gather_(rays, field_, direct_, GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
+        field_(room, solution, kReplicates),
+        direct_(room),
+        gather_(field_, direct_, GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
 
@@ -117,7 +117,7 @@ class Gatherer {
         const auto replicate = static_cast<std::uint32_t>(r);
         const PointSampler sampler(seed_, purpose, zones[i].index(), static_cast<int>(r),
                                    std::countr_zero(static_cast<unsigned>(points)));
-        const auto place = [&](const std::array<float, 2>& u) { return point_in_zone(rays_, zones[i], u); };
+        const auto place = [&](const std::array<float, 2>& u) { return point_in_zone(room_, zones[i], u); };
         add_replicate(direct_, sampler, {points, kGathersPerPoint},
                       {zones[i].index(), replicate, 0, replicate}, place, batch, next, next + bands_);
       }
@@ -135,7 +135,7 @@ class Gatherer {
     return true;
   }
 
-  const RayScene& rays_;
+  const Room& room_;
   const StopToken& stop_;
   std::size_t bands_;
   std::uint64_t seed_;
@@ -176,17 +176,17 @@ std::vector<ZoneId> zones_left_to_packets(const ZoneMesh& mesh) {
   return zones_by_size(mesh, false);
 }
 
-bool gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
-                        Solution& solution, const StopToken& stop) {
+bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solution& solution,
+                        const StopToken& stop) {
   if (solution.sums.batches < static_cast<std::int64_t>(kReplicates)) return false;
   const ZoneMesh& mesh = solution.mesh;
   std::vector<ZoneId> zones = small_zones(mesh);
   if (zones.empty()) return false;
-  const Gatherer gatherer(scene, rays, solution, stop);
+  const Gatherer gatherer(room, solution, stop);
   const double affordable = limits.solver_rays / cost_per_point(gatherer.luminaires_weighed());
   // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
   zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable / 3)));
-  const std::size_t bands = scene.bands.count();
+  const std::size_t bands = room.band_count();
 
   const auto start = std::chrono::steady_clock::now();
   std::vector<PilotResult> pilots(zones.size());

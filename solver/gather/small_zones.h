@@ -3,10 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "scenes/model/scene.h"
 #include "scenes/model/stop_token.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
@@ -31,7 +30,7 @@ struct SmallZoneLimits {
 /// Adds to record.rays and sets record.gathered_zones. Returns true if the clock had a say in what was
 /// gathered, by the limit or by `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When `stop`
 /// is requested the zones not yet done keep what packets found.
-bool gather_small_zones(const Scene& scene, const RayScene& rays, const SmallZoneLimits& limits,
-                        Solution& solution, const StopToken& stop);
+bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solution& solution,
+                        const StopToken& stop);
 
 }  // namespace reemit

@@ -43,7 +43,8 @@ struct Spread {
 };
 
 /// Per band, the mean reflected radiance over all area.
-std::vector<double> mean_radiance(const ZoneMesh& mesh, const RadianceField& field) {
+std::vector<double> mean_radiance(const RadianceField& field) {
+  const ZoneMesh& mesh = field.room().mesh();
   std::vector<double> mean(field.band_count(), 0.0);
   double area = 0;
   for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
@@ -61,13 +62,12 @@ std::vector<double> mean_radiance(const ZoneMesh& mesh, const RadianceField& fie
 /// Looks at zones; the room's mean is the measure.
 class Looker {
  public:
-  Looker(const RayScene& rays, const RadianceField& field, const DirectLight& direct, std::uint64_t seed)
-      : rays_(rays), field_(field), direct_(direct), seed_(seed), mean_(mean_radiance(rays.mesh(), field)) {}
+  Looker(const RadianceField& field, const DirectLight& direct, std::uint64_t seed)
+      : room_(field.room()), field_(field), direct_(direct), seed_(seed), mean_(mean_radiance(field)) {}
 
   Spread look(ZoneId zone, const Look& effort) const {
-    const ZoneMesh& mesh = rays_.mesh();
     const std::size_t bands = field_.band_count();
-    const float* reflectance = field_.reflectance(mesh.zone_triangle(zone).index(), mesh.zone_is_front(zone));
+    const double* reflectance = room_.surfaces().reflectance(room_.mesh().zone_surface(zone));
     const float* direct = field_.reflected_direct(zone);
     bool dim = true;
     for (std::size_t b = 0; b < bands; ++b) dim = dim && static_cast<double>(direct[b]) <= kDim * mean_[b];
@@ -80,7 +80,7 @@ class Looker {
     for (int half = 0; half < kHalves; ++half) {
       const PointSampler light = sampler(zone, half, effort);
       for (int i = 0; i < effort.points; ++i, next += bands) {
-        const SurfacePoint x = point_in_zone(rays_, zone, place.place(i));
+        const SurfacePoint x = point_in_zone(room_, zone, place.place(i));
         for (int ray = 0; ray < effort.rays; ++ray)
           direct_.add_sample(x, light.light(i, ray, effort.rays), weight.data(), next);
       }
@@ -88,7 +88,7 @@ class Looker {
     Spread worst;
     for (std::size_t b = 0; b < bands; ++b) {
       if (!(mean_[b] > 0)) continue;
-      const double scale = lambert_brdf_per_sr(reflectance[b]) / mean_[b];
+      const double scale = lambert_brdf_per_sr(static_cast<float>(reflectance[b])) / mean_[b];
       const Spread spread = spread_of(&found[b], points, bands, scale);
       worst.mean = std::max(worst.mean, spread.mean);
       worst.variance = std::max(worst.variance, spread.variance);
@@ -119,7 +119,7 @@ class Looker {
     return {0.5 * (first + second) / n, (product - first * second / n) / (n - 1)};
   }
 
-  const RayScene& rays_;
+  const Room& room_;
   const RadianceField& field_;
   const DirectLight& direct_;
   std::uint64_t seed_;
@@ -132,13 +132,13 @@ bool exceeds(const Spread& spread, double share) {
 
 }  // namespace
 
-std::vector<std::uint8_t> uneven_zones(const RayScene& rays, const RadianceField& field,
-                                       const DirectLight& direct, std::uint64_t seed, const StopToken* stop) {
-  const ZoneMesh& mesh = rays.mesh();
+std::vector<std::uint8_t> uneven_zones(const RadianceField& field, const DirectLight& direct,
+                                       std::uint64_t seed, const StopToken* stop) {
+  const ZoneMesh& mesh = field.room().mesh();
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
   const auto is_to_stop = [stop] { return stop != nullptr && stop->requested(); };
   if (direct.empty() || is_to_stop()) return uneven;
-  const Looker looker(rays, field, direct, seed);
+  const Looker looker(field, direct, seed);
   std::vector<double> harm(mesh.zone_count(), 0.0);
   tbb::parallel_for(std::size_t{0}, mesh.zone_count(), [&](std::size_t z) {
     if (is_to_stop() || !exceeds(looker.look(ZoneId(z), kFirstLook), kDoubt)) return;

@@ -5,7 +5,6 @@
 #include "scenes/model/stop_token.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/radiance_field.h"
-#include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
@@ -17,8 +16,7 @@ namespace reemit {
 /// differences come first where they would make up more than a twentieth of the area. Eight shadow rays per
 /// zone, more on the candidates; the same for any number of threads. When `stop` (may be null) is requested
 /// it returns early, and what it returns means nothing.
-std::vector<std::uint8_t> uneven_zones(const RayScene& rays, const RadianceField& field,
-                                       const DirectLight& direct, std::uint64_t seed,
-                                       const StopToken* stop = nullptr);
+std::vector<std::uint8_t> uneven_zones(const RadianceField& field, const DirectLight& direct,
+                                       std::uint64_t seed, const StopToken* stop = nullptr);
 
 }  // namespace reemit

@@ -24,7 +24,7 @@ static_assert(kReplicates == ZoneSums::kGroups);
 void add_difference(const HemisphereGather& gather, const PathTracer& path, const SurfacePoint& x,
                     const PointSampler& sampler, std::uint32_t rays, PathKey key, float* sum) {
   const std::size_t bands = gather.band_count();
-  const float* reflectance = gather.field().reflectance(x.triangle.index(), x.front);
+  const float* reflectance = gather.room().surfaces().reflectance(x.triangle, x.front);
   std::vector<float> plus(bands);
   std::vector<float> minus(bands);
   GatherBatch batch(gather);
@@ -93,7 +93,7 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
   return worst;
 }
 
-std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& rays, const Solution& solution,
+std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& solution,
                                            const StopToken& stop) {
   if (stop.requested()) return std::nullopt;
   const std::uint64_t seed = solution.settings.seed;
@@ -101,11 +101,11 @@ std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& r
   const double offset = static_cast<double>(rng.uniform4(0, kReplicates, 0)[0]);
   const std::vector<ZoneProbe> probes = choose_probes(solution, ZoneBiasEffort::kPoints, offset);
   if (probes.size() < ZoneBiasEffort::kPoints) return std::nullopt;
-  const RadianceField field(scene, solution, rays, ZoneSums::kGroups);
-  const DirectLight direct(scene, rays);
-  const HemisphereGather gather(rays, field, direct, GatherSettings{.seed = seed}, &stop);
+  const RadianceField field(room, solution, ZoneSums::kGroups);
+  const DirectLight direct(room);
+  const HemisphereGather gather(field, direct, GatherSettings{.seed = seed}, &stop);
   if (stop.requested()) return std::nullopt;
-  const PathTracer path(rays, field, direct, seed);
+  const PathTracer path(room, direct, seed);
 
   // Probes stand for areas of their own, and their sum is the mean radiance times the area.
   const std::size_t bands = field.band_count();
@@ -119,7 +119,7 @@ std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& r
   std::vector<double> scale;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const std::array<float, 4> u = rng.uniform4(i, kReplicates + 1, 0);
-    points.push_back(point_in_zone(rays, probes[i].zone, {u[0], u[1]}));
+    points.push_back(point_in_zone(room, probes[i].zone, {u[0], u[1]}));
     for (const double p : power) scale.push_back(p > 0 ? ZoneBiasEffort::kPoints * probes[i].area / p : 0);
   }
   const ZoneBiasEffort effort = ZoneBiasEffort::of(static_cast<double>(solution.record.rays));

@@ -6,8 +6,8 @@
 #include "scenes/model/stop_token.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
-#include "solver/gather/surface_point.h"
 #include "solver/solution/zone_bias.h"
+#include "solver/trace/surface_point.h"
 
 namespace reemit {
 
@@ -38,7 +38,6 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
 
 /// The same for light gathered all over the surfaces of the room, over its mean reflected radiance there.
 /// Nothing without light, or when `stop` is requested before it is done.
-std::optional<ZoneBias> estimate_zone_bias(const Scene& scene, const RayScene& rays, const Solution& solution,
-                                           const StopToken& stop);
+std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& solution, const StopToken& stop);
 
 }  // namespace reemit

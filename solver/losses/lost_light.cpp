@@ -43,8 +43,7 @@ ProbeSet emitted_probes(const TransportScene& transport, const Emission& emissio
   probes.flight = plan_emission_flight(emission, bands, kProbes, 0.5);
   for (std::size_t s = 0; s < emission.sources.size(); ++s) {
     const EmissionSource& source = emission.sources[s];
-    const bool outside = !source.zone.valid() &&
-                         std::holds_alternative<DirectionalLight>(transport.scene().lights[source.light]);
+    const bool outside = !source.zone.valid() && is_at_infinity(transport.scene().lights[source.light]);
     double power = 0;
     for (std::size_t b = 0; b < bands && !outside; ++b)
       power += static_cast<double>(emission.quanta[s * bands + b]) * emission.watts_per_quantum[b];
@@ -179,7 +178,7 @@ double room_diagonal(const Scene& scene) {
 
 bool has_directional(const Scene& scene) {
   return std::any_of(scene.lights.begin(), scene.lights.end(),
-                     [](const PunctualLight& l) { return std::holds_alternative<DirectionalLight>(l); });
+                     [](const PunctualLight& l) { return is_at_infinity(l); });
 }
 
 void warn_of_escapes(const TransportScene& transport, const Emission& emission, const Solution& solution,

@@ -54,8 +54,8 @@ std::vector<std::string> luminaire_warnings(const TransportScene& transport, con
 }
 
 std::vector<std::string> luminaire_warnings(const Scene& scene, const ZoneMesh& mesh) {
-  const RayScene rays(mesh);
-  const TransportScene transport(scene, mesh, rays);
+  const Room room(scene, mesh);
+  const TransportScene transport(room);
   return luminaire_warnings(transport, collect_emission(transport));
 }
 

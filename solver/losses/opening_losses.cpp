@@ -8,8 +8,7 @@
 #include <variant>
 
 #include "scenes/model/opening_reach.h"
-#include "solver/emit/photometric_emitter.h"
-#include "solver/emit/punctual_packets.h"
+#include "solver/emit/punctual_emitter.h"
 #include "solver/losses/probe_flight.h"
 #include "solver/shoot/emission.h"
 
@@ -20,40 +19,6 @@ constexpr std::uint32_t kPacketsPerLight = 4096;
 constexpr std::uint32_t kLeastPacketsPerLight = 64;
 constexpr std::uint32_t kMostPackets = 1U << 19;
 constexpr double kLeastLoss = 1e-3;
-
-/// Where a light shines out of: what lies between a point of the opening and here parts the point from the
-/// room. Nothing for lights at infinity.
-struct MouthOf {
-  const RayScene& rays;
-
-  std::optional<Vec3f> operator()(const PointLight& l) const { return rays.normalised(l.position); }
-  std::optional<Vec3f> operator()(const SpotLight& l) const { return rays.normalised(l.position); }
-  std::optional<Vec3f> operator()(const DirectionalLight&) const { return std::nullopt; }
-  std::optional<Vec3f> operator()(const PhotometricLight& l) const {
-    const Vec3 aim = main_direction(*l.table);
-    const double reach = opening_reach(l.opening, aim) / rays.metres_per_unit() + PhotometricEmitter::kClear;
-    return (rays.normalised(l.position).cast<double>() + l.orientation * (reach * aim)).cast<float>();
-  }
-
-  /// Mean direction of the light, or the nadir where it goes to all sides alike; luminaire coordinates.
-  static Vec3 main_direction(const IntensityTable& table) {
-    constexpr int kSteps = 64;
-    constexpr double kAllSidesAlike = 0.02;
-    Vec3 sum = Vec3::Zero();
-    double total = 0;
-    for (int i = 0; i < kSteps; ++i)
-      for (int j = 0; j < 2 * kSteps; ++j) {
-        const double z = 1 - (2 * i + 1.0) / kSteps;
-        const double azimuth = std::numbers::pi * (j + 0.5) / kSteps;
-        const double r = std::sqrt(1 - z * z);
-        const Vec3 direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
-        const double candela = table.intensity(direction);
-        sum += candela * direction;
-        total += candela;
-      }
-    return sum.norm() > kAllSidesAlike * total ? Vec3(sum.normalized()) : Vec3(0, 0, -1);
-  }
-};
 
 /// The surface between two points, if there is one.
 std::optional<SurfaceId> between(const TransportScene& transport, const Vec3f& from, const Vec3f& to) {
@@ -188,8 +153,8 @@ class OpeningBooks {
   std::uint32_t packets_ = 0, on_backs_ = 0, beyond_ = 0, touching_ = 0, seen_ = 0;
 };
 
-OpeningLoss loss_of(const TransportScene& transport, std::uint32_t light, const Vec3f& mouth,
-                    std::uint32_t packets) {
+OpeningLoss loss_of(const TransportScene& transport, std::uint32_t light, const PunctualEmitter& emitter,
+                    const Vec3f& mouth, std::uint32_t packets) {
   const PunctualLight& source = transport.scene().lights[light];
   OpeningBooks books(transport, source, mouth);
   const SobolSequence numbers(light);
@@ -197,9 +162,10 @@ OpeningLoss loss_of(const TransportScene& transport, std::uint32_t light, const 
   for (std::uint32_t first = 0; first < packets; first += 16) {
     UniformLanes x;
     for (int d = 0; d < 4; ++d) numbers.sample16(first, d, x.u[d]);
-    for (int lane = 0; lane < 16; ++lane)
-      start_light_ray(source, transport.rays(), x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane], rays,
-                      lane);
+    for (int lane = 0; lane < 16; ++lane) {
+      const LightRay start = start_light_ray(emitter, x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane]);
+      rays.set(lane, start.origin, start.direction);
+    }
     trace_probes(transport.rays(), rays, 16, [&](int, const ProbeRay& probe) { books.add(probe); });
   }
   return books.loss(light);
@@ -215,9 +181,11 @@ std::vector<OpeningLoss> opening_losses(const TransportScene& transport, const S
                                   kLeastPacketsPerLight, kPacketsPerLight);
   for (std::size_t l = 0; l < lights.size(); ++l) {
     end_if_requested(stop);
-    const std::optional<Vec3f> mouth = std::visit(MouthOf{transport.rays()}, lights[l]);
-    if (!mouth) continue;
-    const OpeningLoss loss = loss_of(transport, static_cast<std::uint32_t>(l), *mouth, packets);
+    // Where it is meant to be, not where its rays start.
+    const PunctualEmitter emitter = make_punctual_emitter(lights[l], transport.rays());
+    if (is_at_infinity(emitter)) continue;
+    const OpeningLoss loss =
+        loss_of(transport, static_cast<std::uint32_t>(l), emitter, mouth_of_light(emitter), packets);
     if (loss.lost > kLeastLoss || loss.touching > 0) losses.push_back(loss);
   }
   return losses;

@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "solver/emit/punctual_packets.h"
+#include "solver/emit/punctual_emitter.h"
 #include "solver/matrix/zone_points.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"
@@ -62,11 +62,11 @@ std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const Ray
                                            std::uint64_t seed) {
   std::vector<LeakAccount> leaks;
   const SobolSequence numbers(seed);
-  Ray16 ray;
+  const PunctualEmitter emitter = make_punctual_emitter(light, rays);
   for (std::uint32_t k = 0; k < kRaysPerLight; ++k) {
-    start_light_ray(light, rays, numbers.sample(k, 0), numbers.sample(k, 1), numbers.sample(k, 2),
-                    numbers.sample(k, 3), ray, 0);
-    if (const auto account = end_of_ray(rays, ray.origin(0), ray.direction(0))) count(leaks, *account);
+    const LightRay start = start_light_ray(emitter, numbers.sample(k, 0), numbers.sample(k, 1),
+                                           numbers.sample(k, 2), numbers.sample(k, 3));
+    if (const auto account = end_of_ray(rays, start.origin, start.direction)) count(leaks, *account);
   }
   return leaks;
 }

@@ -8,7 +8,6 @@
 
 #include "scenes/model/error.h"
 #include "solver/emit/punctual_emitter.h"
-#include "solver/emit/punctual_packets.h"
 #include "solver/matrix/conjugate_gradients.h"
 #include "solver/matrix/factor_noise.h"
 #include "solver/matrix/form_factors.h"
@@ -53,7 +52,7 @@ void add_punctual_lights(const TransportScene& transport, std::uint64_t seed, Zo
   const std::vector<PunctualLight>& lights = transport.lights();
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const Spectrum& emission = emission_of(lights[l]);
-    const Spectrum power = light_power(lights[l], transport.rays());
+    const Spectrum power = light_power(lights[l], transport.rays().metres_per_unit());
     Eigen::Index band = 0;
     if (!(emission.maxCoeff(&band) > 0)) continue;
     const std::uint64_t light_seed = matrix_seed(seed, MatrixNumbers::kLightLeaks, l, 0);
@@ -93,7 +92,8 @@ ZonalSystem make_system(const TransportScene& transport, const FormFactors& fact
     system.areas(z) = factors.zone_area(zone.index());
     for (std::size_t b = 0; b < transport.bands(); ++b) {
       system.emitted(z, to_index(b)) = solution.emitted_radiosity(zone, b);
-      system.reflectance(z, to_index(b)) = transport.reflectance(transport.mesh().zone_surface(zone))[b];
+      system.reflectance(z, to_index(b)) =
+          transport.surface_model().reflectance(transport.mesh().zone_surface(zone))[b];
     }
   }
   add_punctual_lights(transport, solution.settings.seed, system);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kPointsPerScramble =
     PunctualIrradiance::kRaysPerZone / PunctualIrradiance::kReplicates;
 
-bool lit(const RayScene& rays, const PunctualSample& sample, const Vec3f& origin) {
+bool lit(const RayScene& rays, const LuminaireSample& sample, const Vec3f& origin) {
   return sample.at_infinity ? rays.escapes(origin, sample.target) : rays.visible(origin, sample.target);
 }
 
@@ -24,7 +24,6 @@ PunctualIrradiance punctual_irradiance(const PunctualLight& light, const Transpo
   const ZoneMesh& mesh = transport.mesh();
   const RayScene& rays = transport.rays();
   const PunctualEmitter emitter = make_punctual_emitter(light, rays);
-  const auto metres = static_cast<float>(rays.metres_per_unit());
   PunctualIrradiance result;
   const auto zones = static_cast<Eigen::Index>(mesh.zone_count());
   result.of_zone = RowMatrix::Zero(zones, PunctualIrradiance::kReplicates);
@@ -37,8 +36,8 @@ PunctualIrradiance punctual_irradiance(const PunctualLight& light, const Transpo
       for (std::uint32_t k = 0; k < kPointsPerScramble; ++k) {
         const auto [u, v] = sample_triangle(numbers.sample(k, 0), numbers.sample(k, 1));
         const Vec3f origin = points.origin(u, v);
-        const PunctualSample sample =
-            emitter.sample(origin, points.normal(), numbers.sample(k, 2), numbers.sample(k, 3), metres);
+        const LuminaireSample sample =
+            sample_light(emitter, origin, points.normal(), numbers.sample(k, 2), numbers.sample(k, 3));
         if (sample.factor > 0 && lit(rays, sample, origin)) sum += static_cast<double>(sample.factor);
       }
       result.of_zone(z, r) = sum / kPointsPerScramble;

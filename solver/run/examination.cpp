@@ -14,39 +14,39 @@
 
 namespace reemit {
 
-void record_error(const Scene& scene, Solution& solution) {
-  const ZoneError error = zone_error(scene, solution.mesh, solution.sums);
+void record_error(const SurfaceModel& surfaces, Solution& solution) {
+  const ZoneError error = zone_error(surfaces, solution.mesh, solution.sums);
   solution.record.error = error.rms;
   solution.record.error_bound = error.bound;
   solution.record.error_95th_percentile = error.percentile_95;
   solution.record.unreached_zones = error.unreached;
 }
 
-void gather_what_is_small(const Scene& scene, const RayScene& rays, const Schedule& schedule,
-                          const std::atomic<bool>& interrupt, Solution& solution) {
+void gather_what_is_small(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
+                          Solution& solution) {
   if (interrupt || !gathers_small_zones(solution)) return;
   SolveRecord& record = solution.record;
   SmallZoneLimits limits;
   limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
   if (schedule.limit_s > 0) limits.seconds = schedule.gather_s - seconds_since(schedule.start);
   const bool clock_had_a_say =
-      gather_small_zones(scene, rays, limits, solution, schedule.token(schedule.gather_s, interrupt));
+      gather_small_zones(room, limits, solution, schedule.token(schedule.gather_s, interrupt));
   if (clock_had_a_say && !interrupt) record.stopped = StopReason::kTimeLimit;
 }
 
-void compare_points_with_zones(const Scene& scene, const RayScene& rays, const Schedule& schedule,
-                               const std::atomic<bool>& interrupt, Solution& solution) {
+void compare_points_with_zones(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
+                               Solution& solution) {
   SolveRecord& record = solution.record;
   if (solution.settings.method == SolveMethod::kMatrix) {
-    record.discretisation = discretisation_error(scene, rays, solution, StopToken(interrupt));
-    record.gather_bias = estimate_zone_bias(scene, rays, solution, StopToken(interrupt));
+    record.discretisation = discretisation_error(room, solution, StopToken(interrupt));
+    record.gather_bias = estimate_zone_bias(room, solution, StopToken(interrupt));
     return;
   }
   // Short runs may spend a moment more on it.
   constexpr double kMoment = 0.5;
   const StopToken stop = schedule.token(schedule.limit_s + kMoment, interrupt);
-  record.discretisation = discretisation_error(scene, rays, solution, stop);
-  record.gather_bias = estimate_zone_bias(scene, rays, solution, stop);
+  record.discretisation = discretisation_error(room, solution, stop);
+  record.gather_bias = estimate_zone_bias(room, solution, stop);
 }
 
 void look_for_lost_light(const PreparedRoom& room, const std::atomic<bool>& interrupt, Solution& solution) {

@@ -9,15 +9,15 @@ namespace reemit {
 // What is done with the zones once the last batch is in.
 
 /// Notes the noise of the zones as it stands in the record.
-void record_error(const Scene& scene, Solution& solution);
+void record_error(const SurfaceModel& surfaces, Solution& solution);
 
 /// Light on small zones, which follows the batches and takes time of its own.
-void gather_what_is_small(const Scene& scene, const RayScene& rays, const Schedule& schedule,
-                          const std::atomic<bool>& interrupt, Solution& solution);
+void gather_what_is_small(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
+                          Solution& solution);
 
 /// Notes how far points differ from the zones they are in.
-void compare_points_with_zones(const Scene& scene, const RayScene& rays, const Schedule& schedule,
-                               const std::atomic<bool>& interrupt, Solution& solution);
+void compare_points_with_zones(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
+                               Solution& solution);
 
 /// Notes where light is lost, or that nobody looked.
 void look_for_lost_light(const PreparedRoom& room, const std::atomic<bool>& interrupt, Solution& solution);

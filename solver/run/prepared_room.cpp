@@ -5,9 +5,7 @@
 namespace reemit {
 
 PreparedRoom::PreparedRoom(const Scene& scene, Solution& solution, const WorkWatch& preparing)
-    : rays((preparing.at(0), solution.mesh)),
-      transport(scene, solution.mesh, rays),
-      emission(collect_emission(transport)) {
+    : room((preparing.at(0), scene), solution.mesh), transport(room), emission(collect_emission(transport)) {
   for (std::size_t b = 0; b < scene.bands.count(); ++b)
     solution.audit.bands[b].watts_per_quantum = emission.watts_per_quantum[b];
   if (is_dark()) {

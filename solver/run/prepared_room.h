@@ -1,10 +1,10 @@
 #pragma once
 #include "scenes/model/scene.h"
 #include "scenes/model/work_watch.h"
+#include "solver/room/room.h"
 #include "solver/shoot/emission.h"
 #include "solver/shoot/transport_scene.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
@@ -21,7 +21,7 @@ struct PreparedRoom {
   /// Nothing emits.
   bool is_dark() const { return emission.sources.empty(); }
 
-  RayScene rays;
+  Room room;
   TransportScene transport;
   Emission emission;
 };

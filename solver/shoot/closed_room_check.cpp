@@ -65,7 +65,8 @@ class WayOut {
         const ZoneId zone =
             transport_.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
         if (!zone.valid() || open_[zone.index()]) return true;
-        if (transport_.reflectance(transport_.mesh().zone_surface(zone))[band_] < 1) return true;
+        if (transport_.surface_model().reflectance(transport_.mesh().zone_surface(zone))[band_] < 1)
+          return true;
         met_.push_back(zone);
         const auto x = rng_.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
         for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = x[d];
@@ -109,9 +110,9 @@ void refuse_closed_perfect_reflector(const TransportScene& transport, const Emis
   const Scene& scene = transport.scene();
   const std::size_t bands = transport.bands();
   for (std::size_t b = 0; b < bands; ++b) {
-    const bool any_perfect = std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& s) {
-      return scene.material_of(s).reflectance[static_cast<Eigen::Index>(b)] >= 1;
-    });
+    bool any_perfect = false;
+    for (std::size_t s = 0; s < transport.surfaces(); ++s)
+      any_perfect = any_perfect || transport.surface_model().reflectance(SurfaceId(s))[b] >= 1;
     if (!any_perfect) continue;
     WayOut way_out(transport, b, seed);
     for (std::size_t s = 0; s < emission.sources.size(); ++s) {

@@ -2,13 +2,14 @@
 
 #include <cmath>
 
-#include "solver/emit/punctual_packets.h"
+#include "solver/emit/punctual_emitter.h"
 
 namespace reemit {
 
 Emission collect_emission(const TransportScene& transport) {
   const ZoneMesh& mesh = transport.mesh();
   const Scene& scene = transport.scene();
+  const SurfaceModel& surfaces = transport.surface_model();
   const std::size_t bands = transport.bands();
   Emission emission;
   std::vector<double> watts;  // [source * bands + band]
@@ -20,19 +21,20 @@ Emission collect_emission(const TransportScene& transport) {
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const TriangleId id(t);
     const BaseTriangle& triangle = mesh.triangle(id);
-    const Material& material = scene.material_of(scene.surfaces[triangle.surface.index()]);
-    if (!material.emits()) continue;
+    if (!surfaces.emits(triangle.surface)) continue;
     const std::size_t per_side = std::size_t{triangle.divisions} * triangle.divisions;
-    const Spectrum power = mesh.triangle_area(id) / static_cast<double>(per_side) * material.exitance();
-    const auto exponent = static_cast<float>(material.emission_exponent);
+    const Spectrum power =
+        mesh.triangle_area(id) / static_cast<double>(per_side) * surfaces.exitance(triangle.surface);
+    const auto exponent = static_cast<float>(surfaces.emission_exponent(triangle.surface));
     for (const bool front : {true, false}) {
-      if (!front && !(material.emits_both_sides && triangle.two_sided)) continue;
+      if (!surfaces.emits(id, front)) continue;
       const std::size_t first = mesh.first_zone(id, front).index();
       for (std::size_t z = 0; z < per_side; ++z) add({ZoneId(first + z), 0, exponent}, power);
     }
   }
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
-    add({ZoneId(), static_cast<std::uint32_t>(l), 0}, light_power(scene.lights[l], transport.rays()));
+    add({ZoneId(), static_cast<std::uint32_t>(l), 0},
+        light_power(scene.lights[l], transport.rays().metres_per_unit()));
 
   const std::size_t count = emission.sources.size();
   emission.quanta.assign(count * bands, 0);

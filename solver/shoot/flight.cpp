@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "solver/emit/punctual_packets.h"
+#include "solver/emit/punctual_emitter.h"
 
 namespace reemit {
 namespace {
@@ -148,12 +148,14 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
   for (int lane = 0; lane < count; ++lane) {
     const EmissionSource* s = special[static_cast<std::size_t>(lane)];
     if (s == nullptr) continue;
-    if (s->zone.valid())
+    if (s->zone.valid()) {
       transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane],
                             sample_cosine_power(x.u[2][lane], x.u[3][lane], s->exponent + 1), rays, lane);
-    else
-      start_light_ray(transport_.lights()[s->light], transport_.rays(), x.u[0][lane], x.u[1][lane],
-                      x.u[2][lane], x.u[3][lane], rays, lane);
+      continue;
+    }
+    const LightRay start = start_light_ray(transport_.emitters()[s->light], x.u[0][lane], x.u[1][lane],
+                                           x.u[2][lane], x.u[3][lane]);
+    rays.set(lane, start.origin, start.direction);
   }
 }
 

@@ -40,7 +40,8 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
     accounts[lane] = {};
     if (t == RayScene::kMiss) continue;
     const ZoneId zone = transport.zone_of(t, hits.u[lane], hits.v[lane], hits.front[lane]);
-    if (!second_look && (!zone.valid() || transport.is_at_edge(t, hits.u[lane], hits.v[lane]))) continue;
+    if (!second_look && (!zone.valid() || transport.rays().is_at_edge(t, hits.u[lane], hits.v[lane])))
+      continue;
     if (zone.valid()) {
       accounts[lane] = {&incident.quanta[zone.index() * bands], shared, nullptr};
       incident.touch(zone.index());
@@ -158,7 +159,7 @@ void reflect(const TransportScene& transport, SweepAccounts& sweep, std::vector<
           settle();
           surface = s;
         }
-        const double* rho = transport.reflectance(surface);
+        const double* rho = transport.surface_model().reflectance(surface);
         for (std::size_t b = 0; b < bands; ++b) {
           const std::size_t i = z * bands + b;
           std::int64_t in = 0;

@@ -4,17 +4,15 @@
 
 namespace reemit {
 
-TransportScene::TransportScene(const Scene& scene, const ZoneMesh& mesh, const RayScene& rays)
-    : scene_(&scene),
-      mesh_(&mesh),
-      rays_(&rays),
-      bands_(scene.bands.count()),
-      lights_(lights_before_faces(scene, rays)) {
-  for (const Surface& s : scene.surfaces) {
-    const Spectrum& rho = scene.material_of(s).reflectance;
-    reflectance_.insert(reflectance_.end(), rho.begin(), rho.end());
-    largest_reflectance_.push_back(rho.maxCoeff());
-  }
+TransportScene::TransportScene(const Room& room)
+    : room_(&room),
+      mesh_(&room.mesh()),
+      rays_(&room.rays()),
+      bands_(room.band_count()),
+      lights_(lights_before_faces(room.scene(), room.rays())) {
+  const ZoneMesh& mesh = *mesh_;
+  const RayScene& rays = *rays_;
+  for (const PunctualLight& light : lights_) emitters_.push_back(make_punctual_emitter(light, rays));
   patches_.reserve(mesh.triangle_count());
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const TriangleId t(i);
@@ -24,21 +22,15 @@ TransportScene::TransportScene(const Scene& scene, const ZoneMesh& mesh, const R
     const Vec3f e2 = rays.corner(t, 2) - p0;
     const auto scale = 1.0F / static_cast<float>(n);
     patches_.push_back({p0, scale * e1, scale * e2, p0 + (e1 + e2) / 3.0F, Frame(rays.normal(t)), n,
-                        mesh.triangle(t).two_sided, rays.is_foot(t), rays.edge_share(t),
-                        mesh.first_zone(t, true).index()});
+                        rays.is_foot(t), mesh.first_zone(t, true).index()});
   }
 }
 
 void TransportScene::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays,
                                 int lane) const {
-  const TriangleId t = mesh_->zone_triangle(z);
-  const bool front = mesh_->zone_is_front(z);
-  const auto corners = mesh_->zone_barycentrics(z);
   const auto [a, b] = sample_triangle(u0, u1);
-  const auto inside = [&](double Barycentric::*k) {
-    return static_cast<float>((1 - a - b) * corners[0].*k + a * corners[1].*k + b * corners[2].*k);
-  };
-  start_at(t, inside(&Barycentric::u), inside(&Barycentric::v), front, local, rays, lane);
+  const SidePoint x = mesh_->zone_point(z, a, b);
+  start_at(x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v), x.front, local, rays, lane);
 }
 
 void TransportScene::start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays,

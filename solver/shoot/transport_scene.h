@@ -5,30 +5,32 @@
 
 #include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
+#include "solver/emit/punctual_emitter.h"
+#include "solver/room/room.h"
 #include "solver/sampling/warp.h"
 #include "solver/shoot/ray_lanes.h"
 #include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
-/// What packets need of the room, laid out for the inner loop: one cache-friendly record per base triangle
-/// and the reflectances per surface. The room, mesh and ray scene must outlive it.
+/// What packets need of the room, laid out for the inner loop: one cache-friendly record per base triangle.
+/// The room must outlive it.
 class TransportScene {
  public:
-  TransportScene(const Scene& scene, const ZoneMesh& mesh, const RayScene& rays);
+  explicit TransportScene(const Room& room);
 
-  const Scene& scene() const { return *scene_; }
+  const Room& room() const { return *room_; }
+  const Scene& scene() const { return room_->scene(); }
   /// The lights of the room where their rays start (lights_before_faces).
   const std::vector<PunctualLight>& lights() const { return lights_; }
+  /// The same as packets start at them.
+  const std::vector<PunctualEmitter>& emitters() const { return emitters_; }
   const ZoneMesh& mesh() const { return *mesh_; }
   const RayScene& rays() const { return *rays_; }
+  const SurfaceModel& surface_model() const { return room_->surfaces(); }
   std::size_t bands() const { return bands_; }
   std::size_t zones() const { return mesh_->zone_count(); }
-  std::size_t surfaces() const { return scene_->surfaces.size(); }
-
-  /// Reflectance of a surface, one number per band [0,1].
-  const double* reflectance(SurfaceId s) const { return &reflectance_[s.index() * bands_]; }
-  double largest_reflectance(SurfaceId s) const { return largest_reflectance_[s.index()]; }
+  std::size_t surfaces() const { return room_->surfaces().surface_count(); }
 
   /// Puts the geometry of a zone into lanes first .. last-1.
   void put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {
@@ -106,14 +108,7 @@ class TransportScene {
 
   /// Zone that a hit belongs to; not valid when it is the back of a one-sided face.
   ZoneId zone_of(std::uint32_t triangle, float u, float v, bool front) const {
-    const TrianglePatch& p = patches_[triangle];
-    if (!front && !p.two_sided) return ZoneId();
-    const std::size_t back = front ? 0 : std::size_t{p.divisions} * p.divisions;
-    return ZoneId(p.first_zone + back + zone_in_triangle(p.divisions, u, v));
-  }
-  /// RayScene::is_at_edge, from the record that zone_of has read.
-  bool is_at_edge(std::uint32_t triangle, float u, float v) const {
-    return std::min({u, v, 1 - u - v}) < patches_[triangle].edge_share && rays_->is_at_edge(triangle, u, v);
+    return mesh_->zone_at(TriangleId(triangle), u, v, front);
   }
 
  private:
@@ -147,20 +142,17 @@ class TransportScene {
     Vec3f corner, edge1, edge2, middle;
     Frame frame;  // about the front normal
     std::uint32_t divisions;
-    bool two_sided;
     bool is_foot;
-    float edge_share;
     std::size_t first_zone;
   };
 
-  const Scene* scene_;
+  const Room* room_;
   const ZoneMesh* mesh_;
   const RayScene* rays_;
   std::size_t bands_;
   std::vector<PunctualLight> lights_;
+  std::vector<PunctualEmitter> emitters_;
   std::vector<TrianglePatch> patches_;
-  std::vector<double> reflectance_;
-  std::vector<double> largest_reflectance_;
 };
 
 }  // namespace reemit

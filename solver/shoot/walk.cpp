@@ -160,8 +160,8 @@ class WalkTask {
     rng_.bits4x16(id, batch_, bounce, bits);
     for (int lane = 0; lane < count; ++lane) {
       const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
-      if (!second_look && (!zone[lane].valid() ||
-                           transport_.is_at_edge(hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
+      if (!second_look && (!zone[lane].valid() || transport_.rays().is_at_edge(
+                                                      hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
         doubtful_.add(transport_.rays(), rays, hits_, lane, id[lane], quanta);
         count_event(books_.events.second_looks);
         continue;
@@ -186,8 +186,8 @@ class WalkTask {
 
   void reflect(SurfaceId surface, std::uint32_t id, const std::int64_t* quanta, const BitLanes& bits,
                std::size_t lane) {
-    const double survival = transport_.largest_reflectance(surface);
-    const double* rho = transport_.reflectance(surface);
+    const double survival = transport_.surface_model().largest_reflectance(surface);
+    const double* rho = transport_.surface_model().reflectance(surface);
     std::int64_t* absorbed = &absorbed_[surface.index() * bands_];
     if (!(low_bytes_to_unit(bits, lane) < survival)) {
       for (std::size_t b = 0; b < bands_; ++b) absorbed[b] += quanta[b];

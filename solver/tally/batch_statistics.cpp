@@ -103,11 +103,6 @@ struct BandError {
   std::array<double, kGroups * kGroups> products{};
 };
 
-double reflectance_of(const Scene& scene, const ZoneMesh& mesh, std::size_t zone, std::size_t band) {
-  const Surface& surface = scene.surfaces[mesh.zone_surface(ZoneId(zone)).index()];
-  return scene.material_of(surface).reflectance[static_cast<Eigen::Index>(band)];
-}
-
 double variance_of_mean(const ZoneSums& sums, std::size_t i) {
   return sums.squared_error(sums.direct[i] + sums.indirect[i], sums.direct_cross[i] + sums.indirect_cross[i],
                             sums.total_squared[i]);
@@ -132,9 +127,9 @@ void add_products(const ZoneSums& sums, std::size_t i, double mean, double weigh
 }
 
 /// By band. Partial sums of fixed chunks are added in order: the same bits on any number of threads.
-std::vector<BandError> band_errors(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums,
+std::vector<BandError> band_errors(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums,
                                    bool with_groups) {
-  const std::size_t bands = scene.bands.count();
+  const std::size_t bands = surfaces.band_count();
   const std::size_t zones = mesh.zone_count();
   const std::size_t chunks = (zones + kChunk - 1) / kChunk;
   const auto w = static_cast<double>(sums.weight());
@@ -142,11 +137,12 @@ std::vector<BandError> band_errors(const Scene& scene, const ZoneMesh& mesh, con
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     for (std::size_t z = chunk * kChunk; z < std::min(zones, (chunk + 1) * kChunk); ++z) {
       const double area = mesh.zone_area(ZoneId(z));
+      const double* reflectance = surfaces.reflectance(mesh.zone_surface(ZoneId(z)));
       for (std::size_t b = 0; b < bands; ++b) {
         const std::size_t i = z * bands + b;
         const double mean = (sums.direct[i] + sums.indirect[i]) / w;
         if (mean == 0) continue;
-        const double r = reflectance_of(scene, mesh, z, b);
+        const double r = reflectance[b];
         BandError& part = parts[chunk * bands + b];
         part.noise += area * r * r * variance_of_mean(sums, i);
         part.signal += area * r * r * mean * mean;
@@ -200,23 +196,23 @@ void find_percentile(const ZoneSums& sums, std::size_t bands, ZoneError& result)
 
 }  // namespace
 
-double zone_rms_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums) {
+double zone_rms_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums) {
   if (sums.batches < 2) return std::numeric_limits<double>::infinity();
   double worst = 0;
-  for (const BandError& band : band_errors(scene, mesh, sums, false))
+  for (const BandError& band : band_errors(surfaces, mesh, sums, false))
     worst = std::max(worst, relative_rms(band));
   return worst;
 }
 
-ZoneError zone_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums) {
+ZoneError zone_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums) {
   ZoneError result;
-  find_percentile(sums, scene.bands.count(), result);
+  find_percentile(sums, surfaces.band_count(), result);
   if (sums.batches < 2) {
     result.rms = result.bound = result.percentile_95 = std::numeric_limits<double>::infinity();
     return result;
   }
   const std::size_t groups = groups_with_batches(sums);
-  for (const BandError& band : band_errors(scene, mesh, sums, true)) {
+  for (const BandError& band : band_errors(surfaces, mesh, sums, true)) {
     const double rms = relative_rms(band);
     result.rms = std::max(result.rms, rms);
     const double quotient = largest_error_quotient(std::span(band.products).first(groups * groups), groups);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mesh/zones/zone_mesh.h"
-#include "scenes/model/scene.h"
+#include "solver/reflect/surface_model.h"
 #include "solver/solution/energy_audit.h"
 #include "solver/solution/solution.h"
 #include "solver/tally/batch_books.h"
@@ -39,8 +39,8 @@ void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> dir
                       std::span<const double> indirect);
 
 /// Rms error so far; infinite before two batches.
-double zone_rms_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums);
+double zone_rms_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums);
 /// All that is known about the error; everything but `unreached` is infinite before two batches.
-ZoneError zone_error(const Scene& scene, const ZoneMesh& mesh, const ZoneSums& sums);
+ZoneError zone_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums);
 
 }  // namespace reemit

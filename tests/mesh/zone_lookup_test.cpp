@@ -1,6 +1,7 @@
 #include "mesh/zones/zone_lookup.h"
 
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -70,6 +71,30 @@ TEST(ZoneLookup, PointsOutsideTheTriangleAreClampedIntoIt) {
                                                                    {-1, -1},
                                                                    {9, -9}})
       EXPECT_LT(zone_in_triangle(n, u, v), n * n) << n << " " << u << " " << v;
+}
+
+TEST(ZoneMesh, PointsOfAZoneAreInThatZoneAndOneSidedBacksHaveNone) {
+  BaseMesh base;
+  base.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}};
+  for (const bool two_sided : {false, true}) {
+    BaseTriangle triangle;
+    triangle.vertex = {0, 1, 2};
+    triangle.divisions = two_sided ? 5 : 3;
+    triangle.two_sided = two_sided;
+    base.triangles.push_back(triangle);
+  }
+  const ZoneMesh mesh(base);
+  ASSERT_EQ(mesh.zone_count(), 9U + 2 * 25U);
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z)
+    for (const auto& [a, b] : {std::pair(0.1F, 0.1F), std::pair(0.8F, 0.1F), std::pair(0.1F, 0.8F)}) {
+      const SidePoint x = mesh.zone_point(ZoneId(z), a, b);
+      EXPECT_EQ(mesh.zone_at(x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v), x.front),
+                ZoneId(z));
+    }
+  EXPECT_TRUE(mesh.has_zones(TriangleId(0), true));
+  EXPECT_FALSE(mesh.has_zones(TriangleId(0), false));
+  EXPECT_FALSE(mesh.zone_at(TriangleId(0), 0.3F, 0.3F, false).valid());
+  EXPECT_TRUE(mesh.zone_at(TriangleId(1), 0.3F, 0.3F, false).valid());
 }
 
 TEST(ZoneSizing, DivisionsAreTheSmallestOfTheirSeries) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "tests/support/variable_furnace.h"
 #include "viewer_export/still/film.h"
 #include "viewer_export/still/render_still.h"
@@ -72,7 +73,7 @@ void add_zones(SolveMethod method, Intervals& intervals) {
 void add_vertices(bool average_zones, Intervals& intervals) {
   const VariableFurnace furnace(6);
   const ZoneMesh mesh = furnace.room().mesh().mesh;
-  const RayScene rays(mesh);
+  const Room walls(furnace.room().scene(), mesh);
   VertexSettings settings;
   settings.average_zones = average_zones;
   settings.gather_rays = 128;
@@ -80,7 +81,7 @@ void add_vertices(bool average_zones, Intervals& intervals) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Solution s = solve_furnace(furnace, SolveMethod::kShooting, seed);
     settings.seed = seed;
-    const VertexData data = gather_vertices(furnace.room().scene(), s, rays, settings, {}, kNever);
+    const VertexData data = gather_vertices(walls, s, settings, {}, kNever);
     for (std::size_t v = 0; v < data.vertex_count(); ++v)
       intervals.add(std::numbers::pi * static_cast<double>(data.radiance[v]),
                     std::numbers::pi * static_cast<double>(data.radiance_stderr[v]),
@@ -91,13 +92,12 @@ void add_vertices(bool average_zones, Intervals& intervals) {
 void add_pixels(const StillSettings& how, Intervals& intervals) {
   const VariableFurnace furnace(5);
   const ZoneMesh mesh = furnace.room().mesh().mesh;
-  const RayScene rays(mesh);
+  const Room walls(furnace.room().scene(), mesh);
   StillSettings settings = how;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Solution s = solve_furnace(furnace, SolveMethod::kShooting, seed);
     settings.seed = seed;
-    const StillImage image =
-        render_still(furnace.room().scene(), s, rays, VariableFurnace::camera(), settings, {}, kNever);
+    const StillImage image = render_still(walls, s, VariableFurnace::camera(), settings, {}, kNever);
     for (std::size_t p = 0; p < image.pixel_count(); ++p)
       intervals.add(std::numbers::pi * static_cast<double>(image.radiance[p]),
                     std::numbers::pi * static_cast<double>(image.radiance_stderr[p]),

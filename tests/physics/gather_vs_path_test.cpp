@@ -8,6 +8,7 @@
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "solver/sampling/sobol.h"
 #include "tests/support/mean_test.h"
 #include "tests/support/test_rooms.h"
@@ -53,15 +54,15 @@ TEST(GatherVsPath, agree_at_points_all_over_a_room) {
   settings.packets = 3'000'000;
   std::atomic<bool> interrupt{false};
   const Solution solution = solve(room.scene(), room.mesh(), settings, {}, interrupt);
-  const RayScene rays(solution.mesh);
-  const RadianceField field(room.scene(), solution, rays);
-  const DirectLight direct(room.scene(), rays);
-  const HemisphereGather gather(rays, field, direct, {});
-  const PathTracer path(rays, field, direct, 1);
+  const Room walls(room.scene(), solution.mesh);
+  const RadianceField field(walls, solution);
+  const DirectLight direct(walls);
+  const HemisphereGather gather(field, direct, {});
+  const PathTracer path(walls, direct, 1);
   GatherBatch batch(gather);
 
   for (std::size_t p = 0; p < kPointCount; ++p) {
-    const SurfacePoint x = point_number(rays, p);
+    const SurfacePoint x = point_number(walls.rays(), p);
     MeanTest gathered;
     MeanTest traced;
     constexpr std::uint32_t kRays = 512;

@@ -15,6 +15,7 @@
 #include "mesh/build_mesh.h"
 #include "solver/gather/direct_light.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "solver/sampling/warp.h"
 #include "tests/solver/emit/luminaire_tables.h"
 #include "tests/support/test_rooms.h"
@@ -168,8 +169,8 @@ Spectrum absorbed(const Scene& scene, MeshResult mesh) {
 
 /// Direct light on the black sphere, at a quasi-random point for every sample [W] per band.
 Spectrum collected(const Scene& scene, const ZoneMesh& mesh) {
-  const RayScene rays(mesh);
-  const DirectLight direct(scene, rays);
+  const Room walls(scene, mesh);
+  const DirectLight direct(walls);
   const SobolSequence numbers(17);
   constexpr std::uint32_t kSamples = 1 << 17;
   const std::array<float, 3> weight{1, 1, 1};
@@ -178,7 +179,8 @@ Spectrum collected(const Scene& scene, const ZoneMesh& mesh) {
     const float place = 8 * numbers.sample(i, 3);  // the eight patches of a sphere are equally large
     const auto patch = static_cast<std::size_t>(place);
     const auto [u, v] = sample_triangle(place - static_cast<float>(patch), numbers.sample(i, 4));
-    const SurfacePoint x = surface_point(rays, TriangleId(mesh.first_patch(0).index() + patch), u, v, true);
+    const SurfacePoint x =
+        surface_point(walls.rays(), TriangleId(mesh.first_patch(0).index() + patch), u, v, true);
     std::array<float, 3> e{0, 0, 0};
     direct.add_sample(x, {numbers.sample(i, 0), numbers.sample(i, 1), numbers.sample(i, 2)}, weight.data(),
                       e.data());

@@ -29,11 +29,11 @@ struct AuditOptions {
 /// Throws Interrupted.
 DirectAudit compare_direct_light(const AuditOptions& options, const Solution& solution) {
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
-  const RayScene rays = build_rays(solution.mesh, options.style);
+  const Room room = build_room(scene, solution.mesh, options.style);
   const InterruptGuard interrupt;
   Progress progress("comparing direct light", progress_style(options.style.quiet, options.style.verbose));
   DirectAudit audit = audit_direct_light(
-      scene, rays, solution, options.settings, [&progress](double done) { progress.update(done); },
+      room, solution, options.settings, [&progress](double done) { progress.update(done); },
       interrupt.requested());
   progress.finish();
   if (interrupt.requested()) throw Interrupted("the comparison was interrupted");

@@ -36,8 +36,9 @@ Camera camera_of_options(const CameraOptions& options, const Scene& scene) {
 
 }  // namespace
 
-std::vector<Camera> cameras_of(const Scene& scene, const RayScene& rays) {
-  return scene.cameras.empty() ? default_cameras(scene, rays) : scene.cameras;
+std::vector<Camera> cameras_of(const Room& room) {
+  const std::vector<Camera>& own = room.scene().cameras;
+  return own.empty() ? default_cameras(room) : own;
 }
 
 void check_view(const CameraOptions& options) {
@@ -49,10 +50,9 @@ void check_view(const CameraOptions& options) {
       "leave it out, or say where the camera is and what it looks at: --eye X,Y,Z --look-at X,Y,Z");
 }
 
-std::vector<Camera> choose_cameras(const CameraOptions& options, const Scene& scene, const RayScene& rays,
-                                   bool several) {
-  if (options.eye) return {camera_of_options(options, scene)};
-  std::vector<Camera> cameras = cameras_of(scene, rays);
+std::vector<Camera> choose_cameras(const CameraOptions& options, const Room& room, bool several) {
+  if (options.eye) return {camera_of_options(options, room.scene())};
+  std::vector<Camera> cameras = cameras_of(room);
   if (options.name.empty() && !several) return {cameras.front()};
   if (options.name.empty() || options.name == "all") {
     if (!several && cameras.size() > 1) {

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "scenes/model/camera.h"
-#include "scenes/model/scene.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/room/room.h"
 
 namespace reemit::cli {
 
@@ -19,14 +18,13 @@ struct CameraOptions {
 };
 
 /// The cameras of the room, or sensible ones if it has none.
-std::vector<Camera> cameras_of(const Scene& scene, const RayScene& rays);
+std::vector<Camera> cameras_of(const Room& room);
 
 /// Throws InputError for an `up` or a field of view without an eye: cameras of the room have their own.
 void check_view(const CameraOptions& options);
 
 /// The cameras to render. Without a name or an eye: all when `several` pictures are possible, else the first.
 /// Throws InputError for an unknown name (the known ones are listed) and for several cameras but one picture.
-std::vector<Camera> choose_cameras(const CameraOptions& options, const Scene& scene, const RayScene& rays,
-                                   bool several);
+std::vector<Camera> choose_cameras(const CameraOptions& options, const Room& room, bool several);
 
 }  // namespace reemit::cli

@@ -88,22 +88,22 @@ ExitCode run_export(const ExportOptions& options) {
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs)
     check_output_file(output, scene.source);  // a .glb may be the room
-  const RayScene rays = build_rays(solution.mesh, options.style);
+  const Room room = build_room(scene, solution.mesh, options.style);
 
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;
   Progress progress("gathering", progress_style(options.style.quiet, options.style.verbose));
   if (!options.vertex.average_zones) progress.begin_step(0, "looking at the zones");
   VertexData data = gather_vertices(
-      scene, solution, rays, options.vertex, [&progress](double done) { progress.update(done); },
+      room, solution, options.vertex, [&progress](double done) { progress.update(done); },
       interrupt.requested());
   progress.finish();
   const bool shows_colours =
       std::any_of(options.outputs.begin(), options.outputs.end(),
                   [](const std::filesystem::path& output) { return export_format_of(output).shows_colours; });
   if (shows_colours)
-    data.tone_map = tone_map_of_room(scene, solution, rays, options.tone_map, options.vertex.threads,
-                                     interrupt.requested());
+    data.tone_map =
+        tone_map_of_room(room, solution, options.tone_map, options.vertex.threads, interrupt.requested());
   for (const std::filesystem::path& output : options.outputs)
     write_output([&] {
       if (options.photometric)

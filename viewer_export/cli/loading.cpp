@@ -66,9 +66,9 @@ Scene load_room_of(const Solution& solution, const fs::path& solution_file,
   return read_room_of(solution, solution_file, override);
 }
 
-RayScene build_rays(const ZoneMesh& mesh, const OutputStyle& style) {
+Room build_room(const Scene& scene, const ZoneMesh& mesh, const OutputStyle& style) {
   const WaitingLine line("building the tree for rays", style_of(style));
-  return RayScene(mesh);
+  return Room(scene, mesh);
 }
 
 }  // namespace reemit::cli

@@ -4,8 +4,8 @@
 
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 #include "viewer_export/cli/command_options.h"
 
 namespace reemit::cli {
@@ -22,6 +22,6 @@ Solution load_solution(const std::filesystem::path& file, const OutputStyle& sty
 /// As read_room_of.
 Scene load_room_of(const Solution& solution, const std::filesystem::path& solution_file,
                    const std::vector<std::filesystem::path>& override, const OutputStyle& style);
-RayScene build_rays(const ZoneMesh& mesh, const OutputStyle& style);
+Room build_room(const Scene& scene, const ZoneMesh& mesh, const OutputStyle& style);
 
 }  // namespace reemit::cli

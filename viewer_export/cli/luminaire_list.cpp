@@ -1,38 +1,28 @@
 #include "viewer_export/cli/luminaire_list.h"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 #include <variant>
 
 #include <nlohmann/json.hpp>
 
-#include "solver/emit/spot_distribution.h"
+#include "solver/emit/punctual_emitter.h"
 #include "viewer_export/cli/text_table.h"
 
 namespace reemit::cli {
 namespace {
 
-using std::numbers::pi;
-
 std::vector<double> numbers_of(const Spectrum& value) {
   return {value.begin(), value.end()};
 }
 
-LuminaireRow row_of(const PointLight& light) {
-  return {light.name, "point", 0, 4 * pi * light.intensity};
-}
-
-LuminaireRow row_of(const SpotLight& light) {
-  return {light.name, "spot", 0, SpotDistribution(light).solid_angle() * light.intensity};
-}
-
-LuminaireRow row_of(const PhotometricLight& light) {
-  return {light.name, "ies", 0, light.table->total_flux() * light.intensity_per_candela};
-}
-
-LuminaireRow row_of(const DirectionalLight& light) {
-  return {light.name, "directional", 0, Spectrum(), light.irradiance};
+LuminaireRow row_of(const PunctualLight& light) {
+  const auto [name, kind] =
+      std::visit([](const auto& l) { return std::pair<std::string, std::string>(l.name, l.kKind); }, light);
+  // Where the light comes from outside, its power is that of any beam one cares to cut out of it.
+  if (is_at_infinity(light)) return {name, kind, 0, Spectrum(), emission_of(light)};
+  constexpr double kAnySize = 1;
+  return {name, kind, 0, light_power(light, kAnySize)};
 }
 
 void add_surface(const std::string& name, const Material& material, const SurfaceAreas& areas,
@@ -56,9 +46,7 @@ std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshReport& 
   std::vector<LuminaireRow> rows;
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
     add_surface(scene.surfaces[s].name, scene.material_of(scene.surfaces[s]), report.surfaces[s], rows);
-  for (const PunctualLight& light : scene.lights) {
-    rows.push_back(std::visit([](const auto& l) { return row_of(l); }, light));
-  }
+  for (const PunctualLight& light : scene.lights) rows.push_back(row_of(light));
   return rows;
 }
 

@@ -89,8 +89,8 @@ double mean_samples(const StillImage& image) {
 
 class Renderer {
  public:
-  Renderer(const RenderOptions& options, const Scene& scene, const Solution& solution, const RayScene& rays)
-      : options_(options), scene_(scene), solution_(solution), rays_(rays) {}
+  Renderer(const RenderOptions& options, const Room& room, const Solution& solution)
+      : options_(options), room_(room), solution_(solution) {}
 
   void render(const Job& job) {
     const auto start = std::chrono::steady_clock::now();
@@ -101,8 +101,8 @@ class Renderer {
     const auto on_progress = [&progress](const StillProgress& now) {
       progress.update(now.fraction, fmt::format("error {}", percent_text(now.error)));
     };
-    const StillImage image = render_still(scene_, solution_, rays_, job.camera, options_.still, on_progress,
-                                          interrupt_.requested());
+    const StillImage image =
+        render_still(room_, solution_, job.camera, options_.still, on_progress, interrupt_.requested());
     progress.finish();
     std::optional<WrittenImage> written;
     write_output([&] { written = write_still_image(image, job.file, options_.tone_map); });
@@ -120,7 +120,7 @@ class Renderer {
 
  private:
   void warn_of_eye(const Camera& camera) const {
-    const std::string badly_placed = eye_warning(camera, scene_, solution_, rays_);
+    const std::string badly_placed = eye_warning(camera, room_, solution_);
     if (!badly_placed.empty()) print_warnings({fmt::format("camera '{}': {}", camera.name, badly_placed)});
   }
 
@@ -161,9 +161,8 @@ class Renderer {
   }
 
   const RenderOptions& options_;
-  const Scene& scene_;
+  const Room& room_;
   const Solution& solution_;
-  const RayScene& rays_;
   InterruptGuard interrupt_;
   nlohmann::ordered_json pictures_ = nlohmann::ordered_json::array();
 };
@@ -203,14 +202,14 @@ ExitCode run_render(RenderOptions options) {
   };
   if (!into_folder) check_output(options.output);
   const auto [scene, solution] = load_source(options);
-  const RayScene rays = build_rays(solution.mesh, options.style);
-  const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, scene, rays, into_folder));
+  const Room room = build_room(scene, solution.mesh, options.style);
+  const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, room, into_folder));
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) check_output(job.file);
 
   options.still.width = options.size.width;
   options.still.height = options.size.height;
-  Renderer renderer(options, scene, solution, rays);
+  Renderer renderer(options, room, solution);
   std::size_t done = 0;
   while (done < jobs.size() && !renderer.interrupted()) renderer.render(jobs[done++]);
   if (renderer.interrupted() && !options.style.quiet) {

@@ -196,28 +196,28 @@ Camera outside_camera(const RayScene& rays, const Vec3& up) {
   return camera_towards(middle + distance * normal, middle, level, 1);
 }
 
-std::vector<Camera> cameras_in(const Scene& scene, const Surroundings& room, const LitSpace& space) {
+std::vector<Camera> cameras_in(const Room& room, const Surroundings& around, const LitSpace& space) {
   std::vector<Camera> cameras;
   if (!(space.width > kLeastSpace)) return cameras;
-  const std::vector<Eye> eyes = find_eyes(room, space);
-  const LitCells lit(scene, space);
+  const std::vector<Eye> eyes = find_eyes(around, space);
+  const LitCells lit(room.surfaces(), space);
   std::vector<Panorama> panoramas;
   for (const Eye& eye : eyes)
-    panoramas.push_back(look_around(room.rays, room.axes, lit, kCell * space.width, eye.place));
-  const double distance = space.width * room.rays.metres_per_unit();
+    panoramas.push_back(look_around(room.rays(), around.axes, lit, kCell * space.width, eye.place));
+  const double distance = space.width * room.rays().metres_per_unit();
   for (const View& view : choose_views(panoramas, eyes, space.width))
-    cameras.push_back(camera_of(view, room, distance, cameras.size() + 1));
+    cameras.push_back(camera_of(view, around, distance, cameras.size() + 1));
   return cameras;
 }
 
 }  // namespace
 
-std::vector<Camera> default_cameras(const Scene& scene, const RayScene& rays) {
-  const Vec3 up = up_direction(scene);
-  const Surroundings room(rays, up);
-  std::vector<Camera> cameras = cameras_in(scene, room, trace_light(scene, rays));
-  if (cameras.empty()) cameras = cameras_in(scene, room, trace_from_all_surfaces(scene, rays));
-  if (cameras.empty()) cameras.push_back(outside_camera(rays, up));
+std::vector<Camera> default_cameras(const Room& room) {
+  const Vec3 up = up_direction(room.scene());
+  const Surroundings around(room.rays(), up);
+  std::vector<Camera> cameras = cameras_in(room, around, trace_light(room));
+  if (cameras.empty()) cameras = cameras_in(room, around, trace_from_all_surfaces(room));
+  if (cameras.empty()) cameras.push_back(outside_camera(room.rays(), up));
   return cameras;
 }
 

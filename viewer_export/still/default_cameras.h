@@ -2,8 +2,7 @@
 #include <vector>
 
 #include "scenes/model/camera.h"
-#include "scenes/model/scene.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/room/room.h"
 
 namespace reemit {
 
@@ -13,6 +12,6 @@ namespace reemit {
 /// show most: lit surfaces of many kinds, far away, with nothing before the eye; each further one by what it
 /// shows that those before it do not. A room without free space (a lone polygon) is shown from outside. Some
 /// 150,000 rays; deterministic. Pre: `rays` has triangles.
-std::vector<Camera> default_cameras(const Scene& scene, const RayScene& rays);
+std::vector<Camera> default_cameras(const Room& room);
 
 }  // namespace reemit

@@ -22,24 +22,21 @@ struct Sights {
   int backs = 0;        ///< Of one-sided faces: a camera looks through them.
   int from_behind = 0;  ///< Sides that are not the front, those included.
 
-  void add(const RayScene& rays, const Solution& solution, const Scene& scene, const Vec3f& origin,
-           const Vec3f& direction) {
+  void add(const Room& room, const Solution& solution, const Vec3f& origin, const Vec3f& direction) {
     ++all;
     Hit hit;
-    if (!rays.closest(origin, direction, hit)) {
+    if (!room.rays().closest(origin, direction, hit)) {
       ++nothing;
       return;
     }
     if (!hit.front) ++from_behind;
-    const BaseTriangle& triangle = rays.mesh().triangle(hit.triangle);
-    if (!hit.front && !triangle.two_sided) {
+    const ZoneId zone = room.mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+    if (!zone.valid()) {
       ++backs;
       return;
     }
-    const Material& material = scene.material_of(scene.surfaces[triangle.surface.index()]);
-    const ZoneId zone = rays.mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
-    bool lights = material.emits() && (hit.front || material.emits_both_sides);
-    for (std::size_t b = 0; b < scene.bands.count(); ++b)
+    bool lights = room.surfaces().emits(hit.triangle, hit.front);
+    for (std::size_t b = 0; b < room.band_count(); ++b)
       lights = lights || solution.irradiance(zone, b).mean > 0;
     if (lights) ++lit;
   }
@@ -53,36 +50,36 @@ bool is_dark(const Solution& solution) {
          std::all_of(solution.sums.indirect.begin(), solution.sums.indirect.end(), is_zero);
 }
 
-Sights around(const Vec3f& eye, const RayScene& rays, const Solution& solution, const Scene& scene) {
+Sights around(const Vec3f& eye, const Room& room, const Solution& solution) {
   Sights sights;
   for (int i = 0; i < kSurroundRays; ++i) {
     const auto [z, azimuth] = sphere_lattice(i, kSurroundRays);
     const double r = std::sqrt(1 - z * z);
     const Vec3 direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
-    sights.add(rays, solution, scene, eye, direction.cast<float>().normalized());
+    sights.add(room, solution, eye, direction.cast<float>().normalized());
   }
   return sights;
 }
 
-Sights in_picture(const Camera& camera, const RayScene& rays, const Solution& solution, const Scene& scene) {
-  const PinholeCamera pinhole(camera, kPictureSide, kPictureSide, rays);
+Sights in_picture(const Camera& camera, const Room& room, const Solution& solution) {
+  const PinholeCamera pinhole(camera, kPictureSide, kPictureSide, room.rays());
   Sights sights;
   for (int y = 0; y < kPictureSide; ++y)
     for (int x = 0; x < kPictureSide; ++x) {
       const PinholeCamera::Ray ray = pinhole.ray(x + 0.5, y + 0.5);
-      sights.add(rays, solution, scene, ray.origin, ray.direction);
+      sights.add(room, solution, ray.origin, ray.direction);
     }
   return sights;
 }
 
 }  // namespace
 
-std::string eye_warning(const Camera& camera, const Scene& scene, const Solution& solution,
-                        const RayScene& rays) {
-  const Sights picture = in_picture(camera, rays, solution, scene);
+std::string eye_warning(const Camera& camera, const Room& room, const Solution& solution) {
+  const Sights picture = in_picture(camera, room, solution);
   // From afar too few of the rays to all sides meet the room.
-  const bool near = rays.normalised(camera.eye).norm() < 4;
-  const Sights all = near ? around(rays.normalised(camera.eye), rays, solution, scene) : picture;
+  const Vec3f eye = room.rays().normalised(camera.eye);
+  const bool near = eye.norm() < 4;
+  const Sights all = near ? around(eye, room, solution) : picture;
   if (all.met() == 0 && picture.met() == 0)
     return "nothing of the room is in the picture; check the eye and what it looks at";
   if (is_dark(solution)) return {};  // light tells nothing

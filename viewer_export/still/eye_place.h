@@ -2,9 +2,8 @@
 #include <string>
 
 #include "scenes/model/camera.h"
-#include "scenes/model/scene.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 
 namespace reemit {
 
@@ -12,7 +11,6 @@ namespace reemit {
 /// light comes, or where it sees nothing; one sentence without the camera's name. Empty where all is well,
 /// also for an eye before an opening that looks in. Judged by rays to all sides and into the picture: an eye
 /// at the wrong place meets sides without light and backs of one-sided faces alone.
-std::string eye_warning(const Camera& camera, const Scene& scene, const Solution& solution,
-                        const RayScene& rays);
+std::string eye_warning(const Camera& camera, const Room& room, const Solution& solution);
 
 }  // namespace reemit

@@ -101,8 +101,8 @@ LitSpace follow(const TransportScene& transport, const Flight& flight) {
 
 }  // namespace
 
-LitSpace trace_light(const Scene& scene, const RayScene& rays) {
-  const TransportScene transport(scene, rays.mesh(), rays);
+LitSpace trace_light(const Room& room) {
+  const TransportScene transport(room);
   const Emission emission = collect_emission(transport);
   const std::size_t bands = transport.bands();
   std::vector<double> weights(emission.sources.size(), 0.0);
@@ -112,13 +112,13 @@ LitSpace trace_light(const Scene& scene, const RayScene& rays) {
   return follow(transport, spread_packets(emission, weights, bands));
 }
 
-LitSpace trace_from_all_surfaces(const Scene& scene, const RayScene& rays) {
-  const TransportScene transport(scene, rays.mesh(), rays);
+LitSpace trace_from_all_surfaces(const Room& room) {
+  const TransportScene transport(room);
   Emission all;
   std::vector<double> weights;
   for (std::size_t z = 0; z < transport.zones(); ++z) {
     all.sources.push_back({ZoneId(z)});
-    weights.push_back(rays.mesh().zone_area(ZoneId(z)));
+    weights.push_back(room.mesh().zone_area(ZoneId(z)));
   }
   all.quanta.assign(all.sources.size() * transport.bands(), 1);
   return follow(transport, spread_packets(all, weights, transport.bands()));

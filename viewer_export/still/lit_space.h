@@ -2,8 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scenes/model/scene.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/room/room.h"
 
 namespace reemit {
 
@@ -25,9 +24,9 @@ struct LitSpace {
 };
 
 /// From the luminaires; nothing where there are none. Deterministic.
-LitSpace trace_light(const Scene& scene, const RayScene& rays);
+LitSpace trace_light(const Room& room);
 /// As if all zones emitted alike: for rooms without luminaires, and for those that keep their light to
 /// themselves.
-LitSpace trace_from_all_surfaces(const Scene& scene, const RayScene& rays);
+LitSpace trace_from_all_surfaces(const Room& room);
 
 }  // namespace reemit

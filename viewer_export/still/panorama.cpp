@@ -39,8 +39,8 @@ Vec3f RoomAxes::direction(float azimuth, float elevation) const {
   return std::cos(elevation) * (std::cos(azimuth) * a + std::sin(azimuth) * b) + std::sin(elevation) * up;
 }
 
-LitCells::LitCells(const Scene& scene, const LitSpace& space) : size_(kLitCell * space.width) {
-  for (const Surface& surface : scene.surfaces) emits_.push_back(scene.material_of(surface).emits());
+LitCells::LitCells(const SurfaceModel& surfaces, const LitSpace& space) : size_(kLitCell * space.width) {
+  for (std::size_t s = 0; s < surfaces.surface_count(); ++s) emits_.push_back(surfaces.emits(SurfaceId(s)));
   for (std::size_t i = 0; i < space.lit_points.size(); ++i)
     lit_.insert(cell(space.lit_points[i], space.lit_normals[i]));
 }

@@ -23,7 +23,7 @@ std::uint64_t surface_cell(const Vec3f& point, const Vec3f& normal, float size);
 /// without being luminaires.
 class LitCells {
  public:
-  LitCells(const Scene& scene, const LitSpace& space);
+  LitCells(const SurfaceModel& surfaces, const LitSpace& space);
   std::uint64_t cell(const Vec3f& point, const Vec3f& normal) const {
     return surface_cell(point, normal, size_);
   }

@@ -261,13 +261,13 @@ std::string to_string(Integrator integrator) {
   return "";
 }
 
-StillImage render_still(const Scene& scene, const Solution& solution, const RayScene& rays,
-                        const Camera& camera, const StillSettings& settings,
-                        const StillProgressCallback& progress, const std::atomic<bool>& interrupt) {
+StillImage render_still(const Room& room, const Solution& solution, const Camera& camera,
+                        const StillSettings& settings, const StillProgressCallback& progress,
+                        const std::atomic<bool>& interrupt) {
   check(settings);
   const int width = settings.width != 0 ? settings.width : camera.width;
   const int height = settings.height != 0 ? settings.height : camera.height;
-  const PinholeCamera pinhole(camera, width, height, rays);
+  const PinholeCamera pinhole(camera, width, height, room.rays());
   const int most = settings.error_target > 0 ? settings.most_spp : settings.spp;
   const std::size_t replicates = std::min(Film::kReplicates, std::bit_floor(static_cast<std::size_t>(most)));
   const int cores = tbb::info::default_concurrency();
@@ -275,11 +275,11 @@ StillImage render_still(const Scene& scene, const Solution& solution, const RayS
   StillImage image;
   arena.execute([&] {
     const StopToken stop(interrupt);
-    const TileRenderer renderer(scene, solution, rays, pinhole, settings, replicates, stop);
-    Film film(scene.bands, width, height, replicates, renderer.parts());
+    const TileRenderer renderer(room, solution, pinhole, settings, replicates, stop);
+    Film film(room.scene().bands, width, height, replicates, renderer.parts());
     Rendering rendering(renderer, settings, film, progress, interrupt);
     rendering.run();
-    ExportInfo info = describe_still(scene, solution, settings, rendering.error());
+    ExportInfo info = describe_still(room.scene(), solution, settings, rendering.error());
     if (rendering.has_zone_values())
       info.settings.emplace_back("interrupted", "tiles that were not reached hold zone values");
     if (!interrupt) info.zones = renderer.zone_bias(solution, film);

@@ -6,10 +6,9 @@
 #include <string>
 
 #include "scenes/model/camera.h"
-#include "scenes/model/scene.h"
 #include "solver/emit/selection.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 #include "viewer_export/still/film.h"
 #include "viewer_export/still/still_image.h"
 
@@ -63,8 +62,8 @@ using StillProgressCallback = std::function<void(const StillProgress&)>;
 /// after the other: when `interrupt` becomes true, returns what stands, a noisier picture; tiles that have
 /// not had a sample by then hold zone values. Throws InputError for settings or a camera out of range and a
 /// room that is not the one solved, ResourceError when the picture does not fit into memory.
-StillImage render_still(const Scene& scene, const Solution& solution, const RayScene& rays,
-                        const Camera& camera, const StillSettings& settings,
-                        const StillProgressCallback& progress, const std::atomic<bool>& interrupt);
+StillImage render_still(const Room& room, const Solution& solution, const Camera& camera,
+                        const StillSettings& settings, const StillProgressCallback& progress,
+                        const std::atomic<bool>& interrupt);
 
 }  // namespace reemit

@@ -16,17 +16,18 @@ constexpr int kSamples = 16;
 
 }  // namespace
 
-ToneMap tone_map_of_room(const Scene& scene, const Solution& solution, const RayScene& rays,
-                         const ToneMapSettings& settings, int threads, const std::atomic<bool>& interrupt) {
+ToneMap tone_map_of_room(const Room& room, const Solution& solution, const ToneMapSettings& settings,
+                         int threads, const std::atomic<bool>& interrupt) {
   if (settings.exposure_ev) return make_tone_map({}, settings);
-  const Camera camera = scene.cameras.empty() ? default_cameras(scene, rays).front() : scene.cameras.front();
+  const std::vector<Camera>& cameras = room.scene().cameras;
+  const Camera camera = cameras.empty() ? default_cameras(room).front() : cameras.front();
   const double shrink = std::sqrt(kPixels / (static_cast<double>(camera.width) * camera.height));
   StillSettings still;
   still.width = std::max(1, static_cast<int>(std::lround(shrink * camera.width)));
   still.height = std::max(1, static_cast<int>(std::lround(shrink * camera.height)));
   still.spp = kSamples;
   still.threads = threads;
-  return make_tone_map(rgb_of(render_still(scene, solution, rays, camera, still, {}, interrupt)), settings);
+  return make_tone_map(rgb_of(render_still(room, solution, camera, still, {}, interrupt)), settings);
 }
 
 }  // namespace reemit

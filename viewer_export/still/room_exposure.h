@@ -1,9 +1,8 @@
 #pragma once
 #include <atomic>
 
-#include "scenes/model/scene.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 #include "viewer_export/output/tone_map.h"
 
 namespace reemit {
@@ -13,7 +12,7 @@ namespace reemit {
 /// samples. So an export is as bright as that picture, and surfaces that it does not show, inside and under
 /// things or in the dark next door, do not count. `threads`, `interrupt` and exceptions as of render_still
 /// and make_tone_map.
-ToneMap tone_map_of_room(const Scene& scene, const Solution& solution, const RayScene& rays,
-                         const ToneMapSettings& settings, int threads, const std::atomic<bool>& interrupt);
+ToneMap tone_map_of_room(const Room& room, const Solution& solution, const ToneMapSettings& settings,
+                         int threads, const std::atomic<bool>& interrupt);
 
 }  // namespace reemit

@@ -27,21 +27,20 @@ struct TileRenderer::PixelSums {
   PixelBlock found;
 };
 
-TileRenderer::TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
-                           const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates,
-                           const StopToken& stop)
-    : rays_(&rays),
+TileRenderer::TileRenderer(const Room& room, const Solution& solution, const PinholeCamera& camera,
+                           const StillSettings& settings, std::size_t replicates, const StopToken& stop)
+    : room_(&room),
       camera_(&camera),
       settings_(&settings),
       stop_(&stop),
-      field_(scene, solution, rays, settings.integrator == Integrator::kPath ? 1 : replicates),
-      direct_(scene, rays, {settings.light_selection}),
-      gather_(rays, field_, direct_,
+      field_(room, solution, settings.integrator == Integrator::kPath ? 1 : replicates),
+      direct_(room, {settings.light_selection}),
+      gather_(field_, direct_,
               // The other integrators gather nothing; without close hits there is nothing to prepare.
               GatherSettings{.close_hit = settings.integrator == Integrator::kGather ? settings.close_hit : 0,
                              .seed = settings.seed},
               &stop),
-      path_(rays, field_, direct_, settings.seed) {}
+      path_(room, direct_, settings.seed) {}
 
 void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
   const std::size_t bands = field_.band_count();
@@ -130,18 +129,19 @@ void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) cons
 void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const {
   const PinholeCamera::Ray ray = camera_->ray(x, y);
   Hit hit;
-  if (!rays_->closest_for_camera(ray.origin, ray.direction, hit)) return;
+  const RayScene& rays = room_->rays();
+  if (!rays.closest_for_camera(ray.origin, ray.direction, hit)) return;
   const std::size_t bands = field_.band_count();
-  const std::size_t t = hit.triangle.index();
-  const SurfacePoint point = seen_point(hit);
+  const SurfaceModel& surfaces = room_->surfaces();
+  const SurfacePoint point = seen_point(hit, ray.direction);
   sums.found.normal += point.normal.cast<double>();
-  sums.found.depth += (ray.skipped + static_cast<double>(hit.distance)) * rays_->metres_per_unit();
+  sums.found.depth += (ray.skipped + static_cast<double>(hit.distance)) * rays.metres_per_unit();
   ++sums.found.seen;
 
-  const float* emitted = field_.emitted(t, hit.front);
-  const float* reflectance = field_.reflectance(t, hit.front);
-  const float towards_eye = std::fabs(rays_->normal(hit.triangle, hit.u, hit.v).dot(ray.direction));
-  const float emission = sums.share * field_.emission_shape(t, towards_eye);
+  const float* emitted = surfaces.emitted(hit.triangle, hit.front);
+  const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+  const float towards_eye = std::fabs(rays.normal(hit.triangle, hit.u, hit.v).dot(ray.direction));
+  const float emission = sums.share * surfaces.emission_shape(hit.triangle, towards_eye);
   for (std::size_t b = 0; b < bands; ++b) {
     sums.direct[b] += emission * emitted[b];
     sums.albedo[b] += sums.share * reflectance[b];
@@ -150,10 +150,11 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
     add_light(point, sample, sums, batch);
     return;
   }
-  const float* direct = field_.reflected_direct(t, hit.u, hit.v, hit.front);
+  const ZoneId zone = room_->mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+  const float* direct = field_.reflected_direct(zone);
   const float share_of_part = sums.share / static_cast<float>(sums.parts);
   for (std::uint32_t part = sums.part; part < sums.part + sums.parts; ++part) {
-    const float* all = field_.reflected(t, hit.u, hit.v, hit.front, part);
+    const float* all = field_.reflected(zone, part);
     for (std::size_t b = 0; b < bands; ++b) sums.indirect[b] += share_of_part * (all[b] - direct[b]);
   }
   for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += sums.share * direct[b];
@@ -161,7 +162,7 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
 
 void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums, GatherBatch& batch) const {
   const std::size_t bands = field_.band_count();
-  const float* reflectance = field_.reflectance(x.triangle.index(), x.front);
+  const float* reflectance = room_->surfaces().reflectance(x.triangle, x.front);
   if (std::all_of(reflectance, reflectance + bands, [](float rho) { return rho == 0; })) return;
   std::vector<float>& weight = *sums.weight;
 
@@ -214,9 +215,9 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const 
     const double y = 0.5 * (static_cast<double>(quarter / 2) + static_cast<double>(u[1])) * image.height;
     const PinholeCamera::Ray ray = camera_->ray(x, y);
     Hit hit;
-    const bool seen = rays_->closest_for_camera(ray.origin, ray.direction, hit);
+    const bool seen = room_->rays().closest_for_camera(ray.origin, ray.direction, hit);
     // Where nothing is seen there is no bias either; any point does for the place in the list.
-    points.push_back(seen ? seen_point(hit) : SurfacePoint{TriangleId(0)});
+    points.push_back(seen ? seen_point(hit, ray.direction) : SurfacePoint{TriangleId(0)});
     const std::size_t pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
     for (std::size_t b = 0; b < bands; ++b) {
@@ -231,14 +232,15 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const 
   return bias;
 }
 
-SurfacePoint TileRenderer::seen_point(const Hit& hit) const {
-  SurfacePoint point = surface_point(*rays_, hit);
-  const BaseMesh& base = rays_->mesh().base();
-  const BaseTriangle& triangle = rays_->mesh().triangle(hit.triangle);
+SurfacePoint TileRenderer::seen_point(const Hit& hit, const Vec3f& direction) const {
+  const RayScene& rays = room_->rays();
+  SurfacePoint point = surface_point(rays, hit, direction);
+  const BaseMesh& base = room_->mesh().base();
+  const BaseTriangle& triangle = room_->mesh().triangle(hit.triangle);
   if (triangle.is_curved() || triangle.normal[0] == BaseTriangle::kFlat) return point;
   const auto corner = [&](std::size_t k) {
     const std::uint32_t n = triangle.normal[k];
-    return n == BaseTriangle::kFlat ? rays_->normal(hit.triangle) : Vec3f(base.normals[n].cast<float>());
+    return n == BaseTriangle::kFlat ? rays.normal(hit.triangle) : Vec3f(base.normals[n].cast<float>());
   };
   Vec3f shading = (1 - hit.u - hit.v) * corner(0) + hit.u * corner(1) + hit.v * corner(2);
   if (!hit.front) shading = -shading;

@@ -32,9 +32,8 @@ class TileRenderer {
  public:
   /// `replicates`: of each pixel, a power of two; each reads its own part of the zone solution. `stop` must
   /// outlive the renderer; once it is requested, tiles hold zone values or what they had before.
-  TileRenderer(const Scene& scene, const Solution& solution, const RayScene& rays,
-               const PinholeCamera& camera, const StillSettings& settings, std::size_t replicates,
-               const StopToken& stop);
+  TileRenderer(const Room& room, const Solution& solution, const PinholeCamera& camera,
+               const StillSettings& settings, std::size_t replicates, const StopToken& stop);
 
   TileRenderer(const TileRenderer&) = delete;
   TileRenderer& operator=(const TileRenderer&) = delete;
@@ -60,9 +59,9 @@ class TileRenderer {
 
   void add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const;
   void add_light(const SurfacePoint& x, int sample, PixelSums& sums, GatherBatch& batch) const;
-  SurfacePoint seen_point(const Hit& hit) const;
+  SurfacePoint seen_point(const Hit& hit, const Vec3f& direction) const;
 
-  const RayScene* rays_;
+  const Room* room_;
   const PinholeCamera* camera_;
   const StillSettings* settings_;
   const StopToken* stop_;

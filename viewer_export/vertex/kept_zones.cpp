@@ -78,7 +78,7 @@ std::vector<bool> lit_backs(const Solution& solution, const std::vector<std::siz
 
 }  // namespace
 
-std::vector<bool> kept_zones(const Scene& scene, const Solution& solution, bool all_zones) {
+std::vector<bool> kept_zones(const SurfaceModel& surfaces, const Solution& solution, bool all_zones) {
   const ZoneMesh& mesh = solution.mesh;
   if (all_zones) return std::vector<bool>(mesh.zone_count(), true);
   const std::vector<std::size_t> sheet = sheets(mesh.base());
@@ -86,9 +86,8 @@ std::vector<bool> kept_zones(const Scene& scene, const Solution& solution, bool 
   std::vector<bool> kept(mesh.zone_count());
   for (std::size_t z = 0; z < kept.size(); ++z) {
     const ZoneId zone(z);
-    const Material& material = scene.material_of(scene.surfaces[mesh.zone_surface(zone).index()]);
-    kept[z] = mesh.zone_is_front(zone) || lit[sheet[mesh.zone_triangle(zone).index()]] ||
-              (material.emits() && material.emits_both_sides);
+    const TriangleId t = mesh.zone_triangle(zone);
+    kept[z] = mesh.zone_is_front(zone) || lit[sheet[t.index()]] || surfaces.emits(t, false);
   }
   return kept;
 }

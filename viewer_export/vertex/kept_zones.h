@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "scenes/model/scene.h"
+#include "solver/reflect/surface_model.h"
 #include "solver/solution/solution.h"
 
 namespace reemit {
@@ -10,6 +10,6 @@ namespace reemit {
 /// with `all_zones`. Backs of one surface that continue each other across edges stay or go together: a lit
 /// back shows no holes where packets happened to miss a zone, and the inside of a closed solid goes although
 /// its surface holds lit sheets as well.
-std::vector<bool> kept_zones(const Scene& scene, const Solution& solution, bool all_zones);
+std::vector<bool> kept_zones(const SurfaceModel& surfaces, const Solution& solution, bool all_zones);
 
 }  // namespace reemit

@@ -17,27 +17,26 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 }  // namespace
 
-VertexGatherer::VertexGatherer(const Scene& scene, const Solution& solution, const RayScene& rays,
-                               const VertexRings& rings, const VertexSettings& settings, int most_points,
-                               const StopToken& stop)
-    : rays_(rays),
+VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const VertexRings& rings,
+                               const VertexSettings& settings, int most_points, const StopToken& stop)
+    : room_(room),
       rings_(rings),
       settings_(settings),
-      field_(scene, solution, rays, kReplicates),
-      direct_(scene, rays),
+      field_(room, solution, kReplicates),
+      direct_(room),
       gather_(
-          rays, field_, direct_,
+          field_, direct_,
           // Means of zones gather nothing; without close hits there is nothing to prepare.
           GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit, .seed = settings.seed},
           &stop),
-      path_(rays, field_, direct_, settings.seed),
-      bands_(scene.bands.count()),
+      path_(room, direct_, settings.seed),
+      bands_(room.band_count()),
       gathers_per_point_(settings.gathers_per_point()),
       log2_points_(std::countr_zero(static_cast<unsigned>(most_points))) {}
 
 const float* VertexGatherer::emitted(std::size_t v) const {
   const ZoneId zone = rings_.begin(v)->zone;
-  return field_.emitted(rays_.mesh().zone_triangle(zone).index(), rays_.mesh().zone_is_front(zone));
+  return room_.surfaces().emitted(room_.mesh().zone_triangle(zone), room_.mesh().zone_is_front(zone));
 }
 
 void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
@@ -95,21 +94,19 @@ SurfacePoint VertexGatherer::point_beside(std::size_t v, const std::array<float,
   while (ring + 1 != rings_.end(v) && left >= ring->area) left -= (ring++)->area;
   const auto stretched = static_cast<float>(std::clamp(left / ring->area, 0.0, 1 - 0x1p-24));
   const auto [s, t] = sample_triangle(stretched, u[1]);
-  const ZoneMesh& mesh = rays_.mesh();
-  const auto corners = mesh.zone_barycentrics(ring->zone);
+  const SidePoint inside = room_.mesh().zone_point(ring->zone, s, t);
   const auto towards = [&](double Barycentric::*k) {
-    const double inside = (1 - s - t) * corners[0].*k + s * corners[1].*k + t * corners[2].*k;
-    return static_cast<float>(ring->vertex.*k + settings_.reach * (inside - ring->vertex.*k));
+    return static_cast<float>(ring->vertex.*k + settings_.reach * (inside.at.*k - ring->vertex.*k));
   };
-  return surface_point(rays_, mesh.zone_triangle(ring->zone), towards(&Barycentric::u),
-                       towards(&Barycentric::v), mesh.zone_is_front(ring->zone));
+  return surface_point(room_.rays(), inside.triangle, towards(&Barycentric::u), towards(&Barycentric::v),
+                       inside.front);
 }
 
 void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) const {
-  const ZoneMesh& mesh = rays_.mesh();
+  const ZoneMesh& mesh = room_.mesh();
   const ZoneId zone = rings_.begin(v)->zone;
   const float* own = emitted(v);
-  const float* reflectance = field_.reflectance(mesh.zone_triangle(zone).index(), mesh.zone_is_front(zone));
+  const float* reflectance = room_.surfaces().reflectance(mesh.zone_triangle(zone), mesh.zone_is_front(zone));
   constexpr std::size_t n = kReplicates;
   for (std::size_t b = 0; b < bands_; ++b) {
     const auto value_of = [&](std::size_t r) {

@@ -27,7 +27,7 @@ class VertexGatherer {
 
   /// `most_points`: per replicate, a power of two that no block exceeds. Preparing ends early when `stop` is
   /// requested, and what is gathered then means little.
-  VertexGatherer(const Scene& scene, const Solution& solution, const RayScene& rays, const VertexRings& rings,
+  VertexGatherer(const Room& room, const Solution& solution, const VertexRings& rings,
                  const VertexSettings& settings, int most_points, const StopToken& stop);
   VertexGatherer(const VertexGatherer&) = delete;
   VertexGatherer& operator=(const VertexGatherer&) = delete;
@@ -52,7 +52,7 @@ class VertexGatherer {
   SurfacePoint point_beside(std::size_t v, const std::array<float, 2>& u) const;
   void store(std::size_t v, const float* means, VertexData& data) const;
 
-  const RayScene& rays_;
+  const Room& room_;
   const VertexRings& rings_;
   const VertexSettings& settings_;
   RadianceField field_;

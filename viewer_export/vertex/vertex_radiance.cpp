@@ -42,6 +42,7 @@ void check(const VertexSettings& s) {
 void average_zones(const Solution& solution, const VertexRings& rings, const RadianceField& field,
                    VertexData& data) {
   const ZoneMesh& mesh = solution.mesh;
+  const SurfaceModel& surfaces = field.room().surfaces();
   const std::size_t bands = data.bands.count();
   for (std::size_t v = 0; v < rings.size(); ++v)
     for (std::size_t b = 0; b < bands; ++b) {
@@ -57,9 +58,9 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
         variance += share * share * e.stderr_of_mean * e.stderr_of_mean;
       }
       const ZoneId zone = rings.begin(v)->zone;
-      const std::size_t t = mesh.zone_triangle(zone).index();
+      const TriangleId t = mesh.zone_triangle(zone);
       const bool front = mesh.zone_is_front(zone);
-      const double brdf = lambert_brdf_per_sr(field.reflectance(t, front)[b]);
+      const double brdf = lambert_brdf_per_sr(surfaces.reflectance(t, front)[b]);
       double error = brdf * std::sqrt(variance);
       if (field.parts() > 1) {
         const auto radiance_of = [&](std::size_t part) {
@@ -72,7 +73,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       }
       const std::size_t k = v * bands + b;
       data.irradiance[k] = static_cast<float>(all);
-      data.radiance[k] = field.emitted(t, front)[b] + static_cast<float>(brdf * all);
+      data.radiance[k] = surfaces.emitted(t, front)[b] + static_cast<float>(brdf * all);
       data.radiance_stderr[k] = static_cast<float>(error);
       data.direct_radiance[k] = static_cast<float>(brdf * direct);
     }
@@ -125,17 +126,17 @@ int VertexSettings::gathers_per_point() const {
   return (gather_rays + points - 1) / points;
 }
 
-VertexData gather_vertices(const Scene& scene, const Solution& solution, const RayScene& rays,
-                           const VertexSettings& settings, const VertexProgressCallback& progress,
-                           const std::atomic<bool>& interrupt) {
+VertexData gather_vertices(const Room& room, const Solution& solution, const VertexSettings& settings,
+                           const VertexProgressCallback& progress, const std::atomic<bool>& interrupt) {
   check(settings);
-  const VertexRings rings(scene, solution, settings.all_zones);
+  const Scene& scene = room.scene();
+  const VertexRings rings(room.surfaces(), solution, settings.all_zones);
   VertexData data = make_vertices(scene, solution, rings);
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   arena.execute([&] {
-    const VertexGatherer gatherer(scene, solution, rays, rings, settings,
-                                  VertexRefinement::most_points(settings), StopToken(interrupt));
+    const VertexGatherer gatherer(room, solution, rings, settings, VertexRefinement::most_points(settings),
+                                  StopToken(interrupt));
     average_zones(solution, rings, gatherer.field(), data);
     if (settings.average_zones) {
       if (const auto difference = solution.record.discretisation)

@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "scenes/model/scene.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
-#include "solver/trace/ray_scene.h"
 #include "viewer_export/vertex/vertex_data.h"
 
 namespace reemit {
@@ -48,8 +47,7 @@ using VertexProgressCallback = std::function<void(double)>;
 /// (VertexData::limited_by_zones). When `interrupt` becomes true, vertices not yet begun keep the mean of
 /// their zones. `progress` may be empty. Throws InputError for settings out of range and a room that is not
 /// the one solved.
-VertexData gather_vertices(const Scene& scene, const Solution& solution, const RayScene& rays,
-                           const VertexSettings& settings, const VertexProgressCallback& progress,
-                           const std::atomic<bool>& interrupt);
+VertexData gather_vertices(const Room& room, const Solution& solution, const VertexSettings& settings,
+                           const VertexProgressCallback& progress, const std::atomic<bool>& interrupt);
 
 }  // namespace reemit

@@ -98,10 +98,10 @@ std::vector<std::array<std::uint32_t, 3>> cut_into_triangles(const std::vector<V
   return triangles;
 }
 
-VertexRings::VertexRings(const Scene& scene, const Solution& solution, bool all_zones) {
+VertexRings::VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones) {
   const ZoneMesh& mesh = solution.mesh;
   const ZoneTopology topology = make_zone_topology(mesh, solution.mesh_settings.crease_angle_deg);
-  const std::vector<bool> kept = kept_zones(scene, solution, all_zones);
+  const std::vector<bool> kept = kept_zones(surfaces, solution, all_zones);
   const double watts = watts_per_packet(solution);
   std::vector<std::uint32_t> number(topology.n_vertices(), kLeftOut);
   first_.push_back(0);

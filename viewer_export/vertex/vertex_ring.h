@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/zones/zone_topology.h"
-#include "scenes/model/scene.h"
+#include "solver/reflect/surface_model.h"
 #include "solver/solution/solution.h"
 
 namespace reemit {
@@ -22,7 +22,7 @@ struct RingZone {
 class VertexRings {
  public:
   /// Leaves out the backs of surfaces that no light reached and that do not emit, unless `all_zones`.
-  VertexRings(const Scene& scene, const Solution& solution, bool all_zones);
+  VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones);
 
   std::size_t size() const { return first_.size() - 1; }
   const RingZone* begin(std::size_t vertex) const { return &rings_[first_[vertex]]; }

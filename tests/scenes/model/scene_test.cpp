@@ -297,6 +297,12 @@ TEST(ContentHash, DependsOnWhatLightSeesAndNothingElse) {
       changed([](Scene& s) { s.materials[1].emitted_radiance[2] = 1.1; }),
       changed([](Scene& s) { s.materials[0].two_sided = false; }),
       changed([](Scene& s) { s.materials[1].emits_both_sides = true; }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.specular_reflectance = Spectrum::Ones(3); }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.diffuse_transmittance = Spectrum::Ones(3); }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.specular_transmittance = Spectrum::Ones(3); }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.roughness = 0.1; }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.transmission_roughness = 0.1; }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.index_of_refraction = 1.5; }),
       changed([](Scene& s) { s.surfaces[0].material = MaterialId(1); }),
       changed([](Scene& s) { std::swap(s.surfaces[0].faces[0].outer[0], s.surfaces[0].faces[0].outer[1]); }),
       changed([](Scene& s) {

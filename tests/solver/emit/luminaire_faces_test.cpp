@@ -54,7 +54,7 @@ TEST(LuminaireFaces, the_front_is_that_of_the_polygon_whatever_slivers_the_mesh_
       has_tilted_sliver |= mesh.triangle_normal(TriangleId(t)).dot(front) < 1 - 1e-6;
   ASSERT_TRUE(has_tilted_sliver) << "the room tests nothing any more";
 
-  const std::vector<LuminaireFace> faces = luminaire_faces(scene, mesh);
+  const std::vector<LuminaireFace> faces = luminaire_faces(Room(scene, mesh));
   ASSERT_EQ(faces.size(), 1U);
   EXPECT_GT(faces[0].normal.dot(front), 1 - 1e-12);
   EXPECT_EQ(faces[0].corners.size(), 4U);
@@ -63,7 +63,8 @@ TEST(LuminaireFaces, the_front_is_that_of_the_polygon_whatever_slivers_the_mesh_
 TEST(LuminaireFaces, the_mesh_says_which_side_of_a_polygon_is_the_front) {
   Scene scene = lamp_with_plinth();
   std::swap(scene.surfaces[0].faces[0].outer[1], scene.surfaces[0].faces[0].outer[3]);
-  const std::vector<LuminaireFace> faces = luminaire_faces(scene, build_mesh(scene).mesh);
+  const ZoneMesh mesh = build_mesh(scene).mesh;
+  const std::vector<LuminaireFace> faces = luminaire_faces(Room(scene, mesh));
   ASSERT_EQ(faces.size(), 1U);
   EXPECT_GT(faces[0].normal.z(), 1 - 1e-9);
 }

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "solver/emit/punctual_emitter.h"
-#include "solver/emit/punctual_packets.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"
 #include "tests/solver/emit/luminaire_tables.h"
@@ -47,9 +46,9 @@ class Emitters : public ::testing::Test {
     constexpr std::uint32_t kSamples = 1 << 16;
     double sum = 0;
     for (std::uint32_t k = 0; k < kSamples; ++k)
-      sum += static_cast<double>(e.sample(rays_->normalised(x), n.cast<float>(), numbers.sample(k, 0),
-                                          numbers.sample(k, 1), metres())
-                                     .factor);
+      sum += static_cast<double>(
+          sample_light(e, rays_->normalised(x), n.cast<float>(), numbers.sample(k, 0), numbers.sample(k, 1))
+              .factor);
     return sum / kSamples;
   }
 
@@ -62,13 +61,10 @@ class Emitters : public ::testing::Test {
     for (std::uint32_t k = 0; k < kSamples; ++k) {
       const Vec3f d = sample_sphere(numbers.sample(k, 2), numbers.sample(k, 3));
       const Vec3f x = rays_->normalised(centre + radius * d.cast<double>());
-      sum +=
-          static_cast<double>(e.sample(x, -d, numbers.sample(k, 0), numbers.sample(k, 1), metres()).factor);
+      sum += static_cast<double>(sample_light(e, x, -d, numbers.sample(k, 0), numbers.sample(k, 1)).factor);
     }
     return 4 * pi * radius * radius * sum / kSamples;
   }
-
-  float metres() const { return static_cast<float>(rays_->metres_per_unit()); }
 
   test::RoomBuilder room_;
   std::unique_ptr<ZoneMesh> mesh_;
@@ -85,7 +81,7 @@ TEST_F(Emitters, flux_through_a_closed_surface_is_the_power_of_the_packets) {
   for (const LuminousOpening& o : openings)
     for (const PhotometricType type : {PhotometricType::kA, PhotometricType::kB, PhotometricType::kC}) {
       const PhotometricLight l = light(test::lobed_table(type), o);
-      EXPECT_EQ(light_power(l, *rays_)[0], l.table->total_flux());
+      EXPECT_EQ(light_power(l, rays_->metres_per_unit())[0], l.table->total_flux());
       EXPECT_NEAR(flux_through_sphere(l, l.position, 1.0) / l.table->total_flux(), 1, 1e-3)
           << static_cast<int>(o.shape);
     }
@@ -93,11 +89,15 @@ TEST_F(Emitters, flux_through_a_closed_surface_is_the_power_of_the_packets) {
 
 TEST_F(Emitters, the_same_for_points_and_spots) {
   const PointLight point{"p", {0.1, 0.2, 0.3}, room_.flat(2)};
-  EXPECT_NEAR(flux_through_sphere(point, point.position, 1.5) * 2 / light_power(point, *rays_)[0], 1, 1e-3);
+  EXPECT_NEAR(
+      flux_through_sphere(point, point.position, 1.5) * 2 / light_power(point, rays_->metres_per_unit())[0],
+      1, 1e-3);
   const double cones[][2] = {{0, 0.3}, {0.2, 0.8}, {0.7, 1.5}, {0.5, 0.50005}};
   for (const auto& [inner, outer] : cones) {
     const SpotLight spot{"s", {0.1, 0.2, 0.3}, Vec3(0.6, 0, -0.8), room_.flat(3), inner, outer};
-    EXPECT_NEAR(flux_through_sphere(spot, spot.position, 1.5) * 3 / light_power(spot, *rays_)[0], 1, 1e-3)
+    EXPECT_NEAR(
+        flux_through_sphere(spot, spot.position, 1.5) * 3 / light_power(spot, rays_->metres_per_unit())[0], 1,
+        1e-3)
         << inner << " " << outer;
   }
 }
@@ -109,12 +109,12 @@ TEST_F(Emitters, packets_start_on_the_opening_and_follow_the_intensities) {
   // The power that packets carry into directions with luminaire x > 0, and the mean of their starts.
   double share = 0;
   Vec3 middle = Vec3::Zero();
-  Ray16 ray;
+  const PunctualEmitter emitter = make_punctual_emitter(l, *rays_);
   for (std::uint32_t k = 0; k < kSamples; ++k) {
-    start_light_ray(l, *rays_, numbers.sample(k, 0), numbers.sample(k, 1), numbers.sample(k, 2),
-                    numbers.sample(k, 3), ray, 0);
-    const Vec3 d = l.orientation.transpose() * ray.direction(0).cast<double>();
-    const Vec3 p = l.orientation.transpose() * (rays_->in_room(ray.origin(0)) - l.position);
+    const LightRay ray = start_light_ray(emitter, numbers.sample(k, 0), numbers.sample(k, 1),
+                                         numbers.sample(k, 2), numbers.sample(k, 3));
+    const Vec3 d = l.orientation.transpose() * ray.direction.cast<double>();
+    const Vec3 p = l.orientation.transpose() * (rays_->in_room(ray.origin) - l.position);
     EXPECT_GT(l.table->intensity(d), 0);
     EXPECT_LT(std::fabs(p.z()), 1e-4);
     EXPECT_LT(std::fabs(p.x()), 0.4 + 1e-4);
@@ -210,7 +210,7 @@ TEST_F(Emitters, irradiance_stays_finite_at_the_opening) {
   const Vec3f at = rays_->normalised(l.position);
   const double most = l.table->greatest_intensity() / std::pow(PhotometricEmitter::kNearest, 2);
   for (float u = 0.499F; u < 0.501F; u += 1e-5F) {
-    const PunctualSample s = e.sample(at, Vec3f(0.6F, 0, -0.8F), u, 0.5F);
+    const LuminaireSample s = e.sample(at, Vec3f(0.6F, 0, -0.8F), u, 0.5F);
     EXPECT_LE(static_cast<double>(s.factor), most * 1.001);
   }
   EXPECT_TRUE(std::isfinite(e.expected_irradiance(at, Vec3f(0, 0, 1))));
@@ -224,15 +224,15 @@ TEST_F(Emitters, an_opening_in_the_plane_of_a_surface_shines_out_of_it) {
   const SobolSequence numbers(8);
   int seen = 0;
   int lost = 0;
-  Ray16 ray;
+  const PunctualEmitter emitter = make_punctual_emitter(l, *rays_);
   for (std::uint32_t k = 0; k < 1024; ++k) {
     const Vec3f x = rays_->normalised(Vec3(3 * static_cast<double>(numbers.sample(k, 2)) - 1, 1, -3.9));
-    const PunctualSample s = e.sample(x, Vec3f::UnitZ(), numbers.sample(k, 0), numbers.sample(k, 1));
+    const LuminaireSample s = e.sample(x, Vec3f::UnitZ(), numbers.sample(k, 0), numbers.sample(k, 1));
     seen += s.factor > 0 && rays_->visible(x, s.target) ? 1 : 0;
-    start_light_ray(l, *rays_, numbers.sample(k, 0), numbers.sample(k, 1), numbers.sample(k, 2),
-                    numbers.sample(k, 3), ray, 0);
+    const LightRay ray = start_light_ray(emitter, numbers.sample(k, 0), numbers.sample(k, 1),
+                                         numbers.sample(k, 2), numbers.sample(k, 3));
     Hit hit;
-    if (!rays_->closest(ray.origin(0), ray.direction(0), hit) || !hit.front || hit.distance < 1e-3F) ++lost;
+    if (!rays_->closest(ray.origin, ray.direction, hit) || !hit.front || hit.distance < 1e-3F) ++lost;
   }
   EXPECT_EQ(seen, 1024);
   EXPECT_EQ(lost, 0);

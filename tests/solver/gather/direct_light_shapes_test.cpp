@@ -146,19 +146,17 @@ class LitReceiver {
   /// The triangle's centroid is x, its size `size` [m].
   LitReceiver(const Lamp& lamp, const Vec3& x, const Vec3& normal, double size, double exponent = 0)
       : result_(make(lamp, x, normal.normalized(), size, exponent)),
-        rays_(result_.mesh),
-        direct_(room_.scene(), rays_) {
+        walls_(room_.scene(), result_.mesh),
+        direct_(walls_) {
     constexpr float kThird = 1.0F / 3;
     for (std::size_t t = 0; t < result_.mesh.flat_count(); ++t)
       if (result_.mesh.triangle(TriangleId(t)).surface.index() == 0)
-        point_ = surface_point(rays_, TriangleId(t), kThird, kThird, true);
+        point_ = surface_point(walls_.rays(), TriangleId(t), kThird, kThird, true);
   }
 
   /// Where shadow rays start: RayScene::kLift off the receiver, which counts where the luminaire is about
   /// to set.
-  Vec3 ray_start() const {
-    return rays_.in_room(rays_.ray_origin(point_.triangle, point_.u, point_.v, true));
-  }
+  Vec3 ray_start() const { return walls_.rays().in_room(ray_origin(walls_.rays(), point_)); }
 
   MeanTest irradiance(std::uint64_t seed, int samples) const {
     MeanTest result;
@@ -198,7 +196,7 @@ class LitReceiver {
 
   RoomBuilder room_;
   MeshResult result_;
-  RayScene rays_;
+  Room walls_;
   DirectLight direct_;
   SurfacePoint point_;
 };

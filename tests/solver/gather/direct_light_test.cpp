@@ -21,7 +21,7 @@ using test::RoomBuilder;
 /// A room with what direct light needs.
 struct Lit {
   explicit Lit(const RoomBuilder& room)
-      : mesh(room.mesh().mesh), rays(mesh), direct(room.scene(), rays), bands(room.scene().bands.count()) {}
+      : mesh(room.mesh().mesh), walls(room.scene(), mesh), direct(walls), bands(room.scene().bands.count()) {}
 
   /// Independent estimates of the irradiance of the first band at a point.
   MeanTest irradiance(const SurfacePoint& x, int samples = 64) const {
@@ -34,11 +34,11 @@ struct Lit {
     return result;
   }
   SurfacePoint point(std::size_t triangle, float u, float v, bool front = true) const {
-    return surface_point(rays, TriangleId(triangle), u, v, front);
+    return surface_point(walls.rays(), TriangleId(triangle), u, v, front);
   }
 
   ZoneMesh mesh;
-  RayScene rays;
+  Room walls;
   DirectLight direct;
   std::size_t bands;
 };

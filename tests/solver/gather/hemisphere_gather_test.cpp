@@ -8,6 +8,7 @@
 
 #include "scenes/model/error.h"
 #include "solver/gather/path_tracer.h"
+#include "solver/room/room.h"
 #include "solver/sampling/sobol.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
@@ -24,11 +25,11 @@ constexpr float kPi = std::numbers::pi_v<float>;
 struct Gathering {
   Gathering(const RoomBuilder& room, Solution solved, double close_hit)
       : solution(std::move(solved)),
-        rays(solution.mesh),
-        field(room.scene(), solution, rays),
-        direct(room.scene(), rays),
-        gather(rays, field, direct, GatherSettings{.close_hit = close_hit}),
-        path(rays, field, direct, 1) {}
+        walls(room.scene(), solution.mesh),
+        field(walls, solution),
+        direct(walls),
+        gather(field, direct, GatherSettings{.close_hit = close_hit}),
+        path(walls, direct, 1) {}
 
   /// Independent estimates of the indirect irradiance of the first band from `count` rays each.
   MeanTest gathered(const SurfacePoint& x, int count = 256) const {
@@ -64,7 +65,7 @@ struct Gathering {
   }
 
   Solution solution;
-  RayScene rays;
+  Room walls;
   RadianceField field;
   DirectLight direct;
   HemisphereGather gather;
@@ -88,7 +89,7 @@ TEST(HemisphereGather, furnace_is_exact_when_zones_are_read) {
   const Gathering g(room, test::uniform_solution(room, m, rho * m / (1 - rho)), 0);
   for (std::size_t t = 0; t < g.solution.mesh.triangle_count(); ++t)
     for (const float v : {0.01F, 0.3F, 0.98F}) {
-      const MeanTest e = g.gathered(surface_point(g.rays, TriangleId(t), 0.01F, v, true), 64);
+      const MeanTest e = g.gathered(surface_point(g.walls.rays(), TriangleId(t), 0.01F, v, true), 64);
       EXPECT_NEAR(e.mean(), rho * m / (1 - rho), 1e-4);
       EXPECT_LT(e.standard_error(), 1e-5);
     }
@@ -101,7 +102,7 @@ TEST(HemisphereGather, close_hits_keep_the_mean) {
   const RoomBuilder room = furnace(m, rho, 1);
   const Gathering g(room, test::uniform_solution(room, m, rho * m / (1 - rho)), 10);
   for (const float u : {0.01F, 0.4F}) {
-    const MeanTest e = g.gathered(surface_point(g.rays, TriangleId(3), u, 0.3F, true), 1024);
+    const MeanTest e = g.gathered(surface_point(g.walls.rays(), TriangleId(3), u, 0.3F, true), 1024);
     EXPECT_TRUE(e.agrees_with(rho * m / (1 - rho)));
     EXPECT_TRUE(e.would_notice(0.02, rho * m / (1 - rho)));
     EXPECT_FALSE(e.agrees_with(1.02 * rho * m / (1 - rho))) << "a bias of 2 % must not pass";
@@ -115,7 +116,7 @@ TEST(HemisphereGather, close_hits_do_not_read_their_own_zone) {
   const double m = 3;
   const RoomBuilder room = furnace(m, rho, 1);
   const Gathering g(room, test::uniform_solution(room, 0, 0), 10);
-  const MeanTest e = g.gathered(surface_point(g.rays, TriangleId(3), 0.2F, 0.3F, true), 1024);
+  const MeanTest e = g.gathered(surface_point(g.walls.rays(), TriangleId(3), 0.2F, 0.3F, true), 1024);
   // rho M (1 + rho + rho^2 + rho^3): direct light after one to four bounces.
   EXPECT_TRUE(e.agrees_with(rho * m * (1 + rho + rho * rho + rho * rho * rho)));
 }
@@ -123,7 +124,7 @@ TEST(HemisphereGather, close_hits_do_not_read_their_own_zone) {
 TEST(HemisphereGather, luminaires_add_nothing_but_their_reflection) {
   const RoomBuilder room = furnace(5, 0.5, 2);
   const Gathering g(room, test::uniform_solution(room, 0, 0), 0);
-  EXPECT_EQ(g.gathered(surface_point(g.rays, TriangleId(0), 0.3F, 0.3F, true)).mean(), 0);
+  EXPECT_EQ(g.gathered(surface_point(g.walls.rays(), TriangleId(0), 0.3F, 0.3F, true)).mean(), 0);
 }
 
 TEST(HemisphereGather, backs_of_one_sided_faces_absorb) {
@@ -133,7 +134,7 @@ TEST(HemisphereGather, backs_of_one_sided_faces_absorb) {
   room.triangle(floor, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, 1);
   room.quad(lid, {Vec3(-9, -9, 1), Vec3(9, -9, 1), Vec3(9, 9, 1), Vec3(-9, 9, 1)}, 1);  // faces up
   const Gathering g(room, test::uniform_solution(room, 1, 1), 0);
-  EXPECT_EQ(g.gathered(surface_point(g.rays, TriangleId(0), 0.3F, 0.3F, true)).mean(), 0);
+  EXPECT_EQ(g.gathered(surface_point(g.walls.rays(), TriangleId(0), 0.3F, 0.3F, true)).mean(), 0);
 }
 
 TEST(HemisphereGather, sequence_of_queued_points_keeps_sums_apart) {
@@ -149,7 +150,7 @@ TEST(HemisphereGather, sequence_of_queued_points_keeps_sums_apart) {
   const SobolSequence sequence(1);
   for (std::uint32_t i = 0; i < 37; ++i) {
     const std::size_t which = i % 2;
-    batch.add(surface_point(g.rays, TriangleId(12 * which), 0.3F, 0.3F, true), sequence.sample(i, 0),
+    batch.add(surface_point(g.walls.rays(), TriangleId(12 * which), 0.3F, 0.3F, true), sequence.sample(i, 0),
               sequence.sample(i, 1), {0, 0, i}, weight.data(), sums[which].data());
   }
   batch.flush();
@@ -164,7 +165,7 @@ TEST(PathTracer, furnace) {
     const double m = 2;
     const RoomBuilder room = furnace(m, rho, 1);
     const Gathering g(room, test::dark_solution(room), 0);
-    const MeanTest e = g.traced(surface_point(g.rays, TriangleId(5), 0.3F, 0.1F, true), 2048);
+    const MeanTest e = g.traced(surface_point(g.walls.rays(), TriangleId(5), 0.3F, 0.1F, true), 2048);
     EXPECT_TRUE(e.agrees_with(rho * m / (1 - rho)));
     EXPECT_TRUE(e.would_notice(0.04, rho * m / (1 - rho))) << e.standard_error();
   }
@@ -174,11 +175,11 @@ TEST(RadianceField, refuses_another_room) {
   const RoomBuilder room = furnace(1, 0.5, 1);
   Solution solution = test::dark_solution(room);
   solution.surface_names.pop_back();
-  const RayScene rays(solution.mesh);
-  EXPECT_THROW(RadianceField(room.scene(), solution, rays), InputError);
+  const Room walls(room.scene(), solution.mesh);
+  EXPECT_THROW(RadianceField(walls, solution), InputError);
   solution = test::dark_solution(room);
   solution.sums.direct.pop_back();
-  EXPECT_THROW(RadianceField(room.scene(), solution, rays), InputError);
+  EXPECT_THROW(RadianceField(walls, solution), InputError);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "solver/sampling/sobol.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/lamp_by_ceiling.h"
@@ -22,10 +23,10 @@ using test::MeanTest;
 
 std::vector<std::uint8_t> uneven_of(const test::RoomBuilder& room, const Solution& solution,
                                     const StopToken* stop = nullptr) {
-  const RayScene rays(solution.mesh);
-  const RadianceField field(room.scene(), solution, rays);
-  const DirectLight direct(room.scene(), rays);
-  return uneven_zones(rays, field, direct, 1, stop);
+  const Room walls(room.scene(), solution.mesh);
+  const RadianceField field(walls, solution);
+  const DirectLight direct(walls);
+  return uneven_zones(field, direct, 1, stop);
 }
 
 TEST(UnevenZones, lie_above_a_lamp_close_to_the_ceiling) {
@@ -78,14 +79,14 @@ TEST(UnevenZones, are_not_looked_for_once_somebody_waits) {
 TEST(UnevenZones, floor_gets_what_is_seen_of_the_ceiling_beside_a_lamp) {
   const LampByCeiling room(0);
   const Solution solution = room.solved(4'000'000, 4);
-  const RayScene rays(solution.mesh);
-  const RadianceField field(room.builder().scene(), solution, rays);
-  const DirectLight direct(room.builder().scene(), rays);
-  const HemisphereGather continued(rays, field, direct, {});
-  const HemisphereGather read(rays, field, direct, GatherSettings{.close_hit = 0});
-  const PathTracer path(rays, field, direct, 1);
+  const Room walls(room.builder().scene(), solution.mesh);
+  const RadianceField field(walls, solution);
+  const DirectLight direct(walls);
+  const HemisphereGather continued(field, direct, {});
+  const HemisphereGather read(field, direct, GatherSettings{.close_hit = 0});
+  const PathTracer path(walls, direct, 1);
   // A point of the floor below the lamp.
-  const SurfacePoint x = surface_point(rays, room.floor(), 0.3F, 0.4F, true);
+  const SurfacePoint x = surface_point(walls.rays(), room.floor(), 0.3F, 0.4F, true);
   MeanTest by_continued;
   MeanTest by_reading;
   MeanTest traced;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/lamp_by_ceiling.h"
 #include "tests/support/variable_furnace.h"
@@ -23,14 +24,15 @@ ZoneBias estimate_of(double factor) {
   const MaterialId wall = room.material("wall", kRho, kExitance);
   room.box({0, 0, 0}, {1, 2, 3}, {wall, wall, wall, wall, wall, wall}, 4);
   const Solution solution = test::uniform_solution(room, 0, factor * kIrradiance);
-  const RayScene rays(solution.mesh);
-  const RadianceField field(room.scene(), solution, rays);
-  const DirectLight direct(room.scene(), rays);
-  const HemisphereGather gather(rays, field, direct, GatherSettings{.close_hit = 0});
-  const PathTracer path(rays, field, direct, 1);
+  const Room walls(room.scene(), solution.mesh);
+  const RadianceField field(walls, solution);
+  const DirectLight direct(walls);
+  const HemisphereGather gather(field, direct, GatherSettings{.close_hit = 0});
+  const PathTracer path(walls, direct, 1);
   std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < ZoneBiasEffort::kPoints; ++i)
-    points.push_back(surface_point(rays, TriangleId(i % rays.mesh().triangle_count()), 0.3F, 0.3F, true));
+    points.push_back(
+        surface_point(walls.rays(), TriangleId(i % walls.rays().mesh().triangle_count()), 0.3F, 0.3F, true));
   // Over the radiance rho^2 E/pi that is there after at least two reflections.
   const std::vector<double> scale(points.size(), std::numbers::pi / (kRho * kRho * kIrradiance));
   return estimate_zone_bias(gather, path, points, scale, {256}, 1);

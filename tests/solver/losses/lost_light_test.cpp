@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
@@ -70,8 +71,8 @@ TEST_F(LostLight, AGapIsNamedWithItsPlaceAndShare) {
   EXPECT_THAT(solution.light_warnings,
               ElementsAre(AllOf(HasSubstr("leaves the room, although its faces close"),
                                 HasSubstr("gap of about"), HasSubstr("'quad5' and 'quad6'"))));
-  const RayScene rays(solution.mesh);
-  const TransportScene transport(room_.scene(), solution.mesh, rays);
+  const Room walls(room_.scene(), solution.mesh);
+  const TransportScene transport(walls);
   const EscapedLight found = find_escapes(transport, collect_emission(transport), solution);
   // The ends of the slit may count as wider, and the share is that of some 2^17 probes.
   EXPECT_NEAR(found.through_gaps, share, 0.3 * share);
@@ -133,8 +134,8 @@ TEST_F(LostLight, IsNotLookedForOnceSomebodyWaits) {
   ceiling(0, 1);
   ceiling(1.004, 4);
   const Solution solution = solved();
-  const RayScene rays(solution.mesh);
-  const TransportScene transport(room_.scene(), solution.mesh, rays);
+  const Room walls(room_.scene(), solution.mesh);
+  const TransportScene transport(walls);
   const Emission emission = collect_emission(transport);
   const std::atomic<bool> interrupt{true};
   const StopToken stop(interrupt);

@@ -6,6 +6,7 @@
 #include "solver/losses/luminaire_warnings.h"
 #include "solver/losses/opening_losses.h"
 #include "solver/losses/self_lit_luminaires.h"
+#include "solver/room/room.h"
 #include "tests/solver/emit/luminaire_tables.h"
 #include "tests/support/test_rooms.h"
 
@@ -42,8 +43,8 @@ class LuminaireLosses : public ::testing::TestWithParam<bool> {
 
   std::vector<OpeningLoss> losses() const {
     const MeshResult meshed = room_.mesh();
-    const RayScene rays(meshed.mesh);
-    const TransportScene transport(room_.scene(), meshed.mesh, rays);
+    const Room walls(room_.scene(), meshed.mesh);
+    const TransportScene transport(walls);
     return opening_losses(transport);
   }
   std::vector<std::string> warnings() const {
@@ -157,8 +158,8 @@ TEST_F(LuminaireLosses, BacksFarAwayCountToo) {
 /// The share of itself that the lamp of a room lights, by surface.
 std::vector<SelfLitLuminaire> self_lit(const RoomBuilder& room) {
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  const TransportScene transport(room.scene(), meshed.mesh, rays);
+  const Room walls(room.scene(), meshed.mesh);
+  const TransportScene transport(walls);
   return self_lit_luminaires(transport, collect_emission(transport));
 }
 
@@ -196,8 +197,8 @@ TEST_P(LuminaireLosses, AreNotLookedForOnceSomebodyWaits) {
   walls(GetParam());
   light(troffer(Vec3(2, 3, 2)));
   const MeshResult meshed = room_.mesh();
-  const RayScene rays(meshed.mesh);
-  const TransportScene transport(room_.scene(), meshed.mesh, rays);
+  const Room walls(room_.scene(), meshed.mesh);
+  const TransportScene transport(walls);
   const std::atomic<bool> interrupt{true};
   const StopToken stop(interrupt);
   EXPECT_THROW(opening_losses(transport, &stop), Interrupted);

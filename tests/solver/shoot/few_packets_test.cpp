@@ -33,8 +33,8 @@ class Batches {
  public:
   explicit Batches(const test::RoomBuilder& room)
       : mesh_(room.mesh().mesh),
-        rays_(mesh_),
-        transport_(room.scene(), mesh_, rays_),
+        room_(room.scene(), mesh_),
+        transport_(room_),
         emission_(collect_emission(transport_)),
         books_(transport_.zones(), transport_.surfaces(), transport_.bands()) {}
 
@@ -55,7 +55,7 @@ class Batches {
 
  private:
   ZoneMesh mesh_;
-  RayScene rays_;
+  Room room_;
   TransportScene transport_;
   Emission emission_;
   BatchBooks books_;

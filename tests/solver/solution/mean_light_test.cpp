@@ -33,8 +33,8 @@ class LitBox {
     room_.quad(lamp, {Vec3(0.3, 0.3, 0.9), {0.3, 0.6, 0.9}, {0.6, 0.6, 0.9}, {0.6, 0.3, 0.9}}, 2);
     room_.quad(plate, {Vec3(0, 0, -1), {1, 0, -1}, {1, 1, -1}, {0, 1, -1}}, 1);
     mesh_ = room_.mesh().mesh;
-    rays_.emplace(mesh_);
-    transport_.emplace(room_.scene(), mesh_, *rays_);
+    walls_.emplace(room_.scene(), mesh_);
+    transport_.emplace(*walls_);
     emission_ = collect_emission(*transport_);
   }
 
@@ -65,7 +65,7 @@ class LitBox {
  private:
   RoomBuilder room_{BandSet::rgb()};
   ZoneMesh mesh_{BaseMesh{}};
-  std::optional<RayScene> rays_;
+  std::optional<Room> walls_;
   std::optional<TransportScene> transport_;
   Emission emission_;
 };

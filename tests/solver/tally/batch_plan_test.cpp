@@ -42,7 +42,8 @@ TEST(BatchPlan, LargeRoomsStartSmallAndGrow) {
 }
 
 TEST(BatchPlan, PacketsAreSpentInWholeBatches) {
-  for (const std::uint64_t packets : {1U, 2U, 1000U, 100'000U, 1'000'000U, 123'456'789U})
+  for (const std::uint64_t packets :
+       {1ULL, 2ULL, 1000ULL, 100'000ULL, 1'000'000ULL, 123'456'789ULL, 1'000'000'000'000ULL})
     for (const std::size_t zones : {100U, 100'000U}) {
       SolverSettings s;
       s.packets = packets;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/room/room.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit::cli {
@@ -15,14 +16,14 @@ TEST(CameraChoice, AnEyeWithoutUpFollowsTheFormatWhateverTheLampsSay) {
   room.quad(room.material("lamp", 0, 10),
             {Vec3(1, 2.9, 1), Vec3(2, 2.9, 1), Vec3(2, 2.9, 2), Vec3(1, 2.9, 2)}, 1);
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
+  const Room walls(room.scene(), meshed.mesh);
   CameraOptions options;
   options.eye = Vec3(0.5, 0.5, 0.5);
   options.look_at = Vec3(2, 1, 1);
   room.scene().source = "room.mgf";
-  EXPECT_EQ(choose_cameras(options, room.scene(), rays, false).front().up, Vec3(0, 0, 1));
+  EXPECT_EQ(choose_cameras(options, walls, false).front().up, Vec3(0, 0, 1));
   room.scene().source = "room.obj";
-  EXPECT_EQ(choose_cameras(options, room.scene(), rays, false).front().up, Vec3(0, 1, 0));
+  EXPECT_EQ(choose_cameras(options, walls, false).front().up, Vec3(0, 1, 0));
 }
 
 }  // namespace

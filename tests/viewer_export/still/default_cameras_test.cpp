@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/room/room.h"
 #include "tests/support/test_rooms.h"
 #include "viewer_export/output/up_direction.h"
 
@@ -23,8 +24,8 @@ TEST(DefaultCameras, StandInsideAClosedRoomAndLookDifferentWays) {
   const Vec3 high(2, 2.7, 9);
   room.box(low, high, all(room.material("wall", 0.5)), 2);
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  const Room walls(room.scene(), meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(walls);
   ASSERT_GE(cameras.size(), 2U);
   for (const Camera& camera : cameras) {
     EXPECT_GT(depth_inside(camera.eye, low, high), 0.2) << camera.name;
@@ -41,9 +42,9 @@ TEST(DefaultCameras, AreTheSameEveryTime) {
   RoomBuilder room;
   room.box(Vec3(0, 0, 0), Vec3(4, 3, 5), all(room.material("wall", 0.5)), 2);
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  const std::vector<Camera> once = default_cameras(room.scene(), rays);
-  const std::vector<Camera> again = default_cameras(room.scene(), rays);
+  const Room walls(room.scene(), meshed.mesh);
+  const std::vector<Camera> once = default_cameras(walls);
+  const std::vector<Camera> again = default_cameras(walls);
   ASSERT_EQ(once.size(), again.size());
   for (std::size_t i = 0; i < once.size(); ++i) {
     EXPECT_EQ(once[i].name, again[i].name);
@@ -61,8 +62,8 @@ TEST(DefaultCameras, StayOutOfFurniture) {
   const Vec3 block_high(4.5, 2.8, 4.5);
   room.solid(block_low, block_high, wall, 1);
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  for (const Camera& camera : default_cameras(room.scene(), rays)) {
+  const Room walls(room.scene(), meshed.mesh);
+  for (const Camera& camera : default_cameras(walls)) {
     EXPECT_LT(depth_inside(camera.eye, block_low, block_high), 0) << camera.name;
     EXPECT_GT(depth_inside(camera.eye, Vec3(0, 0, 0), Vec3(6, 3, 6)), 0) << camera.name;
   }
@@ -72,8 +73,8 @@ TEST(DefaultCameras, ShowALonePolygonFromItsFront) {
   RoomBuilder room;
   room.quad(room.material("wall", 0.5), {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 1);
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  const Room walls(room.scene(), meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(walls);
   ASSERT_EQ(cameras.size(), 1U);
   EXPECT_GT(cameras[0].eye.z(), 0.5);
   EXPECT_LT(cameras[0].look_at.z(), cameras[0].eye.z());
@@ -123,8 +124,8 @@ TEST(DefaultCameras, StandWhereLightGoes) {
   room.quad(room.material("lamp", 0, 10),
             {Vec3(1, 2.6, 1), Vec3(2, 2.6, 1), Vec3(2, 2.6, 2), Vec3(1, 2.6, 2)}, 1);
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  const Room walls(room.scene(), meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(walls);
   ASSERT_EQ(cameras.size(), 3U);
   for (const Camera& camera : cameras)
     EXPECT_GT(depth_inside(camera.eye, Vec3(0, 0, 0), Vec3(4, 2.7, 3)), 0.15) << camera.name;
@@ -141,14 +142,14 @@ TEST(DefaultCameras, KeepClearOfAPartition) {
   room.quad(room.material("lamp", 0, 10),
             {Vec3(1, 2.6, 1), Vec3(7, 2.6, 1), Vec3(7, 2.6, 5), Vec3(1, 2.6, 5)}, 1);
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  const Room walls(room.scene(), meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(walls);
   ASSERT_EQ(cameras.size(), 3U);
   for (const Camera& camera : cameras) {
     const Vec3 forward = (camera.look_at - camera.eye).normalized();
     Hit hit;
-    ASSERT_TRUE(rays.closest(rays.normalised(camera.eye), forward.cast<float>(), hit));
-    EXPECT_GT(hit.distance * rays.metres_per_unit(), 1.0) << camera.name;
+    ASSERT_TRUE(walls.rays().closest(walls.rays().normalised(camera.eye), forward.cast<float>(), hit));
+    EXPECT_GT(hit.distance * walls.rays().metres_per_unit(), 1.0) << camera.name;
     for (const double x : {2.0, 4.0, 6.0}) {
       const double beside = std::max({0.0, 0.8 - camera.eye.z(), camera.eye.z() - 5.2});
       EXPECT_GT(std::hypot(camera.eye.x() - x, beside), 0.2) << camera.name;
@@ -162,8 +163,8 @@ TEST(DefaultCameras, AThingWithoutARoomIsInThePicture) {
   room.shape(white, Sphere{Vec3(10, 5, -3), 0.5}, 2);
   room.scene().lights.emplace_back(PointLight{"lamp", Vec3(12, 7, -1), room.flat(100)});
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
-  const std::vector<Camera> cameras = default_cameras(room.scene(), rays);
+  const Room walls(room.scene(), meshed.mesh);
+  const std::vector<Camera> cameras = default_cameras(walls);
   ASSERT_FALSE(cameras.empty());
   for (const Camera& camera : cameras) {
     const Vec3 forward = (camera.look_at - camera.eye).normalized();

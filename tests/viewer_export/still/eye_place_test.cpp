@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 
 namespace reemit {
@@ -36,11 +37,11 @@ Solution lit_inside(const RoomBuilder& room) {
 
 std::string warning(const RoomBuilder& room, const Vec3& eye, const Vec3& look_at) {
   const Solution solution = lit_inside(room);
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   Camera camera;
   camera.eye = eye;
   camera.look_at = look_at;
-  return eye_warning(camera, room.scene(), solution, rays);
+  return eye_warning(camera, walls, solution);
 }
 
 TEST(EyePlace, InsideTheRoomNothingIsSaid) {
@@ -75,11 +76,11 @@ TEST(EyePlace, InsideOfASolidIsSaid) {
 TEST(EyePlace, ARoomWithoutLightIsNoFaultOfTheCamera) {
   const RoomBuilder room = room_of(two_sided, false);
   const Solution solution = test::dark_solution(room);
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   Camera camera;
   camera.eye = Vec3(2, 1.6, 4);
   camera.look_at = Vec3(2, 1, 0);
-  EXPECT_THAT(eye_warning(camera, room.scene(), solution, rays), IsEmpty());
+  EXPECT_THAT(eye_warning(camera, walls, solution), IsEmpty());
 }
 
 TEST(EyePlace, AnUnlitRoomIsNotTakenForASolid) {
@@ -91,11 +92,11 @@ TEST(EyePlace, AnUnlitRoomIsNotTakenForASolid) {
   for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
     if (solution.mesh.zone_centroid(ZoneId(z)).x() > 4.5)
       solution.sums.direct[z] = solution.sums.indirect[z] = 0;
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   Camera camera;
   camera.eye = Vec3(7, 1.6, 4);
   camera.look_at = Vec3(7, 1, 0);
-  EXPECT_THAT(eye_warning(camera, room.scene(), solution, rays), HasSubstr("luminaires do not reach"));
+  EXPECT_THAT(eye_warning(camera, walls, solution), HasSubstr("luminaires do not reach"));
 }
 
 TEST(EyePlace, LookingAwayFromTheRoomIsSaid) {

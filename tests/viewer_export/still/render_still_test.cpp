@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/model/error.h"
+#include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
 
@@ -22,9 +23,9 @@ using test::RoomBuilder;
 
 StillImage render(const RoomBuilder& room, const Solution& solution, const Camera& camera,
                   const StillSettings& settings) {
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   const std::atomic<bool> interrupt{false};
-  return render_still(room.scene(), solution, rays, camera, settings, {}, interrupt);
+  return render_still(walls, solution, camera, settings, {}, interrupt);
 }
 
 StillSettings small_still(Integrator integrator, int spp) {
@@ -267,7 +268,7 @@ TEST(RenderStill, interrupted_stills_are_noisier_stills) {
   // In a furnace every pixel sees the same radiance, whatever it was found with.
   const RoomBuilder room = furnace(3, 0.5, 8);
   const Solution solution = test::uniform_solution(room, 3, 3);
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   for (const Integrator integrator : {Integrator::kGather, Integrator::kPath}) {
     StillSettings settings = small_still(integrator, 1 << 14);
     settings.width = 100;  // 14 tiles
@@ -276,7 +277,7 @@ TEST(RenderStill, interrupted_stills_are_noisier_stills) {
       std::atomic<bool> interrupt{false};
       int reports = 0;
       const StillImage image = render_still(
-          room.scene(), solution, rays, inside(), settings,
+          walls, solution, inside(), settings,
           [&](const StillProgress& now) {
             EXPECT_GE(now.fraction, 0);
             EXPECT_LE(now.fraction, 1);
@@ -304,13 +305,13 @@ TEST(RenderStill, stills_interrupted_at_once_show_the_zones) {
   // The larger one has more pixels than are traced one by one then.
   const RoomBuilder room = furnace(3, 0.5, 8);
   const Solution solution = test::uniform_solution(room, 3, 3);
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   const std::atomic<bool> already{true};
   for (const int width : {70, 1030}) {
     StillSettings settings = small_still(Integrator::kGather, 16);
     settings.width = width;
     settings.height = width;
-    const StillImage image = render_still(room.scene(), solution, rays, inside(), settings, {}, already);
+    const StillImage image = render_still(walls, solution, inside(), settings, {}, already);
     EXPECT_NO_THROW(check_consistent(image));
     for (const float l : image.radiance) ASSERT_NEAR(l, 6 / pi, 1e-5);
     for (const float s : image.samples) ASSERT_EQ(s, 1);

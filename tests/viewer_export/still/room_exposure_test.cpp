@@ -9,6 +9,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/still/default_cameras.h"
@@ -48,12 +49,12 @@ Solution darker_in_the_cupboard(const RoomBuilder& room) {
 
 const std::atomic<bool> kNever{false};
 
-ToneMap of_still(const Scene& scene, const Solution& solution, const RayScene& rays, const Camera& camera) {
+ToneMap of_still(const Room& room, const Solution& solution, const Camera& camera) {
   StillSettings settings;
   settings.width = 160;
   settings.height = std::max(1, 160 * camera.height / camera.width);
   settings.spp = 16;
-  return make_tone_map(rgb_of(render_still(scene, solution, rays, camera, settings, {}, kNever)));
+  return make_tone_map(rgb_of(render_still(room, solution, camera, settings, {}, kNever)));
 }
 
 TEST(RoomExposure, IsThatOfTheStillFromTheFirstCamera) {
@@ -64,9 +65,9 @@ TEST(RoomExposure, IsThatOfTheStillFromTheFirstCamera) {
   cupboard.look_at = Vec3(5.5, 1, 1);
   room.scene().cameras.push_back(cupboard);
   const Solution solution = darker_in_the_cupboard(room);
-  const RayScene rays(solution.mesh);
-  const ToneMap still = of_still(room.scene(), solution, rays, room.scene().cameras.front());
-  const ToneMap of_room = tone_map_of_room(room.scene(), solution, rays, {}, 0, kNever);
+  const Room walls(room.scene(), solution.mesh);
+  const ToneMap still = of_still(walls, solution, room.scene().cameras.front());
+  const ToneMap of_room = tone_map_of_room(walls, solution, {}, 0, kNever);
   EXPECT_NEAR(of_room.exposure_ev(), still.exposure_ev(), 0.1);
   EXPECT_NEAR(of_room.white(), still.white(), 0.1 * still.white());
 }
@@ -76,9 +77,9 @@ TEST(RoomExposure, WithoutCamerasIsThatOfTheFirstAutomaticOne) {
   room.scene().lights.push_back(PointLight{"bulb", Vec3(2, 2.5, 2), room.flat(10)});
   room.scene().cameras.clear();
   const Solution solution = darker_in_the_cupboard(room);
-  const RayScene rays(solution.mesh);
-  const ToneMap still = of_still(room.scene(), solution, rays, default_cameras(room.scene(), rays).front());
-  const ToneMap of_room = tone_map_of_room(room.scene(), solution, rays, {}, 0, kNever);
+  const Room walls(room.scene(), solution.mesh);
+  const ToneMap still = of_still(walls, solution, default_cameras(walls).front());
+  const ToneMap of_room = tone_map_of_room(walls, solution, {}, 0, kNever);
   EXPECT_NEAR(of_room.exposure_ev(), still.exposure_ev(), 0.1);
 }
 
@@ -89,10 +90,10 @@ void expect_an_export_as_bright_as_the_still(const std::filesystem::path& file) 
   SolverSettings settings;
   settings.packets = 400'000;
   const Solution solution = solve_zones(scene, mesh, settings, {}, kNever);
-  const RayScene rays(solution.mesh);
-  const Camera camera = cli::cameras_of(scene, rays).front();
-  const double still = of_still(scene, solution, rays, camera).exposure_ev();
-  EXPECT_NEAR(tone_map_of_room(scene, solution, rays, {}, 0, kNever).exposure_ev(), still, 0.2) << file;
+  const Room walls(scene, solution.mesh);
+  const Camera camera = cli::cameras_of(walls).front();
+  const double still = of_still(walls, solution, camera).exposure_ev();
+  EXPECT_NEAR(tone_map_of_room(walls, solution, {}, 0, kNever).exposure_ev(), still, 0.2) << file;
 }
 
 const std::filesystem::path kSource = REEMIT_SOURCE_DIR;
@@ -114,10 +115,10 @@ TEST(RoomExposure, OfTheConferenceRoomIsThatOfItsStill) {
 TEST(RoomExposure, AFixedExposureStays) {
   const RoomBuilder room = room_with_a_dark_cupboard();
   const Solution solution = darker_in_the_cupboard(room);
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   ToneMapSettings settings;
   settings.exposure_ev = -2;
-  const ToneMap tone_map = tone_map_of_room(room.scene(), solution, rays, settings, 0, kNever);
+  const ToneMap tone_map = tone_map_of_room(walls, solution, settings, 0, kNever);
   EXPECT_EQ(tone_map.exposure_ev(), -2);
   EXPECT_EQ(tone_map.white(), ToneMapSettings::kFixedWhite);
 }

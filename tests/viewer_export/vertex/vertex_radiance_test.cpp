@@ -11,6 +11,7 @@
 #include "scenes/model/error.h"
 #include "solver/gather/direct_light.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
 #include "viewer_export/vertex/vertex_ring.h"
@@ -23,9 +24,9 @@ using test::MeanTest;
 using test::RoomBuilder;
 
 VertexData gather(const RoomBuilder& room, const Solution& solution, const VertexSettings& settings) {
-  const RayScene rays(solution.mesh);
+  const Room walls(room.scene(), solution.mesh);
   const std::atomic<bool> interrupt{false};
-  return gather_vertices(room.scene(), solution, rays, settings, {}, interrupt);
+  return gather_vertices(walls, solution, settings, {}, interrupt);
 }
 
 double area_of(const std::vector<Vec3>& p, const std::array<std::uint32_t, 3>& t) {

@@ -1,0 +1,89 @@
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "mesh/zones/zone_mesh.h"
+#include "scenes/model/scene.h"
+#include "solver/reflect/lobe.h"
+#include "solver/trace/surface_point.h"
+
+namespace reemit {
+
+/// What the surfaces of a room do with light: the one reader of materials in the solver. Zones hold the
+/// Lambertian part of it, reflectance(); paths ask for all of it, value() and sample(). Values per band,
+/// double for books and float for rays. Const members may be called from any thread.
+class SurfaceModel {
+ public:
+  SurfaceModel(const Scene& scene, const ZoneMesh& mesh);
+
+  std::size_t band_count() const { return bands_; }
+  std::size_t surface_count() const { return surfaces_.size(); }
+
+  /// Diffuse reflectance of a surface, one number per band [0,1], and the largest of them.
+  const double* reflectance(SurfaceId s) const { return &reflectance_[s.index() * bands_]; }
+  double largest_reflectance(SurfaceId s) const { return surfaces_[s.index()].largest_reflectance; }
+  /// The same of one side of a triangle; zero on backs that absorb.
+  const float* reflectance(TriangleId t, bool front) const {
+    return side(t, front).reflects ? &side_reflectance_[surface_of(t) * bands_] : zero_.data();
+  }
+
+  /// BRDF at x for light from direction `from` (unit), seen from x.towards.
+  BrdfValue value(const SurfacePoint& x, const Vec3f& from) const {
+    return std::visit([&](const auto& lobe) { return lobe.value(x, from); }, lobe_at(x));
+  }
+  /// A direction from which light seen from x.towards comes, for two uniform numbers.
+  ScatterSample sample(const SurfacePoint& x, float u0, float u1) const {
+    return std::visit([&](const auto& lobe) { return lobe.sample(x, u0, u1); }, lobe_at(x));
+  }
+
+  /// Whether a side of a triangle, or any side of a surface, emits.
+  bool emits(TriangleId t, bool front) const { return side(t, front).emits; }
+  bool emits(SurfaceId s) const { return surfaces_[s.index()].emits; }
+  /// Self-emitted radiance [W/(m2 sr)] of one side: exitance over pi, which is the radiance in every
+  /// direction where emission is Lambertian. Zero where it does not emit.
+  const float* emitted(TriangleId t, bool front) const {
+    return emits(t, front) ? &emitted_[surface_of(t) * bands_] : zero_.data();
+  }
+  /// Radiance at an angle to the normal over emitted(): (e+2)/2 cos^e, 1 for Lambertian emission.
+  float emission_shape(TriangleId t, float cosine) const {
+    const float e = surfaces_[surface_of(t)].exponent;
+    return e == 0 ? 1.0F : (0.5F * e + 1) * std::pow(cosine, e);
+  }
+  /// e of Material::emission_exponent.
+  double emission_exponent(SurfaceId s) const { return surfaces_[s.index()].emission_exponent; }
+  /// Radiance along the normal [W/(m2 sr)] per band.
+  const Spectrum& normal_radiance(SurfaceId s) const { return surfaces_[s.index()].normal_radiance; }
+  /// Emitted by a square metre of one side [W/m2] per band.
+  const Spectrum& exitance(SurfaceId s) const { return surfaces_[s.index()].exitance; }
+
+ private:
+  struct OfSurface {
+    Spectrum normal_radiance, exitance;
+    double largest_reflectance;
+    double emission_exponent;
+    float exponent;  // the same, for rays
+    bool emits;
+  };
+  struct Side {
+    bool reflects;
+    bool emits;
+  };
+
+  const Side& side(TriangleId t, bool front) const { return sides_[2 * t.index() + (front ? 0 : 1)]; }
+  std::size_t surface_of(TriangleId t) const { return surface_[t.index()]; }
+  Lobe lobe_at(const SurfacePoint& x) const { return LambertLobe{reflectance(x.triangle, x.front)}; }
+
+  std::size_t bands_;
+  std::vector<OfSurface> surfaces_;
+  std::vector<double> reflectance_;
+  std::vector<float> side_reflectance_;  // by surface, as reflectance_
+  std::vector<float> emitted_;           // by surface
+  std::vector<std::uint32_t> surface_;   // of each triangle
+  std::vector<Side> sides_;              // front, back of each triangle
+  std::vector<float> zero_;
+};
+
+}  // namespace reemit

@@ -1,0 +1,34 @@
+#pragma once
+#include "mesh/zones/zone_mesh.h"
+#include "scenes/model/scene.h"
+#include "solver/reflect/surface_model.h"
+#include "solver/trace/ray_scene.h"
+
+namespace reemit {
+
+/// The room as every stage meets it: what was read, its zones, the rays in it and what its surfaces do with
+/// light. Does not change. Const members may be called from any thread.
+class Room {
+ public:
+  /// Builds the tree for rays. Scene and mesh must outlive the room.
+  Room(const Scene& scene, const ZoneMesh& mesh)
+      : scene_(&scene), mesh_(&mesh), rays_(mesh), surfaces_(scene, mesh) {}
+  Room(const Scene&&, const ZoneMesh&) = delete;
+  Room(const Scene&, const ZoneMesh&&) = delete;
+  Room(const Room&) = delete;
+  Room& operator=(const Room&) = delete;
+
+  const Scene& scene() const { return *scene_; }
+  const ZoneMesh& mesh() const { return *mesh_; }
+  const RayScene& rays() const { return rays_; }
+  const SurfaceModel& surfaces() const { return surfaces_; }
+  std::size_t band_count() const { return scene_->bands.count(); }
+
+ private:
+  const Scene* scene_;
+  const ZoneMesh* mesh_;
+  RayScene rays_;
+  SurfaceModel surfaces_;
+};
+
+}  // namespace reemit
