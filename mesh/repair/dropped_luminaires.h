@@ -1,5 +1,6 @@
 #pragma once
 #include "mesh/model/mesh_report.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 

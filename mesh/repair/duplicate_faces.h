@@ -3,6 +3,7 @@
 
 #include "mesh/model/mesh_report.h"
 #include "mesh/pieces/face_piece.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 

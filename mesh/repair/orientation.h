@@ -4,6 +4,7 @@
 #include "mesh/geometry/vertex_table.h"
 #include "mesh/model/mesh_report.h"
 #include "mesh/pieces/face_piece.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 

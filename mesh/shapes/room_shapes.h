@@ -4,6 +4,7 @@
 
 #include "mesh/model/mesh_report.h"
 #include "mesh/model/mesh_tolerances.h"
+#include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 
 namespace reemit {

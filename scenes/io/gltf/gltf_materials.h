@@ -3,6 +3,7 @@
 
 #include "scenes/io/gltf/gltf_texture.h"
 #include "scenes/io/gltf/gltf_units.h"
+#include "scenes/model/scene.h"
 
 namespace reemit {
 
