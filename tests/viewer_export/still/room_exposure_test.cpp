@@ -1,7 +1,6 @@
 #include "viewer_export/still/room_exposure.h"
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "tests/support/hand_made_solution.h"
+#include "tests/support/never.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/still/default_cameras.h"
 #include "viewer_export/still/render_still.h"
@@ -46,7 +46,7 @@ Solution darker_in_the_cupboard(const RoomBuilder& room) {
   return solution;
 }
 
-const std::atomic<bool> kNever{false};
+using test::kNever;
 
 ToneMap of_still(const Scene& scene, const Solution& solution, const RayScene& rays, const Camera& camera) {
   StillSettings settings;
