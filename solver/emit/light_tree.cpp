@@ -194,7 +194,7 @@ LightTree::LightTree(std::span<const LuminaireBounds> luminaires) {
   std::vector<LuminaireBounds> shares(luminaires.begin(), luminaires.end());
   for (LuminaireBounds& bounds : shares)
     bounds.intensity = std::max(static_cast<float>(static_cast<double>(bounds.intensity) / total), 1e-30F);
-  Widener(split_luminaires(shares), shares.size(), nodes_, trails_, order_);
+  const Widener widened(split_luminaires(shares), shares.size(), nodes_, trails_, order_);
   nodes_.shrink_to_fit();
   // The weakest lamp of a clump must not vanish in the running sum, or it would never be picked.
   const double least = kLeastShare / static_cast<double>(order_.size());

@@ -15,7 +15,7 @@ inline SurfacePoint point_in_zone(const RayScene& rays, ZoneId zone, const std::
   const ZoneMesh& mesh = rays.mesh();
   const auto [s, t] = sample_triangle(u[0], u[1]);
   const auto corners = mesh.zone_barycentrics(zone);
-  const auto inside = [&](double Barycentric::*k) {
+  const auto inside = [&, s = s, t = t](double Barycentric::*k) {
     return static_cast<float>((1 - s - t) * corners[0].*k + s * corners[1].*k + t * corners[2].*k);
   };
   return surface_point(rays, mesh.zone_triangle(zone), inside(&Barycentric::u), inside(&Barycentric::v),
