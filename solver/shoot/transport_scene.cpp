@@ -35,7 +35,7 @@ void TransportScene::start_from(ZoneId z, float u0, float u1, const Vec3f& local
   const bool front = mesh_->zone_is_front(z);
   const auto corners = mesh_->zone_barycentrics(z);
   const auto [a, b] = sample_triangle(u0, u1);
-  const auto inside = [&](double Barycentric::*k) {
+  const auto inside = [&, a = a, b = b](double Barycentric::*k) {
     return static_cast<float>((1 - a - b) * corners[0].*k + a * corners[1].*k + b * corners[2].*k);
   };
   start_at(t, inside(&Barycentric::u), inside(&Barycentric::v), front, local, rays, lane);

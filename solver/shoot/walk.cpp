@@ -40,7 +40,7 @@ struct WaitingPackets {
 /// Uniform number in [0,1) from the low bytes of four random words, whose high 24 bits make four others.
 float low_bytes_to_unit(const BitLanes& bits, std::size_t lane) {
   std::uint32_t low = 0;
-  for (std::size_t k = 0; k < 4; ++k) low = (low << 8) | (bits.word[k][lane] & 0xffU);
+  for (const auto& word : bits.word) low = (low << 8) | (word[lane] & 0xffU);
   return CounterRng::to_unit(low);
 }
 
