@@ -21,14 +21,15 @@ namespace reemit::bench {
 namespace {
 
 /// One command line of a user: solve, then render.
-struct Effort {
+struct StillEffort {
   std::uint64_t packets;
   int samples;  ///< Camera rays per pixel.
 };
 
-constexpr std::array<Effort, 4> kGatherEfforts{
+constexpr std::array<StillEffort, 4> kStillEfforts{
     {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 128}}};
-constexpr std::array<Effort, 4> kZoneEfforts{{{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}};
+constexpr std::array<StillEffort, 4> kZoneEfforts{
+    {{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}};
 /// Camera rays of a replicate in one block of the reference.
 constexpr int kReferenceBlock = 16;
 
@@ -126,14 +127,14 @@ class StillCurves {
   void run(int seed, std::size_t level, std::size_t levels) {
     if (level < levels) {
       measure(Integrator::kZones, seed, level, kZoneEfforts[level]);
-      measure(Integrator::kGather, seed, level, kGatherEfforts[level]);
+      measure(Integrator::kGather, seed, level, kStillEfforts[level]);
     }
     if (level < room_.path_samples.size() - (options_.quick ? 1 : 0))
       measure(Integrator::kPath, seed, level, {0, room_.path_samples[level]});
   }
 
  private:
-  void measure(Integrator integrator, int seed, std::size_t level, const Effort& effort) {
+  void measure(Integrator integrator, int seed, std::size_t level, const StillEffort& effort) {
     SolverSettings solver;
     solver.threads = options_.threads;
     solver.seed = static_cast<std::uint64_t>(seed);
@@ -181,7 +182,7 @@ class StillCurves {
 void measure_stills(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
                     Table& table) {
   StillCurves curves(room, options, cache, table);
-  const std::size_t levels = kGatherEfforts.size() - (options.quick ? 1 : 0);
+  const std::size_t levels = kStillEfforts.size() - (options.quick ? 1 : 0);
   for (int seed = 1; seed <= options.seeds; ++seed)
     for (std::size_t level = 0; level < std::max(levels, room.path_samples.size()); ++level)
       curves.run(seed, level, levels);

@@ -23,7 +23,7 @@ namespace reemit::bench {
 namespace {
 
 /// One command line of a user: solve, then export.
-struct Effort {
+struct VertexEffort {
   std::uint64_t packets;
   int gather_rays;
   int light_samples;
@@ -32,7 +32,7 @@ struct Effort {
 /// Packets that the zones need when their mean is all there is.
 constexpr std::array<std::uint64_t, 4> kAveragePackets{1U << 18, 1U << 20, 1U << 22, 1U << 24};
 /// A gather averages the zones' noise: few packets do, and the rays of the gather decide.
-constexpr std::array<Effort, 4> kGatherEfforts{
+constexpr std::array<VertexEffort, 4> kVertexEfforts{
     {{1U << 18, 16, 16}, {1U << 19, 64, 32}, {1U << 20, 192, 64}, {1U << 21, 512, 128}}};
 
 /// The reference: more of everything, nearer to the vertex.
@@ -110,8 +110,8 @@ class VertexCurves {
     const bool leave_out = options_.quick;
     if (level + (leave_out ? 1 : 0) < kAveragePackets.size())
       measure("zones averaged", seed, level, {kAveragePackets[level], 0, 0});
-    if (level + (leave_out ? 1 : 0) < kGatherEfforts.size())
-      measure("gathered", seed, level, kGatherEfforts[level]);
+    if (level + (leave_out ? 1 : 0) < kVertexEfforts.size())
+      measure("gathered", seed, level, kVertexEfforts[level]);
   }
 
  private:
@@ -167,7 +167,7 @@ class VertexCurves {
     return values;
   }
 
-  void measure(const std::string& method, int seed, std::size_t level, const Effort& effort) {
+  void measure(const std::string& method, int seed, std::size_t level, const VertexEffort& effort) {
     SolverSettings solver;
     solver.threads = options_.threads;
     solver.seed = static_cast<std::uint64_t>(seed);
@@ -215,7 +215,7 @@ void measure_vertices(const StudiedRoom& room, const Options& options, const Ref
                       Table& table) {
   VertexCurves curves(room, options, cache, table);
   for (int seed = 1; seed <= options.seeds; ++seed)
-    for (std::size_t level = 0; level < std::max(kAveragePackets.size(), kGatherEfforts.size()); ++level)
+    for (std::size_t level = 0; level < std::max(kAveragePackets.size(), kVertexEfforts.size()); ++level)
       curves.run(seed, level);
 }
 

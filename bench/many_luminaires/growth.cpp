@@ -19,13 +19,13 @@
 namespace reemit::bench {
 namespace {
 
-constexpr const char* kPart = "growth";
+constexpr const char* kGrowth = "growth";
 constexpr std::size_t kSheetSide = 100;
 constexpr std::size_t kMostLinear = 10'000;
 /// Samples of a round of linear selection, times luminaires: it takes time for each of them.
 constexpr std::size_t kLinearWork = 2'000'000;
 
-struct Effort {
+struct GrowthEffort {
   std::size_t points = 4000;
   int samples = 8;
   int rounds = 15;
@@ -33,7 +33,7 @@ struct Effort {
   std::size_t most = 100'000;
 };
 
-Effort effort_of(const RunSettings& settings) {
+GrowthEffort growth_effort(const RunSettings& settings) {
   if (!settings.quick) return {};
   return {.points = 1000, .samples = 4, .rounds = 5, .builds = 1, .most = 10'000};
 }
@@ -61,7 +61,7 @@ struct Timed {
   double spatial;
 };
 
-Timed measure(const std::string& kind, std::size_t count, const Scene& scene, const Effort& effort,
+Timed measure(const std::string& kind, std::size_t count, const Scene& scene, const GrowthEffort& effort,
               Figures& figures) {
   const LitRoom room(scene);
   const std::vector<SurfacePoint> points = wall_points(room, effort.points);
@@ -81,7 +81,7 @@ Timed measure(const std::string& kind, std::size_t count, const Scene& scene, co
   if (linear) candidates.push_back({&lights[1], &few_points, 1});
   const auto times = sample_times_ns(candidates, effort.rounds);
   const auto add = [&](Selection s, const std::string& quantity, const std::vector<double>& values) {
-    figures.add({kPart, kind, count, std::string(name_of(s)), quantity, spread_of(values)});
+    figures.add({kGrowth, kind, count, std::string(name_of(s)), quantity, spread_of(values)});
   };
   add(Selection::kConstant, "time per sample [ns]", times[0]);
   if (linear) add(Selection::kLinear, "time per sample [ns]", times[2]);
@@ -104,7 +104,8 @@ void add_exponents(const std::string& kind, const std::vector<Timed>& runs, Figu
   for (const std::size_t least : {std::size_t{10}, std::size_t{1000}}) {
     const auto add = [&](const char* selection, const std::optional<double>& value) {
       if (value)
-        figures.add({kPart, kind, least, selection, "exponent of growth from here on", spread_of({*value})});
+        figures.add(
+            {kGrowth, kind, least, selection, "exponent of growth from here on", spread_of({*value})});
     };
     add("constant", exponent(runs, least, [](const Timed& r) { return r.constant; }));
     add("spatial", exponent(runs, least, [](const Timed& r) { return r.spatial; }));
@@ -114,7 +115,7 @@ void add_exponents(const std::string& kind, const std::vector<Timed>& runs, Figu
 }  // namespace
 
 void measure_growth(const RunSettings& settings, Figures& figures) {
-  const Effort effort = effort_of(settings);
+  const GrowthEffort effort = growth_effort(settings);
   figures.notes.push_back(fmt::format(
       "growth: {} points on floor, walls and ceiling of a closed box, {} rounds of {} samples at each",
       effort.points, effort.rounds, effort.samples));

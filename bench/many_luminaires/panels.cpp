@@ -19,19 +19,19 @@
 namespace reemit::bench {
 namespace {
 
-constexpr const char* kPart = "panels";
-constexpr const char* kCamera = "middle court";
+constexpr const char* kPanels = "panels";
+constexpr const char* kPanelsCamera = "middle court";
 /// The share of the picture's mean luminance that errors are compared with where it is black.
 constexpr double kFloor = 0.01;
 
-struct Effort {
+struct PanelsEffort {
   int width = 480;
   int height = 320;
   std::vector<int> samples{4, 16, static_cast<int>(kShownSamples), 196};
   int reference_samples = 4096;
 };
 
-Effort effort_of(const RunSettings& settings) {
+PanelsEffort panels_effort(const RunSettings& settings) {
   if (!settings.quick) return {};
   return {.width = 240, .height = 160, .samples = {4, 16, kShownSamples, 196}, .reference_samples = 512};
 }
@@ -78,10 +78,10 @@ class Panels {
  public:
   Panels(const RunSettings& settings, Figures& figures, const LitRoom& room)
       : settings_(settings),
-        effort_(effort_of(settings)),
+        effort_(panels_effort(settings)),
         figures_(figures),
         room_(room),
-        camera_(camera_named(room.scene(), kCamera)) {
+        camera_(camera_named(room.scene(), kPanelsCamera)) {
     for (const Selection s : kSelections) lights_.push_back(room.light(s));
   }
 
@@ -100,7 +100,7 @@ class Panels {
         "panels: camera '{}', {}x{} px, {} thread{}; reference: {} samples per pixel, spatial selection, "
         "{:.2g} % "
         "median, {:.2g} % rms",
-        kCamera, effort_.width, effort_.height, settings_.threads, settings_.threads == 1 ? "" : "s",
+        kPanelsCamera, effort_.width, effort_.height, settings_.threads, settings_.threads == 1 ? "" : "s",
         effort_.reference_samples, 100 * reference_error_.median, 100 * reference_error_.rms));
     for (const int samples : effort_.samples) measure(samples);
     compare();
@@ -173,11 +173,11 @@ class Panels {
 
   void add(int samples, Selection s, const std::string& quantity, const Spread& value) {
     figures_.add(
-        {kPart, "still", static_cast<std::size_t>(samples), std::string(name_of(s)), quantity, value});
+        {kPanels, "still", static_cast<std::size_t>(samples), std::string(name_of(s)), quantity, value});
   }
 
   const RunSettings& settings_;
-  Effort effort_;
+  PanelsEffort effort_;
   Figures& figures_;
   const LitRoom& room_;
   const Camera& camera_;
@@ -185,7 +185,7 @@ class Panels {
   DirectPicture reference_;
   Deviation reference_error_;
   std::array<DirectPicture, kSelections.size()> shown_;
-  std::vector<LevelOfAll> levels_;  // as Effort::samples
+  std::vector<LevelOfAll> levels_;  // as PanelsEffort::samples
 };
 
 }  // namespace

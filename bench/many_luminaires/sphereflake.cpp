@@ -21,14 +21,14 @@
 namespace reemit::bench {
 namespace {
 
-constexpr const char* kPart = "sphereflake";
-constexpr const char* kCamera = "floor";
+constexpr const char* kSphereflake = "sphereflake";
+constexpr const char* kFlakeCamera = "floor";
 /// Constant selection scatters so much more than the others that its error at the same points takes this many
 /// times their samples to measure; at few points even more.
 constexpr int kForConstant = 16;
 constexpr int kForConstantAtFew = 64;
 
-struct Effort {
+struct FlakeEffort {
   int width = 96;  // of the picture whose pixels are the points
   int height = 72;
   int rounds = 15;
@@ -39,7 +39,7 @@ struct Effort {
   int linear_samples = 64;
 };
 
-Effort effort_of(const RunSettings& settings) {
+FlakeEffort flake_effort(const RunSettings& settings) {
   if (!settings.quick) return {};
   return {.width = 48, .height = 36, .rounds = 5, .samples = 64, .reference_samples = 2048};
 }
@@ -58,9 +58,10 @@ std::size_t luminaires_of(const Scene& scene) {
   return count;
 }
 
-std::vector<Subject> subjects_of(const LitRoom& all_lamps, const LitRoom& one_lamp, const Effort& effort) {
+std::vector<Subject> subjects_of(const LitRoom& all_lamps, const LitRoom& one_lamp,
+                                 const FlakeEffort& effort) {
   const auto points_of = [&](const LitRoom& room) {
-    return seen_points(room, camera_named(room.scene(), kCamera), effort.width, effort.height);
+    return seen_points(room, camera_named(room.scene(), kFlakeCamera), effort.width, effort.height);
   };
   std::vector<Subject> subjects{
       {"all points", points_of(all_lamps), points_of(one_lamp)}, {"floor", {}, {}}, {"spheres", {}, {}}};
@@ -86,7 +87,7 @@ class Sphereflake {
   Sphereflake(const RunSettings& settings, Figures& figures, const LitRoom& all_lamps,
               const LitRoom& one_lamp)
       : settings_(settings),
-        effort_(effort_of(settings)),
+        effort_(flake_effort(settings)),
         figures_(figures),
         all_lamps_(all_lamps),
         one_lamp_(one_lamp),
@@ -101,7 +102,7 @@ class Sphereflake {
         fmt::format("sphereflake: {} luminaires of {} spheres; {} points that camera '{}' sees at {}x{} px, "
                     "{} of them on the "
                     "floor; every {}th of them for linear selection",
-                    count_, luminaires_of(all_lamps.scene()), subjects_[0].all_lamps.size(), kCamera,
+                    count_, luminaires_of(all_lamps.scene()), subjects_[0].all_lamps.size(), kFlakeCamera,
                     effort_.width, effort_.height, subjects_[1].all_lamps.size(), effort_.linear_stride));
   }
 
@@ -114,7 +115,7 @@ class Sphereflake {
   void add(const std::string& subject, std::string_view selection, const std::string& quantity,
            const Spread& value) {
     figures_.add(
-        {kPart, subject, selection == kOneLamp ? 1 : count_, std::string(selection), quantity, value});
+        {kSphereflake, subject, selection == kOneLamp ? 1 : count_, std::string(selection), quantity, value});
   }
 
   const DirectLight& light(Selection s) const { return lights_[static_cast<std::size_t>(s)]; }
@@ -192,7 +193,7 @@ class Sphereflake {
   }
 
   const RunSettings& settings_;
-  Effort effort_;
+  FlakeEffort effort_;
   Figures& figures_;
   const LitRoom& all_lamps_;
   const LitRoom& one_lamp_;

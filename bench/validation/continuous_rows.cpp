@@ -11,9 +11,9 @@ namespace reemit::validation {
 namespace {
 
 using nlohmann::json;
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 /// Rays of one zone solution; most packets leave the open plates at once, so they need more.
-constexpr double kRays = 1.2e7;
+constexpr double kBoxRays = 1.2e7;
 constexpr double kPlateRays = 8e7;
 /// Zones of one room: with fewer, what their size does to gathered values comes near the standard errors.
 constexpr double kZones = 60000;
@@ -71,7 +71,7 @@ CodeRoom box_room(const Bands& bands) {
   if (shape.contains("point_source"))
     room.scene().lights.push_back(PointLight{
         "lamp", to_vec3(shape.at("point_source").at("position")), per_band(bands, [](const json& p) {
-          return p.at("point_source").at("flux_lm").get<double>() / (4 * kPi);
+          return p.at("point_source").at("flux_lm").get<double>() / (4 * pi);
         })});
   return room;
 }
@@ -187,11 +187,11 @@ std::vector<ValidationRow> evaluate_continuous(const std::vector<ReferenceCase>&
     if (first.kind == "plates_finite") {
       add_rows(bands, plates_room(first.parameters), effort.work * kPlateRays, rows);
     } else if (first.kind == "lroom_continuous") {
-      add_rows(bands, l_shaped_room(first.parameters), effort.work * kRays, rows);
+      add_rows(bands, l_shaped_room(first.parameters), effort.work * kBoxRays, rows);
     } else {
       Bands parameters;
       for (const ReferenceCase& c : bands) parameters.push_back(&c.parameters);
-      add_rows(bands, box_room(parameters), effort.work * kRays, rows);
+      add_rows(bands, box_room(parameters), effort.work * kBoxRays, rows);
     }
   }
   return rows;

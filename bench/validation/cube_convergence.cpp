@@ -9,9 +9,9 @@
 namespace reemit::validation {
 namespace {
 
-constexpr double kRays = 1.5e7;
-constexpr GatherEffort kOverFace{2048, 16384};
-constexpr GatherEffort kAtPoint{1024, 8192};
+constexpr double kCubeRays = 1.5e7;
+constexpr GatherEffort kOverCubeFace{2048, 16384};
+constexpr GatherEffort kAtCubePoint{1024, 8192};
 
 const ReferenceCase& find_case(const std::vector<ReferenceCase>& cases, const std::string& name) {
   for (const ReferenceCase& c : cases)
@@ -41,7 +41,7 @@ std::vector<CubeStep> measure_cube_convergence(const std::vector<ReferenceCase>&
     for (const int n : {1, 2, 4, 8, 16}) {
       const std::string name = "cubezones.rho" + rho_name + ".N" + std::to_string(n);
       const SolvedRoom solved(room.scene(), room.exact_zones(static_cast<std::uint32_t>(n)),
-                              SolveMethod::kShooting, effort.work * kRays * (1 - rho), name,
+                              SolveMethod::kShooting, effort.work * kCubeRays * (1 - rho), name,
                               Reemission::kFromZones);
       const PointGather plain(solved, seed_of(name), 0);
       const PointGather gather(solved, seed_of(name));
@@ -57,13 +57,14 @@ std::vector<CubeStep> measure_cube_convergence(const std::vector<ReferenceCase>&
         const std::vector<SurfaceId> surface{solved.surface(face)};
         add("mean of " + face, find_value(continuous, ending),
             find_value(find_case(cases, name), ending).value, solved.mean(surface),
-            plain.mean(surface, kOverFace), gather.mean(surface, kOverFace));
+            plain.mean(surface, kOverCubeFace), gather.mean(surface, kOverCubeFace));
       }
       for (const std::string place : {"z1(0.5,0.5)", "x0(0.5,0.1)", "x0(0.25,0.75)"}) {
         const ReferenceValue& truth = find_value(continuous, ".H@" + place);
         const SurfacePoint x = point_on(solved.rays(), *truth.point, truth.normal);
         add(place, truth, 0, solved.zone(solved.mesh().zone_at(x.triangle, x.u, x.v, true)),
-            plain.at(*truth.point, truth.normal, kAtPoint), gather.at(*truth.point, truth.normal, kAtPoint));
+            plain.at(*truth.point, truth.normal, kAtCubePoint),
+            gather.at(*truth.point, truth.normal, kAtCubePoint));
       }
     }
   }

@@ -12,9 +12,9 @@ namespace reemit::validation {
 namespace {
 
 using nlohmann::json;
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 /// Standard error aimed at. Far smaller ones would meet the resolution of single precision.
-constexpr double kTarget = 2e-3;
+constexpr double kDirectTarget = 2e-3;
 constexpr int kFewestSamples = 16;
 constexpr int kMostSamples = 1 << 18;
 
@@ -27,7 +27,7 @@ Estimates estimate(const Room& room, const SurfacePoint& x, const std::string& i
   const ValidationRow about = make_row({}, {}, {}, pilot, 0);
   double samples = kPilot;
   if (about.measured > 0) {
-    const double ratio = about.standard_error / about.measured / kTarget;
+    const double ratio = about.standard_error / about.measured / kDirectTarget;
     samples = kPilot * ratio * ratio * effort.work;
   }
   int count = kFewestSamples;
@@ -99,7 +99,7 @@ ValidationRow from_luminaire(const ReferenceCase& c, const Effort& effort) {
   const json& p = c.parameters;
   const Vec3 point = to_vec3(p.at("receiver").at("point"));
   CodeRoom room;
-  room.add("light", room.paint(0, kPi * p.at("radiance").get<double>()), luminaire(p.at("luminaire"), point));
+  room.add("light", room.paint(0, pi * p.at("radiance").get<double>()), luminaire(p.at("luminaire"), point));
   return lit_point(c, c.values.front(), room, point, to_vec3(p.at("receiver").at("normal")), effort);
 }
 
@@ -111,7 +111,7 @@ ValidationRow occluded(const ReferenceCase& c, const Effort& effort) {
   const json& p = c.parameters;
   const Vec3 point = to_vec3(p.at("receiver").at("point"));
   CodeRoom room;
-  room.add("light", room.paint(0, kPi * p.at("radiance").get<double>()),
+  room.add("light", room.paint(0, pi * p.at("radiance").get<double>()),
            turned_towards(level(p.at("light_rect"), p.at("light_z")), point));
   const MaterialId black = room.paint(0);
   for (const json& b : p.at("blockers")) room.add("blocker", black, level(b.at("rect"), b.at("z")));
@@ -133,7 +133,7 @@ void add_point_source(const ReferenceCase& c, const Effort& effort, std::vector<
   for (const int face : {0, 1, 2, 3, 4})
     room.add(kBoxFaces[face], room.paint(0.5), box_face(face, {4, 4, 3}));
   room.scene().lights.push_back(PointLight{"lamp", to_vec3(p.at("source")),
-                                           Spectrum::Constant(1, p.at("flux").get<double>() / (4 * kPi))});
+                                           Spectrum::Constant(1, p.at("flux").get<double>() / (4 * pi))});
   const MeshResult mesh = room.exact_zones();
   const Room walls(room.scene(), mesh.mesh);
   for (std::size_t i = 0; i < c.values.size(); ++i) {

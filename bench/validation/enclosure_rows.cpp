@@ -12,17 +12,17 @@
 namespace reemit::validation {
 namespace {
 
-constexpr std::array<SolveMethod, 2> kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
 /// Rays of one solution.
-constexpr double kRays = 1.6e7;
-constexpr GatherEffort kAtPoint{256, 4096};
+constexpr double kEnclosureRays = 1.6e7;
+constexpr GatherEffort kAtEnclosurePoint{256, 4096};
 constexpr GatherEffort kOverSurface{1024, 16384};
 
 /// A walk is reflected a geometric number of times, rho/(1-rho) on average and about as much by chance: below
 /// a number of walks the mean over a whole room is not known well enough. Shooting knows it almost exactly.
 double packets_for(SolveMethod method, double rho, const Effort& effort) {
   constexpr double kFewestWalks = 3.2e5;
-  return effort.work * std::max(kRays * (1 - rho), method == SolveMethod::kWalk ? kFewestWalks : 0.0);
+  return effort.work *
+         std::max(kEnclosureRays * (1 - rho), method == SolveMethod::kWalk ? kFewestWalks : 0.0);
 }
 
 /// Bound of kSolveBound for what comes after a reflection: the power left unshot is a share of the emitted
@@ -73,7 +73,7 @@ void add_furnace(const ReferenceCase& c, const Effort& effort, std::vector<Valid
     if (method != SolveMethod::kShooting) continue;
     const PointGather gather(solved, seed_of(c.name));
     for (const Vec3& point : {Vec3(0.3, 0.4, 0), Vec3(0.999, 0.999, 0), Vec3(0.001, 1.999, 0)}) {
-      const Estimates light = gather.at(point, Vec3::UnitZ(), kAtPoint);
+      const Estimates light = gather.at(point, Vec3::UnitZ(), kAtEnclosurePoint);
       add_rows(c, "gathered point, floor at x = " + std::to_string(point.x()).substr(0, 5), kPointBound,
                as_quantity(light), rows);
     }
@@ -103,7 +103,7 @@ void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vec
   const MeshResult mesh = room.exact_zones(4);
   const ReferenceValue& v = c.values.front();
   for (const SolveMethod method : kMethods) {
-    const SolvedRoom solved(room.scene(), mesh, method, effort.work * kRays * 0.3, c.name);
+    const SolvedRoom solved(room.scene(), mesh, method, effort.work * kEnclosureRays * 0.3, c.name);
     const PointGather gather(solved, seed_of(c.name));
     for (const SurfaceId s : solved.all_surfaces()) {
       const Spectrum& rho = room.scene().material_of(room.scene().surfaces[s.index()]).reflectance;
@@ -160,8 +160,8 @@ void add_energy(const ReferenceCase& c, const Effort& effort, std::vector<Valida
     return r.paint(rho, name == "W2" ? flux / (scale * scale) : 0);
   });
   for (const SolveMethod method : kMethods) {
-    const SolvedRoom solved(room.scene(), room.exact_zones(2), method, effort.work * kRays * (1 - rho),
-                            c.name);
+    const SolvedRoom solved(room.scene(), room.exact_zones(2), method,
+                            effort.work * kEnclosureRays * (1 - rho), c.name);
     const std::vector<SurfaceId> all = solved.all_surfaces();
     const Estimates total = solved.mean(all);
     const Estimates indirect = solved.indirect_mean(all);
@@ -191,7 +191,8 @@ void add_concentric_spheres(const ReferenceCase& c, const Effort& effort, std::v
         rows);
   };
   for (const SolveMethod method : kMethods) {
-    const SolvedRoom solved(room.scene(), room.exact_zones(4), method, effort.work * kRays * 0.3, c.name);
+    const SolvedRoom solved(room.scene(), room.exact_zones(4), method, effort.work * kEnclosureRays * 0.3,
+                            c.name);
     const SurfaceId inner = solved.surface("1");
     const SurfaceId outer = solved.surface("2");
     rows_of(to_string(method), {solved.mean(inner), solved.mean(outer)}, kSolveBound);

@@ -11,9 +11,9 @@ namespace reemit::validation {
 namespace {
 
 using nlohmann::json;
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 /// Standard error aimed at, per value.
-constexpr double kTarget = 1.5e-3;
+constexpr double kFactorTarget = 1.5e-3;
 /// Bound of what single precision does to factors, relative.
 constexpr double kBound = 1e-6;
 
@@ -22,7 +22,7 @@ using Shapes = std::vector<std::pair<std::string, Body>>;
 
 /// Packets for the standard error aimed at: hits are binomial at worst.
 double packets_for(double factor, const Effort& effort) {
-  return effort.work * (1 - factor) / factor / (kTarget * kTarget);
+  return effort.work * (1 - factor) / factor / (kFactorTarget * kFactorTarget);
 }
 
 /// Power that arrives at surfaces from an emitter of exitance 1, over what it emits.
@@ -114,7 +114,7 @@ FactorValue named_factor(const ReferenceValue& v) {
   return {&v, names.substr(0, cut), names.substr(names.rfind('_') + 1)};
 }
 
-Shapes l_shape(double x_arm, double y_arm, double height) {
+Shapes l_shaped_walls(double x_arm, double y_arm, double height) {
   Shapes shapes;
   for (auto& [name, polygons] : l_room(x_arm, y_arm, height, 1))
     shapes.emplace_back(name, std::move(polygons));
@@ -129,14 +129,14 @@ void add_l_room_factors(const std::vector<ReferenceCase>& cases, const Effort& e
     if (c.kind != "vf_obstructed") continue;
     const json& p = c.parameters;
     if (p.contains("L1")) {
-      add_factor_rows(c, l_shape(p.at("L1"), p.at("L6"), p.at("H")), {{&c.values.front(), "W1", "W6"}},
+      add_factor_rows(c, l_shaped_walls(p.at("L1"), p.at("L6"), p.at("H")), {{&c.values.front(), "W1", "W6"}},
                       effort, rows);
       continue;
     }
     whole = &c;
     values.push_back({&c.values.front(), p.at("from"), p.at("to")});
   }
-  if (whole != nullptr) add_factor_rows(*whole, l_shape(2, 2, 1), values, effort, rows);
+  if (whole != nullptr) add_factor_rows(*whole, l_shaped_walls(2, 2, 1), values, effort, rows);
 }
 
 void add_flux_split(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
@@ -163,7 +163,7 @@ void add_mean_irradiance(const ReferenceCase& c, const Effort& effort, std::vect
   const json& p = c.parameters;
   const Shapes shapes{{"light", one(level_rectangle(p.at("light_rect"), p.at("z"), false))},
                       {"floor", one(level_rectangle(p.at("receiver_rect"), 0, true))}};
-  const double exitance = kPi * p.at("radiance").get<double>();
+  const double exitance = pi * p.at("radiance").get<double>();
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
     const Count count(shapes, "light", packets_for(0.3, effort), method, c.name);
     rows.push_back(

@@ -7,7 +7,7 @@
 namespace reemit::validation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Vec3 any_normal_to(const Vec3& axis) {
   const Vec3 helper = std::fabs(axis.x()) < 0.5 * axis.norm() ? Vec3::UnitX() : Vec3::UnitY();
@@ -20,7 +20,7 @@ std::vector<Vec3> ring(const Vec3& centre, const Vec3& axis, double corner_radiu
   const Vec3 v = axis.normalized().cross(u);
   std::vector<Vec3> points;
   for (int i = 0; i < sides; ++i) {
-    const double phi = 2 * kPi * i / sides;
+    const double phi = 2 * pi * i / sides;
     points.push_back(centre + corner_radius * (std::cos(phi) * u + std::sin(phi) * v));
   }
   return points;
@@ -34,7 +34,7 @@ std::vector<Polygon> fan(const Vec3& centre, const std::vector<Vec3>& rim) {
 
 /// Corner radius of the regular polygon of the circle's perimeter.
 double radius_of_same_perimeter(double radius, int sides) {
-  return radius * (kPi / sides) / std::sin(kPi / sides);
+  return radius * (pi / sides) / std::sin(pi / sides);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "solver/solution/solution.h"
 
 namespace reemit::validation {
+
+/// Both ways to follow packets.
+inline constexpr std::array kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
 
 /// A room solved kSolves times with different seeds, each in ZoneSums::kGroups batches. Every batch is an
 /// independent estimate of the whole solution, a replicate: kReplicates of them give standard errors with

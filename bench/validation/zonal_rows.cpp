@@ -13,9 +13,8 @@ namespace reemit::validation {
 namespace {
 
 using nlohmann::json;
-constexpr std::array<SolveMethod, 2> kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
 /// Rays of one solution.
-constexpr double kRays = 3e7;
+constexpr double kZonalRays = 3e7;
 /// Packets from each surface whose factors are counted.
 constexpr double kFactorPackets = 2e6;
 
@@ -118,7 +117,7 @@ void add_cube_triangles(const std::vector<ReferenceCase>& cases, const Effort& e
       room.add(kBoxFaces[static_cast<std::size_t>(face)], room.paint(rho, face == 4 ? 1 : 0),
                box_face(face, {1, 1, 1}));
     for (const SolveMethod method : kMethods) {
-      const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kRays * (1 - rho),
+      const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kZonalRays * (1 - rho),
                               cases[first].name, Reemission::kFromZones);
       for (std::size_t k = first; k < last; ++k) {
         const json& corners = cases[k].parameters.at("vertices");
@@ -148,8 +147,8 @@ void add_icosphere(const ReferenceCase& c, const Effort& effort, std::vector<Val
   for (const SolveMethod method : kMethods) {
     // Thousands of sweeps of a few packets are slow; furnaces and integrating spheres take them already.
     if (method == SolveMethod::kShooting && rho > 0.99) continue;
-    const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kRays * (1 - rho), c.name,
-                            Reemission::kFromZones);
+    const SolvedRoom solved(room.scene(), room.exact_zones(), method, effort.work * kZonalRays * (1 - rho),
+                            c.name, Reemission::kFromZones);
     for (const ReferenceValue& v : c.values) {
       const Estimates h = v.quantity == "H_mean"         ? solved.mean(solved.all_surfaces())
                           : v.quantity == "H_on_emitter" ? solved.zone(ZoneId(0))

@@ -38,7 +38,7 @@ std::size_t count_crossings(std::span<const PlanarSegment> segments, std::size_t
     const auto& [a, b] = segments[i];
     const auto region = ConvexRegion::of_edge(in_space(a), in_space(b), 0);
     tree.visit([&](const Vec3& low, const Vec3& high) { return count <= most && region.touches(low, high); },
-               [&](std::uint32_t j) {
+               [&, &a = a, &b = b](std::uint32_t j) {
                  if (j <= i) return;
                  const auto& [c, d] = segments[j];
                  if (opposite(side(a, b, c), side(a, b, d)) && opposite(side(c, d, a), side(c, d, b)))

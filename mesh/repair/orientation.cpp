@@ -67,8 +67,8 @@ class EdgeUses {
     const auto [from, to] = std::minmax(a, b);
     const std::size_t v = number_[from];
     const auto uses = std::span(uses_).subspan(first_[v], first_[v + 1] - first_[v]);
-    const auto range = std::ranges::equal_range(uses, to, {}, &EdgeUse::to);
-    return {range.begin(), range.end()};
+    return {std::ranges::lower_bound(uses, to, {}, &EdgeUse::to),
+            std::ranges::upper_bound(uses, to, {}, &EdgeUse::to)};
   }
 
   static constexpr std::uint32_t kNone = 0xffffffff;

@@ -32,7 +32,7 @@ struct Region {
 };
 
 // Which outlines a group is cut along.
-enum class Lines { in_sight, all };
+enum class Lines { kInSight, kAll };
 
 // Area by winner and loser, in one number [m2].
 using OverlapAreas = std::unordered_map<std::uint64_t, double>;
@@ -181,7 +181,7 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, c
     return it->second;
   };
   const GroupOutlines outlines(vertices_, pieces_, group);
-  const auto is_partial = [&](std::size_t p) { return lines == Lines::in_sight && groups_.hidden.any(p); };
+  const auto is_partial = [&](std::size_t p) { return lines == Lines::kInSight && groups_.hidden.any(p); };
   bool any_partial = false;
   for (const std::size_t p : group.pieces) {
     const bool partial = is_partial(p);
@@ -269,11 +269,11 @@ void GroupTriangulation::triangulate(std::size_t g) {
   }
   const bool any_hidden = std::any_of(group.pieces.begin(), group.pieces.end(),
                                       [&](std::size_t p) { return groups_.hidden.any(p); });
-  if (any_hidden && emit(g, cuts, quality_, Lines::in_sight)) return;  // where rounding does not defeat it
-  if (emit(g, cuts, quality_, Lines::all)) return;
+  if (any_hidden && emit(g, cuts, quality_, Lines::kInSight)) return;  // where rounding does not defeat it
+  if (emit(g, cuts, quality_, Lines::kAll)) return;
   TriangleQuality plain = quality_;
   plain.most_new_points = 0;
-  if (emit(g, cuts, plain, Lines::all) || emit(g, {}, plain, Lines::all)) return;
+  if (emit(g, cuts, plain, Lines::kAll) || emit(g, {}, plain, Lines::kAll)) return;
   const auto lost = std::find_if(group.pieces.begin(), group.pieces.end(),
                                  [&](std::size_t p) { return !conserves_area(p); });
   const FacePiece& piece = pieces_[lost == group.pieces.end() ? group.pieces[0] : *lost];

@@ -11,7 +11,7 @@ namespace {
 using std::numbers::pi;
 
 /// Directions that rounding puts beyond the grid by less than this are on its edge [rad].
-constexpr double kSlack = 1e-9;
+constexpr double kAngleSlack = 1e-9;
 
 std::vector<double> radians(const std::vector<double>& degrees) {
   std::vector<double> result(degrees.size());
@@ -32,7 +32,7 @@ void check_grid(const std::vector<double>& lines) {
 
 /// Interval of the grid that holds `angle`, and how far into it [0,1]; false beyond the grid.
 bool locate(const std::vector<double>& lines, double angle, std::size_t& cell, double& share) {
-  if (!(angle >= lines.front() - kSlack && angle <= lines.back() + kSlack)) return false;
+  if (!(angle >= lines.front() - kAngleSlack && angle <= lines.back() + kAngleSlack)) return false;
   const auto above = std::upper_bound(lines.begin() + 1, lines.end() - 1, angle);
   cell = static_cast<std::size_t>(above - lines.begin()) - 1;
   share = std::clamp((angle - lines[cell]) / (lines[cell + 1] - lines[cell]), 0.0, 1.0);
@@ -107,8 +107,8 @@ void IntensityTable::angles(const Vec3& direction, double& polar, double& azimut
   const double y = direction.dot(axes_.ninety);
   polar = std::atan2(std::hypot(x, y), along);
   azimuth = std::atan2(y, x);
-  while (azimuth < azimuth_.front() - kSlack) azimuth += 2 * pi;
-  while (azimuth >= azimuth_.front() - kSlack + 2 * pi) azimuth -= 2 * pi;
+  while (azimuth < azimuth_.front() - kAngleSlack) azimuth += 2 * pi;
+  while (azimuth >= azimuth_.front() - kAngleSlack + 2 * pi) azimuth -= 2 * pi;
 }
 
 Vec3 IntensityTable::direction(double polar, double azimuth) const {

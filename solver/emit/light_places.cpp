@@ -91,9 +91,9 @@ std::vector<PunctualLight> lights_before_faces(const Scene& scene, const RayScen
   boxes.reserve(mesh.flat_count());
   for (std::uint32_t i = 0; i < mesh.flat_count(); ++i) {
     const TriangleId t(i);
-    const Vec3 a = mesh.corner(t, 0);
-    const Vec3 b = mesh.corner(t, 1);
-    const Vec3 c = mesh.corner(t, 2);
+    const Vec3& a = mesh.corner(t, 0);
+    const Vec3& b = mesh.corner(t, 1);
+    const Vec3& c = mesh.corner(t, 2);
     boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), i});
   }
   std::vector<std::vector<NearFace>> near(lights.size());

@@ -63,7 +63,7 @@ void fetch_children(const std::vector<LightNode>&, std::uint32_t) {}
 
 /// A clump of lamps that shine to all sides is far from this many of its radii on: then what its lamps send
 /// differs little but for their strength, and no more steps are needed to choose among them.
-constexpr float kFarRadii = 2;
+constexpr float kFarClumpRadii = 2;
 
 bool is_far_clump(const LightNode& node, std::size_t lane, const Receiver& at) {
   if (node.begin[lane] == node.end[lane]) return false;
@@ -78,8 +78,8 @@ bool is_far_clump(const LightNode& node, std::size_t lane, const Receiver& at) {
     height += at.n[axis] * d;
   }
   // Well above the horizon, or at a point without one.
-  return distance2 > kFarRadii * kFarRadii * radius2 && (height * height > radius2 || at.abs_n.isZero()) &&
-         height >= 0;
+  return distance2 > kFarClumpRadii * kFarClumpRadii * radius2 &&
+         (height * height > radius2 || at.abs_n.isZero()) && height >= 0;
 }
 
 /// A product of many shares can be less than a float holds; 0 would mean that it cannot happen.
@@ -194,7 +194,7 @@ LightTree::LightTree(std::span<const LuminaireBounds> luminaires) {
   std::vector<LuminaireBounds> shares(luminaires.begin(), luminaires.end());
   for (LuminaireBounds& bounds : shares)
     bounds.intensity = std::max(static_cast<float>(static_cast<double>(bounds.intensity) / total), 1e-30F);
-  Widener(split_luminaires(shares), shares.size(), nodes_, trails_, order_);
+  const Widener widened(split_luminaires(shares), shares.size(), nodes_, trails_, order_);
   nodes_.shrink_to_fit();
   // The weakest lamp of a clump must not vanish in the running sum, or it would never be picked.
   const double least = kLeastShare / static_cast<double>(order_.size());

@@ -28,13 +28,14 @@ class SpreadMeasure {
     }
   }
   float operator()(float cosine) const {
-    const float at = std::clamp((cosine + 1) * (kCells / 2), 0.0F, static_cast<float>(kCells));
+    const float at = std::clamp((cosine + 1) * kHalfCells, 0.0F, static_cast<float>(kCells));
     const auto cell = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kCells - 1));
     return std::lerp(table_[cell], table_[cell + 1], at - static_cast<float>(cell));
   }
 
  private:
   static constexpr int kCells = 64;
+  static constexpr int kHalfCells = kCells / 2;
   std::array<float, kCells + 1> table_;
 };
 

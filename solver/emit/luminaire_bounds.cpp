@@ -10,12 +10,12 @@ namespace {
 /// Float axes are off by this much in angle and cosines in value at most; cones are widened by as much.
 constexpr double kConeRounding = 2.5e-7;
 
-struct Cone {
+struct NormalCone {
   Vec3f axis;
   float cos_angle;
 };
 
-Cone merged_cones(const Vec3f& axis_a, float cos_a, const Vec3f& axis_b, float cos_b) {
+NormalCone merged_cones(const Vec3f& axis_a, float cos_a, const Vec3f& axis_b, float cos_b) {
   if (cos_a <= -1) return {axis_a, -1};
   if (cos_b <= -1) return {axis_b, -1};
   if (cos_a > cos_b) return merged_cones(axis_b, cos_b, axis_a, cos_a);  // a is the wider one.
@@ -62,7 +62,7 @@ LuminaireBounds spot_bounds(const Vec3f& position, const Vec3f& unit_direction, 
 }
 
 LuminaireBounds merged(const LuminaireBounds& a, const LuminaireBounds& b) {
-  const Cone cone = merged_cones(a.axis, a.cos_normals, b.axis, b.cos_normals);
+  const NormalCone cone = merged_cones(a.axis, a.cos_normals, b.axis, b.cos_normals);
   return {a.min.cwiseMin(b.min),
           a.max.cwiseMax(b.max),
           cone.axis,

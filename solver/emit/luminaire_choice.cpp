@@ -6,10 +6,10 @@
 namespace reemit {
 namespace {
 
-constexpr float kBelowOne = 0x1.fffffep-1F;
+constexpr float kFloatBelowOne = 0x1.fffffep-1F;
 
 float stretched(float u, float low, float width) {
-  return std::clamp((u - low) / width, 0.0F, kBelowOne);
+  return std::clamp((u - low) / width, 0.0F, kFloatBelowOne);
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ bool LuminaireChoice::pick_evenly(float& u, std::size_t& entry, float& inverse_p
   const auto count = static_cast<float>(table_.size());
   const float at = u * count;
   entry = std::min(static_cast<std::size_t>(at), table_.size() - 1);
-  u = std::clamp(at - static_cast<float>(entry), 0.0F, kBelowOne);
+  u = std::clamp(at - static_cast<float>(entry), 0.0F, kFloatBelowOne);
   inverse_probability = count;
   return true;
 }

@@ -15,8 +15,8 @@
 namespace reemit {
 namespace {
 
-constexpr int kReplicates = 32;
-constexpr std::size_t kChunk = 64;
+constexpr int kAuditReplicates = 32;
+constexpr std::size_t kComparedPerTask = 64;
 /// Zones that differ are looked at once more, with 64 times the points or, where many do, with as many times
 /// as cost about so many zones in all, and at least 4.
 constexpr std::size_t kMostZonesAgain = 262144;
@@ -35,11 +35,11 @@ std::vector<ZoneId> zones_to_compare(const Solution& solution) {
 /// [W/m2].
 ReplicateMean sampled_irradiance(const DirectLight& light, const Room& room, ZoneId zone, int points,
                                  std::uint64_t seed) {
-  const int per_replicate = (points + kReplicates - 1) / kReplicates;
+  const int per_replicate = (points + kAuditReplicates - 1) / kAuditReplicates;
   const auto log2_points = std::countr_zero(std::bit_ceil(static_cast<unsigned>(per_replicate)));
   const std::vector<float> weight(light.band_count(), 1.0F / static_cast<float>(per_replicate));
   std::vector<float> found(light.band_count());
-  return mean_of_replicates(kReplicates, kReplicates, [&](std::size_t r) {
+  return mean_of_replicates(kAuditReplicates, kAuditReplicates, [&](std::size_t r) {
     const PointSampler sampler(seed, RngPurpose::kDirectAudit, zone.index(), static_cast<int>(r),
                                log2_points);
     std::fill(found.begin(), found.end(), 0.0F);
@@ -100,11 +100,11 @@ DirectAudit audit_direct_light(const Room& room, const Solution& solution,
   const auto compare_all = [&](const std::vector<std::size_t>& which, int points, std::uint64_t seed,
                                double done_before, double done_after) {
     std::atomic<std::size_t> done{0};
-    const std::size_t chunks = (which.size() + kChunk - 1) / kChunk;
+    const std::size_t chunks = (which.size() + kComparedPerTask - 1) / kComparedPerTask;
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
-      const std::size_t last = std::min(which.size(), (c + 1) * kChunk);
-      for (std::size_t j = c * kChunk; j < last && !interrupt; ++j) compare(which[j], points, seed);
-      done += last - c * kChunk;
+      const std::size_t last = std::min(which.size(), (c + 1) * kComparedPerTask);
+      for (std::size_t j = c * kComparedPerTask; j < last && !interrupt; ++j) compare(which[j], points, seed);
+      done += last - c * kComparedPerTask;
       if (progress)
         progress(done_before +
                  (done_after - done_before) * static_cast<double>(done) / static_cast<double>(which.size()));

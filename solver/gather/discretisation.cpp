@@ -14,10 +14,10 @@
 namespace reemit {
 namespace {
 
-constexpr std::size_t kHalves = 2;
+constexpr std::size_t kFieldHalves = 2;
 constexpr std::size_t kProbes = 1024;
 constexpr ReplicateEffort kEffort{16, 4};
-constexpr std::size_t kChunk = 64;
+constexpr std::size_t kProbesPerTask = 64;
 /// An estimate that may as well be this many times larger says nothing, unless all it can be is small.
 constexpr double kMostUncertain = 2;
 constexpr double kSmallEnough = 0.03;
@@ -27,8 +27,8 @@ constexpr double kSmallEnough = 0.03;
 std::optional<double> discretisation_error(const Room& room, const Solution& solution,
                                            const StopToken& stop) {
   if (stop.requested()) return std::nullopt;
-  const RadianceField field(room, solution, kHalves);
-  if (field.parts() != kHalves) return std::nullopt;
+  const RadianceField field(room, solution, kFieldHalves);
+  if (field.parts() != kFieldHalves) return std::nullopt;
   const std::size_t bands = room.band_count();
   const std::uint64_t seed = solution.settings.seed;
   const DirectLight direct(room);
@@ -40,18 +40,18 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
   // By probe and band: product of the two differences, product of the two zone values.
   std::vector<double> differences(probes.size() * bands);
   std::vector<double> values(probes.size() * bands);
-  const std::size_t chunks = (probes.size() + kChunk - 1) / kChunk;
+  const std::size_t chunks = (probes.size() + kProbesPerTask - 1) / kProbesPerTask;
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
     if (stop.requested()) return;
-    const std::size_t first = c * kChunk;
-    const std::size_t last = std::min(first + kChunk, probes.size());
-    std::vector<float> found((last - first) * kHalves * 2 * bands, 0.0F);
+    const std::size_t first = c * kProbesPerTask;
+    const std::size_t last = std::min(first + kProbesPerTask, probes.size());
+    std::vector<float> found((last - first) * kFieldHalves * 2 * bands, 0.0F);
     GatherBatch batch(gather);
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i) {
       const std::array<float, 4> u = rng.uniform4(i, 0, 0);
       const SurfacePoint x = point_in_zone(room, probes[i].zone, {u[0], u[1]});
-      for (std::size_t half = 0; half < kHalves; ++half, next += 2 * bands) {
+      for (std::size_t half = 0; half < kFieldHalves; ++half, next += 2 * bands) {
         const PointSampler sampler(seed, RngPurpose::kDiscretisation, i, static_cast<int>(half),
                                    std::countr_zero(static_cast<unsigned>(kEffort.points)));
         const auto part = static_cast<std::uint32_t>(half);
@@ -66,8 +66,8 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
       for (std::size_t b = 0; b < bands; ++b) {
         double difference = probes[i].area;
         double value = probes[i].area;
-        for (std::size_t half = 0; half < kHalves; ++half) {
-          const float* light = &found[((i - first) * kHalves + half) * 2 * bands];
+        for (std::size_t half = 0; half < kFieldHalves; ++half) {
+          const float* light = &found[((i - first) * kFieldHalves + half) * 2 * bands];
           const double rho = static_cast<double>(static_cast<float>(reflectance[b]));
           const double at_point = rho * (static_cast<double>(light[b]) / std::numbers::pi +
                                          static_cast<double>(light[bands + b]));

@@ -70,13 +70,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
 }
 
 GatherBatch::GatherBatch(const HemisphereGather& gather)
-    : gather_(&gather),
-      bands_(gather.band_count()),
-      rays_{},
-      second_look_{},
-      keys_{},
-      sums_{},
-      weights_(static_cast<std::size_t>(kWidth) * bands_) {}
+    : gather_(&gather), bands_(gather.band_count()), weights_(static_cast<std::size_t>(kWidth) * bands_) {}
 
 void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
                       float* sum) {

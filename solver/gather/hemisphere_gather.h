@@ -76,10 +76,10 @@ class GatherBatch {
   const HemisphereGather* gather_;
   std::size_t bands_;
   int count_ = 0;
-  Ray16 rays_;
-  std::array<bool, kWidth> second_look_;
-  std::array<PathKey, kWidth> keys_;
-  std::array<float*, kWidth> sums_;
+  Ray16 rays_{};
+  std::array<bool, kWidth> second_look_{};
+  std::array<PathKey, kWidth> keys_{};
+  std::array<float*, kWidth> sums_{};
   std::vector<float> weights_;
 };
 

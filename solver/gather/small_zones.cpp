@@ -33,7 +33,7 @@ double cost_per_point(std::size_t luminaires_weighed) {
          (6 + 1.5 * static_cast<double>(luminaires_weighed) + 2 * kGathersPerPoint);
 }
 /// Zones of one task; fixed, so that packets of rays are the same for any number of threads.
-constexpr std::size_t kChunk = 64;
+constexpr std::size_t kZonesPerTask = 64;
 
 double mean_zone_area(const ZoneMesh& mesh) {
   double area = 0;
@@ -92,12 +92,13 @@ class Gatherer {
   /// it was called for.
   template <class Use>
   std::size_t gather(const std::vector<ZoneId>& zones, int points, RngPurpose purpose, Use&& use) const {
-    const std::size_t chunks = (zones.size() + kChunk - 1) / kChunk;
+    const std::size_t chunks = (zones.size() + kZonesPerTask - 1) / kZonesPerTask;
     std::atomic<std::size_t> gathered{0};
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
       if (stop_.requested()) return;
-      const std::size_t last = std::min((c + 1) * kChunk, zones.size());
-      if (gather_chunk(zones, c * kChunk, last, points, purpose, use)) gathered += last - c * kChunk;
+      const std::size_t last = std::min((c + 1) * kZonesPerTask, zones.size());
+      if (gather_chunk(zones, c * kZonesPerTask, last, points, purpose, use))
+        gathered += last - c * kZonesPerTask;
     });
     return gathered;
   }

@@ -17,8 +17,8 @@ namespace reemit {
 namespace {
 
 constexpr std::size_t kGroups = ZoneBiasEffort::kGroups;
-constexpr std::uint32_t kReplicates = 16;
-static_assert(kReplicates == ZoneSums::kGroups);
+constexpr std::uint32_t kBiasReplicates = 16;
+static_assert(kBiasReplicates == ZoneSums::kGroups);
 
 /// Adds the difference at one point of one replicate to sum[b].
 void add_difference(const HemisphereGather& gather, const PathTracer& path, const SurfacePoint& x,
@@ -47,8 +47,8 @@ ZoneBiasEffort ZoneBiasEffort::of(double rays) {
   // A gathered and traced ray costs about as much as ten rays.
   constexpr double kShare = 500;
   constexpr double kMostRays = 1 << 12;
-  const double of_point = std::clamp(rays / (kShare * kPoints), double{kReplicates}, kMostRays);
-  return {static_cast<std::uint32_t>(of_point) / kReplicates * kReplicates};
+  const double of_point = std::clamp(rays / (kShare * kPoints), double{kBiasReplicates}, kMostRays);
+  return {static_cast<std::uint32_t>(of_point) / kBiasReplicates * kBiasReplicates};
 }
 
 ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& path,
@@ -56,11 +56,11 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
                             const ZoneBiasEffort& effort, std::uint64_t seed, const StopToken* stop) {
   const std::size_t bands = gather.band_count();
   const std::size_t parts = gather.field().parts();
-  const std::uint32_t rays = effort.rays / kReplicates;
-  const std::size_t of_point = kReplicates * bands;
+  const std::uint32_t rays = effort.rays / kBiasReplicates;
+  const std::size_t of_point = kBiasReplicates * bands;
   std::vector<float> differences(points.size() * of_point, 0.0F);  // by point, replicate, band
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-    for (std::size_t r = 0; r < kReplicates; ++r) {
+    for (std::size_t r = 0; r < kBiasReplicates; ++r) {
       if (stop != nullptr && stop->requested()) return;
       const PointSampler sampler(seed, RngPurpose::kZoneBias, i, static_cast<int>(r),
                                  std::countr_zero(std::bit_ceil(rays)));
@@ -76,7 +76,7 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
     for (std::size_t g = 0; g < kGroups; ++g) {
       const std::size_t first = g * points.size() / kGroups;
       const std::size_t last = (g + 1) * points.size() / kGroups;
-      const ReplicateMean mean = mean_of_replicates(kReplicates, parts, [&](std::size_t r) {
+      const ReplicateMean mean = mean_of_replicates(kBiasReplicates, parts, [&](std::size_t r) {
         double sum = 0;
         for (std::size_t i = first; i < last; ++i)
           sum += scale[i * bands + b] * static_cast<double>(differences[i * of_point + r * bands + b]);
@@ -98,7 +98,7 @@ std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& sol
   if (stop.requested()) return std::nullopt;
   const std::uint64_t seed = solution.settings.seed;
   const CounterRng rng(seed, RngPurpose::kZoneBias);
-  const double offset = static_cast<double>(rng.uniform4(0, kReplicates, 0)[0]);
+  const double offset = static_cast<double>(rng.uniform4(0, kBiasReplicates, 0)[0]);
   const std::vector<ZoneProbe> probes = choose_probes(solution, ZoneBiasEffort::kPoints, offset);
   if (probes.size() < ZoneBiasEffort::kPoints) return std::nullopt;
   const RadianceField field(room, solution, ZoneSums::kGroups);
@@ -118,7 +118,7 @@ std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& sol
   std::vector<SurfacePoint> points;
   std::vector<double> scale;
   for (std::size_t i = 0; i < probes.size(); ++i) {
-    const std::array<float, 4> u = rng.uniform4(i, kReplicates + 1, 0);
+    const std::array<float, 4> u = rng.uniform4(i, kBiasReplicates + 1, 0);
     points.push_back(point_in_zone(room, probes[i].zone, {u[0], u[1]}));
     for (const double p : power) scale.push_back(p > 0 ? ZoneBiasEffort::kPoints * probes[i].area / p : 0);
   }

@@ -9,7 +9,7 @@
 namespace reemit {
 namespace {
 
-constexpr double kLeastShare = 0.25;
+constexpr double kLeastKept = 0.25;
 constexpr double kSmallerThanRoom = 0.9;  // diagonals
 
 Box box_of(const Surface& surface) {
@@ -102,7 +102,7 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transpor
   const double room = bounds(scene).size().norm();
   std::vector<SelfLitLuminaire> found;
   for (const auto& [lamp, box] : lamps.extents())
-    if (kept[lamp] > kLeastShare * sent[lamp] && box.size().norm() < kSmallerThanRoom * room)
+    if (kept[lamp] > kLeastKept * sent[lamp] && box.size().norm() < kSmallerThanRoom * room)
       found.push_back({lamps.surfaces_of(lamp), kept[lamp] / sent[lamp]});
   return found;
 }

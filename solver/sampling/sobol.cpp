@@ -64,7 +64,7 @@ std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
   return x;
 }
 
-SobolSequence::SobolSequence(std::uint64_t seed) : seeds_{} {
+SobolSequence::SobolSequence(std::uint64_t seed) {
   // SplitMix64 spreads one seed over the dimensions.
   for (std::uint32_t& s : seeds_) {
     seed += 0x9E3779B97F4A7C15ULL;

@@ -44,7 +44,7 @@ class SobolSequence {
 
  private:
   static float unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24F; }
-  std::array<std::uint32_t, kSobolDimensions> seeds_;
+  std::array<std::uint32_t, kSobolDimensions> seeds_{};
 };
 
 }  // namespace reemit

@@ -13,7 +13,7 @@ namespace reemit {
 namespace {
 
 constexpr std::uint32_t kProbes = 4096;
-constexpr std::uint32_t kMostBounces = 64;
+constexpr std::uint32_t kMostProbeBounces = 64;
 
 /// Follows light of one band from luminaires until it meets anything that takes some of it.
 class WayOut {
@@ -57,7 +57,7 @@ class WayOut {
     FlightCursor cursor(transport_, flight, first);
     std::vector<std::int64_t> power(16 * transport_.bands());
     cursor.start16(first, 16, numbers_, rays, power.data());
-    for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
+    for (std::uint32_t bounce = 0; bounce < kMostProbeBounces; ++bounce) {
       transport_.rays().closest16(rays, 16, hits);
       transport_.rays().look_again16(rays, 16, hits);
       for (int lane = 0; lane < 16; ++lane) {

@@ -14,7 +14,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::uint32_t kPacketsPerTask = 1024;
+constexpr std::uint32_t kWalksPerTask = 1024;
 /// A walk ends here even when nothing has absorbed it (a sealed part whose walls reflect everything); its
 /// power is unshot.
 constexpr std::uint32_t kMostBounces = 200'000;
@@ -40,7 +40,7 @@ struct WaitingPackets {
 /// Uniform number in [0,1) from the low bytes of four random words, whose high 24 bits make four others.
 float low_bytes_to_unit(const BitLanes& bits, std::size_t lane) {
   std::uint32_t low = 0;
-  for (std::size_t k = 0; k < 4; ++k) low = (low << 8) | (bits.word[k][lane] & 0xffU);
+  for (const auto& word : bits.word) low = (low << 8) | (word[lane] & 0xffU);
   return CounterRng::to_unit(low);
 }
 
@@ -264,13 +264,13 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
     accounts[i].indirect.resize(books.indirect.size());
   }
   std::atomic<bool> whole = true;
-  const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
+  const std::uint32_t tasks = (flight.packets() + kWalksPerTask - 1) / kWalksPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     const std::size_t thread = current_copy();
     WalkTask walk(task, books, accounts[shared ? 0 : thread], accounts[thread].absorbed, shared);
     for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
-      const std::uint32_t end = std::min(flight.packets(), (t + 1) * kPacketsPerTask);
-      if (!walk.run(flight, numbers, t * kPacketsPerTask, end)) whole = false;
+      const std::uint32_t end = std::min(flight.packets(), (t + 1) * kWalksPerTask);
+      if (!walk.run(flight, numbers, t * kWalksPerTask, end)) whole = false;
     }
     accounts[thread].rays += walk.rays();
   });

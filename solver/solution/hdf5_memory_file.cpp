@@ -40,7 +40,7 @@ Hdf5MemoryFile::Hdf5MemoryFile() : image_(std::make_unique<Image>()) {
   constexpr std::size_t kGrowth = std::size_t{8} << 20;
   const char* what = "cannot set file properties";
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
-  check_hdf5(H5Pset_fapl_core(access.get(), kGrowth, 0), what);
+  check_hdf5(H5Pset_fapl_core(access.get(), kGrowth, false), what);
   H5FD_file_image_callbacks_t callbacks{Image::allocate, Image::copy,    Image::reallocate, Image::release,
                                         Image::share,    Image::unshare, image_.get()};
   check_hdf5(H5Pset_file_image_callbacks(access.get(), &callbacks), what);

@@ -46,7 +46,7 @@ struct AttributeReader {
   void attribute(const char* name, std::optional<ZoneBias>& value) {
     if (group.has_attribute(name))
       value = ZoneBias{group.read_attribute<double>(name),
-                       group.read_attribute<double>((std::string(name) + "_bound").c_str())};
+                       group.read_attribute<double>(std::string(name) + "_bound")};
   }
   void attribute(const char* name, EmissiveUnits& value) {
     parse<EmissiveUnits>(name, value, kAllEmissiveUnits);

@@ -30,7 +30,7 @@ struct AttributeWriter {
   void attribute(const char* name, const std::optional<ZoneBias>& value) {
     if (!value) return;
     group.write_attribute(name, value->rms);
-    group.write_attribute((std::string(name) + "_bound").c_str(), value->bound);
+    group.write_attribute(std::string(name) + "_bound", value->bound);
   }
   template <class Enum>
   requires std::is_enum_v<Enum>

@@ -2,15 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "scenes/model/error.h"
 
 namespace reemit {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 void shape_bounds_callback(const RTCBoundsFunctionArguments* args) {
   const ShapeTarget& shape = static_cast<const ShapeTarget*>(args->geometryUserPtr)[args->primID];

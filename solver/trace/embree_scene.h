@@ -6,6 +6,7 @@
 #endif
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,9 @@
 #include "solver/trace/shape_hit.h"
 
 namespace reemit {
+
+/// How far rays without an end reach.
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// What RayScene gives to Embree to build its tree from. Throws ResourceError when Embree cannot be started
 /// or runs out of memory.

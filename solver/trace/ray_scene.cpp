@@ -9,7 +9,6 @@
 namespace reemit {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Distances of two faces along a ray are told apart where they are this far from their common edge
 /// [normalised units]; the wrong one was met up to 3e-7 from edges.
 constexpr float kEdgeWidth = 2e-6F;

@@ -2,7 +2,6 @@
 // tests.
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -10,13 +9,14 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
+#include "tests/support/never.h"
 #include "tests/support/transformed_room.h"
 #include "tests/support/variable_furnace.h"
 
 namespace reemit {
 namespace {
 
-const std::atomic<bool> kNever{false};
+using test::kNever;
 
 Scene cornell_box() {
   return read_scene(REEMIT_SOURCE_DIR "/scenes/library/cornell_box.json");

@@ -15,14 +15,13 @@ namespace reemit {
 namespace {
 
 using test::floor_rectangle;
+using test::kExact;
 using test::meshed_area;
 using test::open_edges;
 using test::reversed;
 using test::TestRoom;
 using test::worst_book_gap;
 using testing::HasSubstr;
-
-constexpr double kExact = 1e-9;
 
 // Closed cube of 4 m whose faces look inwards.
 void add_hull(TestRoom& room) {

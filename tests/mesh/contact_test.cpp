@@ -13,14 +13,13 @@ namespace reemit {
 namespace {
 
 using test::floor_rectangle;
+using test::kExact;
 using test::meshed_area;
 using test::open_edges;
 using test::reversed;
 using test::TestRoom;
 using test::worst_book_gap;
 using testing::HasSubstr;
-
-constexpr double kExact = 1e-9;
 
 // Number of base triangles of a surface that reach to both sides of a line part: `height` is the signed
 // distance from the line, `beside` tells whether a point of the line belongs to the part.

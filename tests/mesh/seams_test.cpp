@@ -13,12 +13,12 @@ namespace reemit {
 namespace {
 
 using test::floor_rectangle;
+using test::kExact;
 using test::meshed_area;
 using test::reversed;
 using test::TestRoom;
 using test::worst_book_gap;
 
-constexpr double kExact = 1e-9;
 using Outline = std::vector<Vec3>;
 
 /// `outer` walked round from its first corner, with a seam from there to `inner` and back.

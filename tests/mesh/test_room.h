@@ -12,6 +12,9 @@
 
 namespace reemit::test {
 
+/// Relative; of areas, which are sums of few products.
+inline constexpr double kExact = 1e-9;
+
 /// A room put together by hand: one surface per call, grey materials.
 class TestRoom {
  public:

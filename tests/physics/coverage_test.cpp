@@ -1,6 +1,5 @@
 // Do 95 % intervals hold the truth 95 % of the time? A short version of bench/coverage.
 
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -10,6 +9,7 @@
 
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "tests/support/never.h"
 #include "tests/support/variable_furnace.h"
 #include "viewer_export/still/film.h"
 #include "viewer_export/still/render_still.h"
@@ -21,7 +21,7 @@ namespace {
 using test::VariableFurnace;
 
 constexpr int kSeeds = 6;
-const std::atomic<bool> kNever{false};
+using test::kNever;
 
 /// Counts values whose 95 % interval holds the truth. `error_scale` plants a wrong error bar.
 class Intervals {

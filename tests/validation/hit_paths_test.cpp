@@ -18,7 +18,7 @@ namespace {
 
 /// Limits of a whole picture, in standard errors: odds of a false alarm 6e-7 (normal; a picture's reference
 /// has over 10^5 paths) for each of the eight comparisons here. Blocks: kMostErrors and kMostDeviation.
-constexpr double kLimit = 5;
+constexpr double kPictureLimit = 5;
 
 ComparisonSettings quick(bool by_path) {
   ComparisonSettings settings;
@@ -37,7 +37,7 @@ void expect_same_picture(const Scene& scene) {
     const std::string what = scene.name + (by_path ? ", path traced" : ", gathered");
     EXPECT_EQ(c.different(), 0U) << what << ": worst block " << c.blocks.at(0).relative() << ", "
                                  << c.blocks.at(0).errors() << " standard errors";
-    EXPECT_LE(std::abs(c.mean_deviation), kLimit * c.mean_error) << what;
+    EXPECT_LE(std::abs(c.mean_deviation), kPictureLimit * c.mean_error) << what;
     EXPECT_LT(c.mean_error, 0.01) << what << ": too weak to tell";
   }
 }
@@ -100,10 +100,10 @@ TEST(HitPaths, a_bias_of_2_percent_is_noticed) {
   const Scene scene = lamp_with_plinth(folder);
   ComparisonSettings settings = quick(false);
   const Comparison sound = compare_blocks(scene, scene.cameras[0], settings);
-  EXPECT_LE(std::abs(sound.mean_deviation), kLimit * sound.mean_error);
+  EXPECT_LE(std::abs(sound.mean_deviation), kPictureLimit * sound.mean_error);
   settings.planted_bias = 0.02;
   const Comparison biased = compare_blocks(scene, scene.cameras[0], settings);
-  EXPECT_GT(std::abs(biased.mean_deviation), kLimit * biased.mean_error)
+  EXPECT_GT(std::abs(biased.mean_deviation), kPictureLimit * biased.mean_error)
       << biased.mean_deviation << " +- " << biased.mean_error;
 }
 

@@ -17,12 +17,12 @@ namespace reemit::validation {
 namespace {
 
 /// Odds of a false alarm per row: 5e-6 (Student's t, 63 degrees of freedom); kMostOdds holds for each test.
-constexpr double kLimit = 5;
+constexpr double kRowLimit = 5;
 constexpr double kMostOdds = 2e-3;
 constexpr double kPlanted = 1.02;
 
 bool is_beyond(const ValidationRow& r) {
-  return std::fabs(r.deviation()) > kLimit;
+  return std::fabs(r.deviation()) > kRowLimit;
 }
 
 /// Cases by name, or by the id of their first value.
@@ -53,7 +53,7 @@ void expect_valid(const std::string& family_name, const std::vector<std::string>
     EXPECT_FALSE(is_beyond(r)) << r.id << " by " << r.method << ": " << r.measured << " +- "
                                << r.standard_error << ", reference " << r.expected << ": off by "
                                << r.deviation() << " standard errors";
-    odds += r.odds_beyond(kLimit);
+    odds += r.odds_beyond(kRowLimit);
     ValidationRow biased = r;
     biased.measured *= kPlanted;
     notices[r.kind] = notices[r.kind] || is_beyond(biased);

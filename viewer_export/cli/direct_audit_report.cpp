@@ -17,7 +17,7 @@ const std::string& surface_of(const Solution& solution, const DirectDifference& 
   return solution.surface_names[solution.mesh.zone_surface(d.zone).index()];
 }
 
-std::string zones_text(const DirectAudit& audit, const Solution& solution) {
+std::string worst_zones_text(const DirectAudit& audit, const Solution& solution) {
   TextTable table;
   table.row({"zone of", "x [m]", "y [m]", "z [m]", "by packets", "by shadow rays", "chance"});
   for (std::size_t i = 0; i < std::min(kNamedInText, audit.different.size()); ++i) {
@@ -51,7 +51,7 @@ std::string direct_audit_text(const DirectAudit& audit, const Solution& solution
     return text + fmt::format("None of {} zones differs by more than chance explains\n", audit.compared);
   text += fmt::format("{} OF {} ZONES DIFFER by more than chance explains; irradiance [W/m2]:\n",
                       audit.different.size(), audit.compared);
-  return text + zones_text(audit, solution);
+  return text + worst_zones_text(audit, solution);
 }
 
 nlohmann::ordered_json direct_audit_json(const DirectAudit& audit, const Solution& solution) {

@@ -47,7 +47,7 @@ std::vector<std::pair<std::string, std::string>> notes_of(const Solution& soluti
 ExitCode export_form_factors(const FormFactorExport& options) {
   form_factor_format_of(options.output);  // refuses an unknown one before the work
   check_output_file(options.output, options.solution);
-  const Solution solution = load_solution(options.solution);
+  const Solution solution = reemit::load_solution(options.solution);
   const RayScene rays(solution.mesh);
 
   const auto start = std::chrono::steady_clock::now();

@@ -61,7 +61,7 @@ void add_band_heads(std::vector<std::string>& cells, const std::string& quantity
     cells.insert(cells.end(), {quantity + " lowest", quantity + " highest"});
     return;
   }
-  for (const std::string& band : bands.names()) cells.push_back(quantity + " " + band);
+  for (const std::string& band : bands.names()) cells.push_back(fmt::format("{} {}", quantity, band));
 }
 
 void add_band_cells(std::vector<std::string>& cells, const Spectrum& value) {

@@ -9,7 +9,7 @@
 namespace reemit {
 namespace {
 
-constexpr ExportFormat kFormats[] = {
+constexpr ExportFormat kExportFormats[] = {
     {".ply", "polygons with all radiometric values (MeshLab, Blender, CloudCompare)", true, write_ply},
     {".glb", "binary glTF 2.0, ready to view (Blender, three.js, any glTF viewer)", true, write_glb},
     {".csv", "a table, one row per vertex (spreadsheets, pandas, R)", false, write_csv},
@@ -18,7 +18,7 @@ constexpr ExportFormat kFormats[] = {
 }  // namespace
 
 std::span<const ExportFormat> export_formats() {
-  return kFormats;
+  return kExportFormats;
 }
 
 const ExportFormat& export_format_of(const std::filesystem::path& file) {

@@ -86,7 +86,7 @@ void write_hdf5(const FormFactorData& data, OutputFile& file) {
   }
 }
 
-constexpr FormFactorFormat kFormats[] = {
+constexpr FormFactorFormat kFormFactorFormats[] = {
     {".csv", "triplets, one row per pair that exchanges light", write_triplets},
     {".h5", "dense matrix in HDF5, with the zones", write_hdf5},
 };
@@ -94,7 +94,7 @@ constexpr FormFactorFormat kFormats[] = {
 }  // namespace
 
 std::span<const FormFactorFormat> form_factor_formats() {
-  return kFormats;
+  return kFormFactorFormats;
 }
 
 const FormFactorFormat& form_factor_format_of(const std::filesystem::path& file) {

@@ -25,7 +25,7 @@ constexpr double kFovDeg = 60;  // vertical
 constexpr std::size_t kMostCameras = 3;
 constexpr std::size_t kPlaces = 1024;     // on the way of light, looked at for eyes
 constexpr std::size_t kMostEyes = 160;    // that look around
-constexpr int kSurroundRays = 48;         // rays that tell whether an eye stands in free space
+constexpr int kFreedomRays = 48;          // rays that tell whether an eye stands in free space
 constexpr int kTurn = 2;                  // columns of a panorama between two views tried
 constexpr double kMostWrongSides = 0.03;  // share of surrounding rays that may meet backs of faces
 constexpr float kClearance = 0.12F;       // of the width of the lit space: nothing is closer to an eye
@@ -84,8 +84,8 @@ struct Surroundings {
     Eye eye{place, 4, 0};
     int right_sides = 0;
     int wrong_sides = 0;
-    for (int i = 0; i < kSurroundRays; ++i) {
-      const auto [z, azimuth] = sphere_lattice(i, kSurroundRays);
+    for (int i = 0; i < kFreedomRays; ++i) {
+      const auto [z, azimuth] = sphere_lattice(i, kFreedomRays);
       const Vec3f direction =
           axes.direction(static_cast<float>(azimuth), static_cast<float>(std::asin(z))).normalized();
       Hit hit;
@@ -93,8 +93,8 @@ struct Surroundings {
       eye.clearance = std::min(eye.clearance, hit.distance);
       ++(hit.front || rays.mesh().triangle(hit.triangle).two_sided ? right_sides : wrong_sides);
     }
-    if (wrong_sides > kMostWrongSides * kSurroundRays) return std::nullopt;
-    eye.enclosed = static_cast<double>(right_sides) / kSurroundRays;
+    if (wrong_sides > kMostWrongSides * kFreedomRays) return std::nullopt;
+    eye.enclosed = static_cast<double>(right_sides) / kFreedomRays;
     return eye;
   }
 };

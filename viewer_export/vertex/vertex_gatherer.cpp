@@ -107,15 +107,15 @@ void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) 
   const ZoneId zone = rings_.begin(v)->zone;
   const float* own = emitted(v);
   const float* reflectance = room_.surfaces().reflectance(mesh.zone_triangle(zone), mesh.zone_is_front(zone));
-  constexpr std::size_t n = kReplicates;
   for (std::size_t b = 0; b < bands_; ++b) {
     const auto value_of = [&](std::size_t r) {
       const float* replicate = means + r * 2 * bands_;
       return static_cast<double>(replicate[b] + kPi * replicate[bands_ + b]);
     };
-    const auto [mean, squared_error] = mean_of_replicates(n, field_.parts(), value_of);
+    const auto [mean, squared_error] = mean_of_replicates(kReplicates, field_.parts(), value_of);
     double direct = 0;
-    for (std::size_t r = 0; r < n; ++r) direct += static_cast<double>(means[r * 2 * bands_ + b]) / n;
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      direct += static_cast<double>(means[r * 2 * bands_ + b]) / kReplicates;
     const double brdf = lambert_brdf_per_sr(reflectance[b]);
     const std::size_t k = v * bands_ + b;
     data.irradiance[k] = static_cast<float>(mean);

@@ -177,7 +177,8 @@ bool MgfContexts::run_material(const TextLine& line, const std::string& where) {
   } else if (keyword == "sides") {
     check_argument_count(line, 1, 1, where);
     const auto sides = parse_integer(line.words[1]);
-    if (sides != 1 && sides != 2) throw InputError(where, "'sides' is neither 1 nor 2", "Give 1 or 2.");
+    if (!sides || *sides < 1 || *sides > 2)
+      throw InputError(where, "'sides' is neither 1 nor 2", "Give 1 or 2.");
     material.sides = static_cast<int>(*sides);
   } else if (keyword == "rd" || keyword == "td") {
     check_argument_count(line, 1, 1, where);

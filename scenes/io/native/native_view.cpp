@@ -17,16 +17,17 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// Exactly one of the quantities must be given. `divisor`: the solid angle that turns a power into an
 /// intensity.
-struct Quantity {
+struct LightQuantity {
   const char* key;
   bool photometric;
   double divisor;
 };
 
-Spectrum read_quantity(const JsonCursor& at, std::initializer_list<Quantity> choices, const BandSet& bands) {
-  const Quantity* chosen = nullptr;
+Spectrum read_quantity(const JsonCursor& at, std::initializer_list<LightQuantity> choices,
+                       const BandSet& bands) {
+  const LightQuantity* chosen = nullptr;
   std::string names;
-  for (const Quantity& quantity : choices) {
+  for (const LightQuantity& quantity : choices) {
     names += (names.empty() ? "" : ", ") + std::string(quantity.key);
     if (!at.find(quantity.key)) continue;
     if (chosen)

@@ -12,8 +12,7 @@
 namespace reemit {
 namespace {
 
-constexpr int kMostAngles = 10'000;
-constexpr std::size_t kMostValues = 1'000'000;
+constexpr std::size_t kMostStored = 1'000'000;
 constexpr int kMostLampSets = 1000;
 constexpr double kMetresPerMillimetre = 1e-3;
 
@@ -46,9 +45,9 @@ class EulumdatFile {
     text_.number_or("the distance of the C planes", 0);  // the angles themselves follow
     angles_ = static_cast<std::size_t>(text_.integer("the number of angles in a plane", 2, kMostAngles));
     text_.number_or("the distance of the angles", 0);
-    if (stored_planes() * angles_ > kMostValues)
+    if (stored_planes() * angles_ > kMostStored)
       text_.fail(fmt::format("{} x {} intensities", stored_planes(), angles_),
-                 fmt::format("Tables of up to {} are read.", kMostValues));
+                 fmt::format("Tables of up to {} are read.", kMostStored));
     const std::size_t divisor = symmetry_ < 2 ? 1 : (symmetry_ == 2 ? 2 : 4);
     if (planes_ % divisor != 0)
       text_.fail(fmt::format("{} C planes cannot have the symmetry {}", planes_, symmetry_),

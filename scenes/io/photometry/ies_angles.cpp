@@ -12,10 +12,10 @@
 namespace reemit {
 namespace {
 
-constexpr double kSlack = 1e-6;  // [degree]
+constexpr double kDegreeSlack = 1e-6;  // [degree]
 
 bool same(double a, double b) {
-  return std::fabs(a - b) <= kSlack;
+  return std::fabs(a - b) <= kDegreeSlack;
 }
 
 bool one_of(double angle, std::initializer_list<double> choices) {
@@ -78,7 +78,7 @@ IntensityTable unfolded(const IesGrid& grid, bool& closed) {
   };
   std::vector<double> candela;
   candela.reserve(planes.azimuth.size() * rows);
-  // The outermost angles are what their check lets pass, to kSlack.
+  // The outermost angles are what their check lets pass, to kDegreeSlack.
   const auto colatitude = [](double angle) { return std::clamp(angle, 0.0, 180.0); };
   std::vector<double> polar;
   if (grid.type == PhotometricType::kB) {
@@ -117,7 +117,7 @@ IesComplaint check_vertical_angles(const IesGrid& grid) {
   const double last = grid.vertical.back();
   const double least = type_c ? 0 : -90;
   const double most = type_c ? 180 : 90;
-  if (first >= least - kSlack && last <= most + kSlack) return {};
+  if (first >= least - kDegreeSlack && last <= most + kDegreeSlack) return {};
   return {fmt::format("the vertical angles run from {} to {} degrees", first, last),
           type_c ? "In type C photometry they lie between 0 and 180 degrees."
                  : "In type A and B photometry they lie between -90 and 90 degrees."};
@@ -128,7 +128,8 @@ IesComplaint check_horizontal_angles(const IesGrid& grid) {
   const double last = grid.horizontal.back();
   const std::string problem = fmt::format("the horizontal angles run from {} to {} degrees", first, last);
   if (grid.type != PhotometricType::kC) {
-    const bool within = (same(first, 0) || (first >= -90 - kSlack && first < 0)) && last <= 90 + kSlack;
+    const bool within =
+        (same(first, 0) || (first >= -90 - kDegreeSlack && first < 0)) && last <= 90 + kDegreeSlack;
     if (within && last > 0) return {};
     return {problem,
             "In type A and B photometry they run from 0, mirrored, or from below 0 to 90 degrees at most."};
@@ -138,7 +139,8 @@ IesComplaint check_horizontal_angles(const IesGrid& grid) {
     return {fmt::format("the only horizontal angle is {} degrees", first),
             "It must be 0, for a distribution without regard to the plane."};
   }
-  const bool from_zero = same(first, 0) && (one_of(last, {90, 180}) || (last > 180 && last <= 360 + kSlack));
+  const bool from_zero =
+      same(first, 0) && (one_of(last, {90, 180}) || (last > 180 && last <= 360 + kDegreeSlack));
   if (from_zero || (same(first, 90) && same(last, 270))) return {};
   return {problem,
           "In type C photometry they run from 0 to 90, 180 or 360 degrees by their symmetry, or from 90 to "

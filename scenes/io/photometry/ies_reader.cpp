@@ -17,8 +17,7 @@
 namespace reemit {
 namespace {
 
-constexpr int kMostAngles = 10'000;
-constexpr std::size_t kMostValues = 4'000'000;  // with the symmetry unfolded: 32 MB
+constexpr std::size_t kMostUnfolded = 4'000'000;  // with the symmetry unfolded: 32 MB
 constexpr int kMostTiltAngles = 1000;
 constexpr double kMetresPerFoot = 0.3048;
 
@@ -162,9 +161,9 @@ class IesFile {
     verticals_ = static_cast<std::size_t>(text_.integer("the number of vertical angles", 2, kMostAngles));
     horizontals_ = static_cast<std::size_t>(text_.integer("the number of horizontal angles", 1, kMostAngles));
     constexpr std::size_t kMostCopies = 4;
-    if (verticals_ * horizontals_ > kMostValues / kMostCopies)
+    if (verticals_ * horizontals_ > kMostUnfolded / kMostCopies)
       text_.fail(fmt::format("{} x {} intensities", verticals_, horizontals_),
-                 fmt::format("Tables of up to {} are read.", kMostValues / kMostCopies));
+                 fmt::format("Tables of up to {} are read.", kMostUnfolded / kMostCopies));
     constexpr PhotometricType kTypes[] = {PhotometricType::kC, PhotometricType::kB, PhotometricType::kA};
     grid_.type = kTypes[text_.integer("the photometric type", 1, 3) - 1];
     const bool feet = text_.integer("the units type", 1, 2) == 1;

@@ -9,6 +9,9 @@
 
 namespace reemit {
 
+/// Of a table, in either direction.
+inline constexpr int kMostAngles = 10'000;
+
 /// What a photometric file says about a luminaire, in SI units, with all its factors applied.
 struct MeasuredLuminaire {
   std::string name;

@@ -9,7 +9,7 @@
 namespace reemit {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::size_t kCellsAcross = 12;
 constexpr std::size_t kCellsAround = 16;
 constexpr std::size_t kCellsSlim = 4;
@@ -34,7 +34,7 @@ AzimuthElevation::AzimuthElevation(const RoundRegion& region, const Vec3& axis, 
       around_(region.offset <= region.radius),
       slim_(region.kind == RoundRegion::Kind::kNearSide && region.offset > kSlim * region.radius) {
   cells_ = around_ ? kCellsAround : slim_ ? kCellsSlim : kCellsAcross;
-  start_ = around_ ? -kPi : slim_ ? -1 : -0.5 * kPi;
+  start_ = around_ ? -pi : slim_ ? -1 : -0.5 * pi;
   step_ = -2 * start_ / static_cast<double>(cells_);
   double c = around_ ? -1 : 0;
   double s = around_ ? 0 : -1;

@@ -13,10 +13,10 @@ inline constexpr std::size_t kMostCorners = 16;
 /// Convex polygon relative to the shading point, cut at its horizon.
 struct ClippedPolygon {
   std::array<Vec3, kMostCorners + 1> corner;  ///< Left unset beyond count.
-  std::size_t count;
+  std::size_t count = 0;
 
   /// The part of `corners` - x with n . p >= 0. Pre: at most kMostCorners corners, convex.
-  ClippedPolygon(std::span<const Vec3> corners, const Vec3& x, const Vec3& n) : count(0) {
+  ClippedPolygon(std::span<const Vec3> corners, const Vec3& x, const Vec3& n) {
     const std::size_t size = corners.size();
     for (std::size_t i = 0; i < size; ++i) {
       const Vec3 p = corners[i] - x;

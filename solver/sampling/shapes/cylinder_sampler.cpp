@@ -9,7 +9,7 @@
 namespace reemit {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 }  // namespace
 
@@ -48,11 +48,11 @@ CylinderSampler::CylinderSampler(const Cylinder& cylinder, const Vec3& x, const 
     angles_.reset();
     density_ = Density::kVisibleArea;
   }
-  half_ = kPi;
+  half_ = pi;
   if (density_ == Density::kVisibleArea && !inside) {
     const double turned = std::acos(std::min(1.0, cylinder.radius / offset_));
-    middle_ = cylinder.inward ? 0 : kPi;
-    half_ = cylinder.inward ? kPi - turned : turned;
+    middle_ = cylinder.inward ? 0 : pi;
+    half_ = cylinder.inward ? pi - turned : turned;
   }
   area_ = 2 * half_ * cylinder.radius * length_;
 }

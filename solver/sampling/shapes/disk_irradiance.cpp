@@ -9,7 +9,7 @@
 namespace reemit {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Integrals over phi in [from, to] of 1, cos phi and sin phi over (a + b cos phi); 0 <= b < a, -2 pi <=
 /// from, to - from < 2 pi.
@@ -72,8 +72,8 @@ double DiskSampler::irradiance() const {
     const double l = frame.across;
     const double s = std::sqrt((h2 + (l + r) * (l + r)) * (h2 + (l - r) * (l - r)));
     const double k = h2 + (l - r) * (l + r);
-    const double axial = k > 0 ? 2 * kPi * r * r * h2 / (s * (s + k)) : 0.5 * kPi * (1 - k / s);
-    const double lateral = 2 * kPi * height_ * l * r * r / (s * (h2 + l * l + r * r + s));
+    const double axial = k > 0 ? 2 * pi * r * r * h2 / (s * (s + k)) : 0.5 * pi * (1 - k / s);
+    const double lateral = 2 * pi * height_ * l * r * r / (s * (h2 + l * l + r * r + s));
     return std::max(0.0, lateral * nu - axial * n_.dot(disk_.normal));
   }
   double chord = 0;

@@ -9,7 +9,7 @@
 namespace reemit {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ ShapePoint DiskSampler::sample(double u0, double u1) const {
     const auto d = unit_disk(u0, u1);
     const Vec3 across = disk_.normal.cross(towards_);
     const Vec3 point = disk_.centre + disk_.radius * (d[0] * towards_ + d[1] * across);
-    return area_point(point, disk_.normal, kPi * disk_.radius * disk_.radius, x_, n_);
+    return area_point(point, disk_.normal, pi * disk_.radius * disk_.radius, x_, n_);
   }
   const AzimuthElevation::Direction d = angles_->sample(u0, u1);
   // In the plane of the disk, from the foot.
@@ -60,7 +60,7 @@ ShapePoint DiskSampler::sample(double u0, double u1) const {
 double DiskSampler::pdf_per_sr(const Vec3& point) const {
   if (!lights_) return 0;
   if (density_ == Density::kArea)
-    return area_pdf_per_sr(point, disk_.normal, kPi * disk_.radius * disk_.radius, x_);
+    return area_pdf_per_sr(point, disk_.normal, pi * disk_.radius * disk_.radius, x_);
   return angles_->pdf_per_sr((point - x_).normalized());
 }
 

@@ -20,7 +20,7 @@ using test::replaced;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using Shape = LuminousOpening::Shape;
+using OpeningShape = LuminousOpening::Shape;
 
 /// Intensity [cd per 1000 lm] by C and gamma [degree].
 using Distribution = std::function<double(double c, double gamma)>;
@@ -160,17 +160,18 @@ TEST_F(EulumdatReader, OpeningsByTheSizesOfTheLuminousArea) {
   const auto opening = [&](const char* sizes) {
     return read(ldt_text(kDistributions[1], {.symmetry = 1, .opening = sizes}));
   };
-  const auto expect = [&](const char* sizes, Shape shape, double along_c0, double along_c90, double height) {
+  const auto expect = [&](const char* sizes, OpeningShape shape, double along_c0, double along_c90,
+                          double height) {
     const LuminousOpening o = opening(sizes).opening;
     EXPECT_EQ(o.shape, shape) << sizes;
     EXPECT_NEAR((o.size() - Vec3(along_c0, along_c90, height)).norm(), 0, 1e-12) << sizes;
   };
-  expect("0\n0\n0\n0\n0\n0\n", Shape::kPoint, 0, 0, 0);
-  expect("600\n150\n0\n0\n0\n0\n", Shape::kBox, 0.15, 0.6, 0);
-  expect("600\n150\n40\n40\n40\n40\n", Shape::kBox, 0.15, 0.6, 0.04);
-  expect("200\n0\n0\n0\n0\n0\n", Shape::kCylinder, 0.2, 0.2, 0);
-  expect("200\n0\n50\n50\n50\n50\n", Shape::kCylinder, 0.2, 0.2, 0.05);
-  expect("600\n150\n40\n0\n40\n0\n", Shape::kBox, 0.15, 0.6, 0.02);
+  expect("0\n0\n0\n0\n0\n0\n", OpeningShape::kPoint, 0, 0, 0);
+  expect("600\n150\n0\n0\n0\n0\n", OpeningShape::kBox, 0.15, 0.6, 0);
+  expect("600\n150\n40\n40\n40\n40\n", OpeningShape::kBox, 0.15, 0.6, 0.04);
+  expect("200\n0\n0\n0\n0\n0\n", OpeningShape::kCylinder, 0.2, 0.2, 0);
+  expect("200\n0\n50\n50\n50\n50\n", OpeningShape::kCylinder, 0.2, 0.2, 0.05);
+  expect("600\n150\n40\n0\n40\n0\n", OpeningShape::kBox, 0.15, 0.6, 0.02);
   EXPECT_THAT(opening("600\n150\n40\n0\n40\n0\n").notes, ElementsAre(HasSubstr("0 to 40 mm")));
 }
 

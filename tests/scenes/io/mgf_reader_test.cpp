@@ -21,7 +21,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 // A unit square in the plane z = 0, its front upwards.
-const std::string kSquare = "v a =\np 0 0 0\nv b =\np 1 0 0\nv c =\np 1 1 0\nv d =\np 0 1 0\n";
+const std::string kSquareVertices = "v a =\np 0 0 0\nv b =\np 1 0 0\nv c =\np 1 1 0\nv d =\np 0 1 0\n";
 
 class MgfReader : public ::testing::Test {
  protected:
@@ -33,7 +33,8 @@ class MgfReader : public ::testing::Test {
 };
 
 TEST_F(MgfReader, ReadsColourMaterialAndFace) {
-  const Scene scene = read(kSquare + "m paint =\nc\nrd 0.5\nsides 1\ned 1790\no floor\nf a b c d\no\n");
+  const Scene scene =
+      read(kSquareVertices + "m paint =\nc\nrd 0.5\nsides 1\ned 1790\no floor\nf a b c d\no\n");
   ASSERT_EQ(scene.surfaces.size(), 1U);
   EXPECT_EQ(scene.surfaces[0].name, "floor");
   const Material& m = scene.material_of(scene.surfaces[0]);
@@ -48,7 +49,7 @@ TEST_F(MgfReader, ReadsColourMaterialAndFace) {
 }
 
 TEST_F(MgfReader, ContextsKeepTheirStateAndTemplatesCopyIt) {
-  const Scene scene = read(kSquare +
+  const Scene scene = read(kSquareVertices +
                            "m one =\nrd 0.2\nm two = one\nrd 0.3\n"
                            "m one\nf a b c\n"             // 0.2: the alias did not change its template
                            "m two\nf a b c\n"             // 0.3
@@ -64,7 +65,7 @@ TEST_F(MgfReader, ContextsKeepTheirStateAndTemplatesCopyIt) {
 }
 
 TEST_F(MgfReader, ColoursActWhenTheyAreUsed) {
-  const Scene scene = read(kSquare +
+  const Scene scene = read(kSquareVertices +
                            "c red =\ncxy 0.6 0.35\nc same = red\ncxy 0.3 0.5\n"
                            "c both =\ncmix 1 red 1 same\n"
                            "m paint =\nc red\nrd 0.2\nc\nrs 0.1 0.05\nc same\nf a b c\n");
@@ -84,7 +85,7 @@ TEST_F(MgfReader, VerticesAreTransformedOnlyWithTheGeometry) {
 }
 
 TEST_F(MgfReader, ArraysNestAndRepeatTheirContents) {
-  const Scene scene = read(kSquare +
+  const Scene scene = read(kSquareVertices +
                            "xf -s 2\nxf -a 3 -t 10 0 0 -a 2 -t 0 10 0 -i 1 -t 1 1 0\no tile\nf a b c d\n"
                            "xf -a 2 -t 0 0 1\nf a b c\nxf\no\nxf\nxf\nf a b c d\n");
   EXPECT_EQ(test::face_count(scene), 6U * 3 + 1);
@@ -101,13 +102,13 @@ TEST_F(MgfReader, MirroredGeometryKeepsItsFront) {
       for (const Face& f : s.faces) sum += s.positions[f.outer[0]].dot(test::area_vector(s, f)) / 3;
     return sum;
   };
-  const double plain = volume(read(kSquare + body));
+  const double plain = volume(read(kSquareVertices + body));
   EXPECT_GT(plain, 1.5);
   for (const char* mirror : {"-mx", "-my", "-mz", "-mx -my -mz", "-s -1", "-mx -rz 30 -t 1 2 0"})
-    EXPECT_NEAR(volume(read(kSquare + "xf " + mirror + "\n" + body + "xf\n")), plain, 1e-9) << mirror;
+    EXPECT_NEAR(volume(read(kSquareVertices + "xf " + mirror + "\n" + body + "xf\n")), plain, 1e-9) << mirror;
 
   // The ring alone: the normal of a mirrored surface is the mirrored normal.
-  const Scene ring = read(kSquare + "v o =\np 3 0 0\nn 0 0 1\nxf -mz\nring o 0.5 1\nxf\n");
+  const Scene ring = read(kSquareVertices + "v o =\np 3 0 0\nn 0 0 1\nxf -mz\nring o 0.5 1\nxf\n");
   EXPECT_TRUE(std::get<Disk>(ring.surfaces.at(0).shapes.at(0)).normal.isApprox(Vec3(0, 0, -1)));
 }
 
@@ -157,8 +158,9 @@ TEST_F(MgfReader, HolesComeFromFhAndFromSeams) {
 }
 
 TEST_F(MgfReader, ObjectsNameSurfacesPerMaterial) {
-  const Scene scene = read(
-      kSquare + "m x =\nm y =\no desk\no leg\nm x\nf a b c\nm y\nf a b c\no\nm x\nf a b d\no\nf b c d\n");
+  const Scene scene =
+      read(kSquareVertices +
+           "m x =\nm y =\no desk\no leg\nm x\nf a b c\nm y\nf a b c\no\nm x\nf a b d\no\nf b c d\n");
   std::vector<std::string> names;
   for (const Surface& s : scene.surfaces) names.push_back(s.name);
   EXPECT_THAT(names, ElementsAre("desk/leg (x)", "desk/leg (y)", "desk", "x"));
@@ -167,7 +169,7 @@ TEST_F(MgfReader, ObjectsNameSurfacesPerMaterial) {
 TEST_F(MgfReader, IncludesAreRelativeTransformedAndShareContexts) {
   std::filesystem::create_directories(folder_ / "parts/deep");
   folder_.write("parts/deep/tile.mgf", "m tile_mat\nf a b c d\n");
-  folder_.write("parts/part.mgf", kSquare + "m tile_mat =\nrd 0.25\ni deep/tile.mgf -t 0 0 1\n");
+  folder_.write("parts/part.mgf", kSquareVertices + "m tile_mat =\nrd 0.25\ni deep/tile.mgf -t 0 0 1\n");
   const Scene scene = read("i parts/part.mgf\ni parts/part.mgf -s 2 -a 3 -t 5 0 0\nm tile_mat\nf a b c\n");
   EXPECT_NEAR(test::total_area(scene), 1 + 3 * 4 + 0.5, 1e-12);
   EXPECT_EQ(scene.materials.size(), 1U);
@@ -186,7 +188,7 @@ TEST_F(MgfReader, RefusesMissingAndCircularIncludes) {
 }
 
 TEST_F(MgfReader, SaysWhatItLeavesOut) {
-  const Scene scene = read(kSquare + "nurbs 1 2\nnurbs 3 4\nf a b a\nf a b c\n");
+  const Scene scene = read(kSquareVertices + "nurbs 1 2\nnurbs 3 4\nf a b a\nf a b c\n");
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'nurbs' is not an MGF entity")));
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("room.mgf:11")));
   EXPECT_EQ(scene.warnings.size(), 2U) << "each unknown entity once";
@@ -194,7 +196,7 @@ TEST_F(MgfReader, SaysWhatItLeavesOut) {
 
 TEST_F(MgfReader, PlacesMeasuredLuminaires) {
   folder_.write("lamp.ies", "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0.5 0.25 0\n1 1 0\n0 90\n0\n100 0\n");
-  const Scene scene = read(kSquare +
+  const Scene scene = read(kSquareVertices +
                            "xf -rx 90 -s 2 -t 0 0 3\no lamps\nies lamp.ies -m 2 -a 3 -t 1 0 0\no\n"
                            "xf\nies lamp.ies -mz\n");
   ASSERT_EQ(scene.lights.size(), 4U);
@@ -220,7 +222,7 @@ TEST_F(MgfReader, PlacesMeasuredLuminaires) {
 
 TEST_F(MgfReader, ClosesWhatIsLeftOpenAndSaysSo) {
   folder_.write("open.mgf", "xf -t 5 0 0\no inside\nf a b c d\n");
-  const Scene scene = read(kSquare + "i open.mgf\nf a b c d\n");
+  const Scene scene = read(kSquareVertices + "i open.mgf\nf a b c d\n");
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'xf' without an end")));
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("object(s) without an end")));
   EXPECT_TRUE(bounds(scene).min.isZero()) << "the transform ended with its file";
@@ -271,7 +273,7 @@ TEST_F(MgfReader, NamesFileAndLineOfEveryMistake) {
                           "xf -q",
                           "c nobody",
                           "fh a b c -"}) {
-    const std::string message = refusal(kSquare + bad + "\nf a b c d\nxf -t 1 0 0\n");
+    const std::string message = refusal(kSquareVertices + bad + "\nf a b c d\nxf -t 1 0 0\n");
     if (std::string(bad) == "v" || std::string(bad) == "fh a b c -")
       EXPECT_EQ(message, "accepted") << bad;
     else
@@ -285,7 +287,7 @@ TEST_F(MgfReader, ColoursAreJudgedWhenAFaceUsesThem) {
                 "c flame =\ncxy 0.4 0\nc dark =\ncspec 400 700 0 0\nc part =\ncspec 400 700 3 0 -1 -9\n"
                 "c infrared =\ncspec 900 1000 1 1\nc red =\ncxy 0.735 0.266\n"
                 "m of_flame =\nc flame\nrd 0.5\nm black =\nc dark\nrd 0\ned 0\n");
-  const std::string library = "i lights.mgf\n" + kSquare;
+  const std::string library = "i lights.mgf\n" + kSquareVertices;
   EXPECT_EQ(test::face_count(read(library + "m black\nf a b c\nm fine =\nc red\nrd 0.2\nf a b c\n")), 2U);
   for (const auto& [use, given] :
        {std::pair("m of_flame\nf a b c\n", "lights.mgf:2"),
@@ -317,8 +319,8 @@ TEST_F(MgfReader, StopsRunawayArrays) {
 
 TEST_F(MgfReader, AcceptsContinuedLinesCommentsAndCarriageReturns) {
   const Scene scene =
-      read("#comment without blank\r\n# two \\\r\n lines f x y z\r\nv a =\r\n\tp 0 0 \\\r\n0\r\n" + kSquare +
-           "f a b \\\n c d\n");
+      read("#comment without blank\r\n# two \\\r\n lines f x y z\r\nv a =\r\n\tp 0 0 \\\r\n0\r\n" +
+           kSquareVertices + "f a b \\\n c d\n");
   EXPECT_EQ(test::face_count(scene), 1U);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using test::GltfBuilder;
 using test::TempFolder;
-using Read = std::function<Scene(const std::filesystem::path&)>;
+using ReadFile = std::function<Scene(const std::filesystem::path&)>;
 
 Scene read_native(const std::filesystem::path& file) {
   Scene scene = read_native_scene(file, {});
@@ -36,7 +36,7 @@ Scene read_ply(const std::filesystem::path& file) {
 }
 
 /// One of every feature, small.
-const std::string kRoom = R"({
+const std::string kEveryFeature = R"({
   "format": "reemit-room", "version": 1, "name": "r", "unit": "cm", "bands": "rgb",
   "materials": {"a": {"reflectance": [0.1, 0.2, 0.3], "sides": "front"}, "b": {"reflectance": {"srgb": "#804020"}, "total_flux_lm": 900},
                 "c": {"luminance_cd_m2": 30, "emission_color": [1, 0.9, 0.8]}},
@@ -88,7 +88,7 @@ const std::string kPly =
 /// Counts how often the reader accepted or refused; anything but a Scene or an InputError fails the test.
 class Outcome {
  public:
-  Outcome(Read read, std::string name) : read_(std::move(read)), name_(std::move(name)) {}
+  Outcome(ReadFile read, std::string name) : read_(std::move(read)), name_(std::move(name)) {}
 
   void feed(const std::string& bytes, std::size_t number) {
     const auto file = folder_.write(name_, bytes);
@@ -110,7 +110,7 @@ class Outcome {
 
  private:
   TempFolder folder_;
-  Read read_;
+  ReadFile read_;
   std::string name_;
 };
 
@@ -177,7 +177,7 @@ void expect_both(const Outcome& outcome) {
 
 TEST(NativeGltfFuzz, WholeRoomsAreAccepted) {
   const TempFolder folder;
-  EXPECT_NO_THROW(read_native(folder.write("room.json", kRoom)));
+  EXPECT_NO_THROW(read_native(folder.write("room.json", kEveryFeature)));
   EXPECT_NO_THROW(read_gltf_file(folder.write("room.gltf", small_gltf().text())));
   EXPECT_NO_THROW(read_gltf_file(folder.write("room.glb", small_gltf().glb())));
   EXPECT_NO_THROW(read_ply(folder.write("mesh.ply", kPly)));
@@ -185,13 +185,13 @@ TEST(NativeGltfFuzz, WholeRoomsAreAccepted) {
 
 TEST(NativeGltfFuzz, NativeTruncated) {
   Outcome outcome(read_native, "room.json");
-  feed_truncations(outcome, kRoom, 7);
+  feed_truncations(outcome, kEveryFeature, 7);
   EXPECT_EQ(outcome.accepted, 0u);
 }
 
 TEST(NativeGltfFuzz, NativeMutated) {
   Outcome outcome(read_native, "room.json");
-  feed_mutations(outcome, kRoom, 4000);
+  feed_mutations(outcome, kEveryFeature, 4000);
   expect_both(outcome);
 }
 
@@ -227,10 +227,10 @@ TEST(NativeGltfFuzz, PlyMutated) {
 
 TEST(NativeGltfFuzz, NoiseIsRefused) {
   std::mt19937 random(7);
-  for (const auto& [name, read] : std::vector<std::pair<std::string, Read>>{{"room.json", read_native},
-                                                                            {"room.gltf", read_gltf_file},
-                                                                            {"room.glb", read_gltf_file},
-                                                                            {"m.ply", read_ply}}) {
+  for (const auto& [name, read] : std::vector<std::pair<std::string, ReadFile>>{{"room.json", read_native},
+                                                                                {"room.gltf", read_gltf_file},
+                                                                                {"room.glb", read_gltf_file},
+                                                                                {"m.ply", read_ply}}) {
     Outcome outcome(read, name);
     for (std::size_t i = 0; i < 100; ++i) {
       std::string noise(1 + random() % 400, '\0');

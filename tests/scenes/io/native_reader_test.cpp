@@ -300,7 +300,7 @@ TEST(NativeCameras, FieldsAndDefaults) {
       {"#/cameras/1", "second camera"});
 }
 
-constexpr const char* kObj = R"(mtllib quad.mtl
+constexpr const char* kQuadObj = R"(mtllib quad.mtl
 v 0 0 0
 v 100 0 0
 v 100 100 0
@@ -308,12 +308,12 @@ v 0 100 0
 usemtl inside
 f 1 2 3 4
 )";
-constexpr const char* kMtl = "newmtl inside\nKd 0.4 0.4 0.4\nnewmtl outside\nKd 0.1 0.1 0.1\n";
+constexpr const char* kQuadMtl = "newmtl inside\nKd 0.4 0.4 0.4\nnewmtl outside\nKd 0.1 0.1 0.1\n";
 
 TEST(NativeFiles, ObjWithUnitTransformAndMaterials) {
   const TempFolder folder;
-  folder.write("quad.obj", kObj);
-  folder.write("quad.mtl", kMtl);
+  folder.write("quad.obj", kQuadObj);
+  folder.write("quad.mtl", kQuadMtl);
   const auto read = [&](const std::string& more) {
     return read_native_scene(
         folder.write("room.json", room(R"("bands": "rgb", "materials": {"white": {"reflectance": 0.8}},
@@ -335,8 +335,8 @@ TEST(NativeFiles, ObjWithUnitTransformAndMaterials) {
 
 TEST(NativeFiles, UnitOfTheRoomAndOfTheFileAreIndependent) {
   const TempFolder folder;
-  folder.write("quad.obj", kObj);
-  folder.write("quad.mtl", kMtl);
+  folder.write("quad.obj", kQuadObj);
+  folder.write("quad.mtl", kQuadMtl);
   const Scene scene =
       read_native_scene(folder.write("room.json", room(R"("unit": "mm", "bands": "rgb", "materials": {},
       "objects": [{"file": {"path": "quad.obj", "unit": "cm"}, "transform": {"translate": [500, 0, 0]},
@@ -359,7 +359,7 @@ TEST(NativeFiles, RefusesMissingAndUnknownFiles) {
 
 TEST(NativeFiles, SpectralRoomsNeedAMapping) {
   const TempFolder folder;
-  folder.write("quad.obj", kObj);
+  folder.write("quad.obj", kQuadObj);
   folder.write("quad.mtl", "newmtl inside\nKd 0.4 0.2 0.4\n");
   const auto file = folder.write(
       "room.json",

@@ -14,7 +14,7 @@ namespace {
 using test::expect_input_error;
 using test::TempFolder;
 
-Surface read_text(const std::string& text) {
+Surface read_ply_text(const std::string& text) {
   const TempFolder folder;
   return read_ply_surface(folder.write("mesh.ply", text));
 }
@@ -27,7 +27,7 @@ constexpr const char* kBody =
     "0 0 0 9\n1.00000000000001 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3 0\n3 0 2 1 2 5 6\n7\n";
 
 TEST(PlyReader, ReadsPolygonsInDoublePrecisionAndSkipsTheRest) {
-  const Surface surface = read_text(std::string(kHeader) + kBody);
+  const Surface surface = read_ply_text(std::string(kHeader) + kBody);
   ASSERT_EQ(surface.faces.size(), 2u);
   EXPECT_EQ(surface.faces[0].outer, (std::vector<std::uint32_t>{0, 1, 2, 3}));
   EXPECT_EQ(surface.faces[1].outer, (std::vector<std::uint32_t>{0, 2, 1}));
@@ -64,7 +64,7 @@ std::string binary_triangle(bool big_endian) {
 
 TEST(PlyReader, ReadsBothByteOrdersAndNormals) {
   for (const bool big_endian : {false, true}) {
-    const Surface surface = read_text(binary_triangle(big_endian));
+    const Surface surface = read_ply_text(binary_triangle(big_endian));
     ASSERT_EQ(surface.faces.size(), 1u);
     EXPECT_EQ(surface.positions[2], Vec3(0, 1, 0.25));
     ASSERT_EQ(surface.normals.size(), 3u);
@@ -75,7 +75,7 @@ TEST(PlyReader, ReadsBothByteOrdersAndNormals) {
 
 TEST(PlyReader, RefusesDamage) {
   const auto refused = [](const std::string& text, std::initializer_list<const char*> parts) {
-    expect_input_error([&] { read_text(text); }, parts);
+    expect_input_error([&] { read_ply_text(text); }, parts);
   };
   refused("obj\n", {"mesh.ply:1", "does not start with"});
   refused("ply\nformat ascii 1.0\nelement vertex 3\n", {"does not end"});

@@ -32,7 +32,9 @@ TEST(SceneReader, ForcesTwoSidesWhenAsked) {
   const test::TempFolder folder;
   const auto file = folder.write("room.mgf", kRoom);
   EXPECT_FALSE(read_scene(file).materials.at(0).two_sided);
-  EXPECT_TRUE(read_scene(file, {EmissiveUnits::kCandela, true}).materials.at(0).two_sided);
+  ReadOptions options;
+  options.force_two_sided = true;
+  EXPECT_TRUE(read_scene(file, options).materials.at(0).two_sided);
 }
 
 TEST(SceneReader, SeveralMgfFilesAreOneRoom) {

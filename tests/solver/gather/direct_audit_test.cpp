@@ -1,18 +1,17 @@
 #include "solver/gather/direct_audit.h"
 
-#include <atomic>
-
 #include <gtest/gtest.h>
 
 #include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "tests/support/never.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
 namespace {
 
-const std::atomic<bool> kNever{false};
+using test::kNever;
 
 /// A box with a lamp under its ceiling and a shelf that throws a shadow.
 test::RoomBuilder room_with_shelf() {

@@ -3,12 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "solver/progressive_solver.h"
+#include "tests/support/never.h"
 #include "tests/support/variable_furnace.h"
 
 namespace reemit {
 namespace {
 
-const std::atomic<bool> kNever{false};
+using test::kNever;
 
 Solution run(const test::RoomBuilder& room, std::uint64_t packets, std::uint64_t seed = 1) {
   SolverSettings settings;

@@ -8,13 +8,14 @@
 
 #include "solver/progressive_solver.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/never.h"
 #include "tests/support/variable_furnace.h"
 
 namespace reemit {
 namespace {
 
+using test::kNever;
 using test::VariableFurnace;
-const std::atomic<bool> kNever{false};
 
 /// A furnace with screens whose zones have areas from 2e-4 down to 2e-8 m2; those of the walls have 0.03 m2.
 VariableFurnace room_of_many_sizes() {

@@ -12,6 +12,7 @@
 
 #include "solver/progressive_solver.h"
 #include "solver/shoot/packet_batch.h"
+#include "tests/solver/shoot/methods.h"
 #include "tests/support/refusal.h"
 #include "tests/support/test_rooms.h"
 
@@ -24,7 +25,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::array kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
+using test::kMethods;
 
 /// A sealed room with a lamp in one wall; a batch of default size takes minutes in it.
 RoomBuilder sealed_room(double reflectance) {

@@ -1,6 +1,8 @@
 // Shooting and walks against closed forms, against each other, and against themselves on other numbers of
 // threads.
 
+#include "tests/solver/shoot/methods.h"
+
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -35,7 +37,7 @@ SolverSettings settings_of(SolveMethod method, std::uint64_t packets,
   return s;
 }
 
-constexpr std::array kMethods{SolveMethod::kShooting, SolveMethod::kWalk};
+using test::kMethods;
 
 /// Every face emits M and reflects rho: radiosity is M/(1-rho) and irradiance M/(1-rho) everywhere.
 RoomBuilder furnace(double rho, std::uint32_t divisions) {

@@ -51,11 +51,11 @@ TEST(Matrix, JsonReportsClosureAndPairs) {
   const TempFolder folder;
   const ProgramRun run = solve_matrix(folder, {"--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Json json = Json::parse(run.out);
-  EXPECT_EQ(json["method"], "matrix");
-  EXPECT_EQ(json["balanced"], true);
-  const Json& factors = json["form_factors"];
-  EXPECT_EQ(factors["zones"], json["zones"]);
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["method"], "matrix");
+  EXPECT_EQ(report["balanced"], true);
+  const Json& factors = report["form_factors"];
+  EXPECT_EQ(factors["zones"], report["zones"]);
   EXPECT_EQ(factors["facing_pairs"].get<int>(),
             factors["open_pairs"].get<int>() + factors["walled_pairs"].get<int>() +
                 factors["clear_pairs"].get<int>() + factors["hidden_pairs"].get<int>() +
@@ -98,7 +98,7 @@ TEST(Matrix, FormFactorsAreExportedFromAnySolution) {
   const ProgramRun csv =
       run_reemit({"export", "--form-factors", solution, "-o", (folder / "factors.csv").string(), "--json"});
   ASSERT_EQ(csv.exit_code, 0) << csv.err;
-  const Json json = Json::parse(csv.out);
+  const Json report = Json::parse(csv.out);
   std::map<std::string, double> sums;
   std::map<std::pair<std::string, std::string>, double> factor;
   for (const CsvRow& row : csv_rows(folder / "factors.csv")) {
@@ -110,7 +110,7 @@ TEST(Matrix, FormFactorsAreExportedFromAnySolution) {
   for (const auto& [pair, value] : factor) EXPECT_TRUE(factor.contains({pair.second, pair.first}));
   double highest = 0;
   for (const auto& [zone, sum] : sums) highest = std::max(highest, sum);
-  EXPECT_NEAR(highest, json["row_sums"]["highest"].get<double>(), 1e-12);
+  EXPECT_NEAR(highest, report["row_sums"]["highest"].get<double>(), 1e-12);
   EXPECT_NEAR(highest, 1, 0.02);
 
   const ProgramRun hdf5 =

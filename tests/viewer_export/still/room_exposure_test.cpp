@@ -1,7 +1,6 @@
 #include "viewer_export/still/room_exposure.h"
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -11,6 +10,7 @@
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
+#include "tests/support/never.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/still/default_cameras.h"
 #include "viewer_export/still/render_still.h"
@@ -47,7 +47,7 @@ Solution darker_in_the_cupboard(const RoomBuilder& room) {
   return solution;
 }
 
-const std::atomic<bool> kNever{false};
+using test::kNever;
 
 ToneMap of_still(const Room& room, const Solution& solution, const Camera& camera) {
   StillSettings settings;

@@ -8,17 +8,17 @@
 namespace reemit {
 namespace {
 
+using std::numbers::pi;
 using test::ShapeCase;
-constexpr double kPi = std::numbers::pi;
 
-DiskSampler make(const Disk& s, const Vec3& x, const Vec3& n, Density d) {
+DiskSampler make_disk(const Disk& s, const Vec3& x, const Vec3& n, Density d) {
   return {s, x, n, d};
 }
 
 /// Receiver parallel to the disk at height h, offset l: pi/2 [1 - (1 + H^2 - Q^2)/sqrt(Z^2 - 4 Q^2)], H =
 /// h/l, Q = r/l, Z = 1 + H^2 + Q^2; on the axis pi r^2/(r^2 + h^2); tilted ones from the light vector, the
 /// one that the horizon cuts by quadrature with 15 digits (Howell's catalogue).
-const std::vector<ShapeCase<Disk>>& cases() {
+const std::vector<ShapeCase<Disk>>& disks() {
   static const std::vector<ShapeCase<Disk>> all{
       {"on the axis", {{0, 0, 2}, {0, 0, -1}, 1}, {0, 0, 0}, {0, 0, 1}, 0.6283185307179586},
       {"beside", {{0, 0, 2}, {0, 0, -1}, 1}, {3, 0, 0}, {0, 0, 1}, 0.08060808692548144},
@@ -30,32 +30,33 @@ const std::vector<ShapeCase<Disk>>& cases() {
   return all;
 }
 
-double area(const Disk& s) {
-  return kPi * s.radius * s.radius;
+double disk_area(const Disk& s) {
+  return pi * s.radius * s.radius;
 }
 
 TEST(DiskSampler, MeansAreTheClosedForms) {
-  test::expect_means(cases(), make, [](Density) { return false; });
+  test::expect_means(disks(), make_disk, [](Density) { return false; });
 }
 
 TEST(DiskSampler, SamplesAndInverseFollowTheDensity) {
-  test::expect_densities(cases(), make, area);
+  test::expect_densities(disks(), make_disk, disk_area);
 }
 
 TEST(DiskSampler, BothFitsRejectAPlantedBias) {
-  const ShapeCase<Disk>& c = cases()[2];
+  const ShapeCase<Disk>& c = disks()[2];
   const DiskSampler by_area(c.shape, c.x, c.n, Density::kArea);
   const DiskSampler sampler(c.shape, c.x, c.n, Density::kCosine);
-  EXPECT_LT(test::fit_of_samples(sampler, by_area, area(c.shape), c.x, test::kManyDraws, 0.02).odds,
+  EXPECT_LT(test::fit_of_samples(sampler, by_area, disk_area(c.shape), c.x, test::kManyDraws, 0.02).odds,
             test::kFalseAlarm);
-  EXPECT_LT(test::fit_of_inverse(sampler, by_area, area(c.shape), c.x, test::kManyDraws, 0.04),
+  EXPECT_LT(test::fit_of_inverse(sampler, by_area, disk_area(c.shape), c.x, test::kManyDraws, 0.04),
             test::kFalseAlarm);
 }
 
 TEST(DiskSampler, ClosedFormIsTheSameForAllDensities) {
-  for (const ShapeCase<Disk>& c : cases())
+  for (const ShapeCase<Disk>& c : disks())
     for (const Density d : test::kDensities)
-      EXPECT_NEAR(make(c.shape, c.x, c.n.normalized(), d).irradiance() / c.irradiance, 1, 1e-12) << c.name;
+      EXPECT_NEAR(make_disk(c.shape, c.x, c.n.normalized(), d).irradiance() / c.irradiance, 1, 1e-12)
+          << c.name;
 }
 
 TEST(DiskSampler, ClosedFormHoldsFarAwayAndNearTheAxis) {
@@ -67,14 +68,14 @@ TEST(DiskSampler, ClosedFormHoldsFarAwayAndNearTheAxis) {
       const double k = h * h + l * l - 1;
       const double gap = k > 0 ? 4 * h * h / (s * (s + k)) : 1 - k / s;
       const DiskSampler disk({{0, 0, h}, {0, 0, -1}, 1}, {l, 0, 0}, {0, 0, 1}, Density::kArea);
-      EXPECT_NEAR(disk.irradiance() / (kPi / 2 * gap), 1, 1e-9) << h << " " << l;
+      EXPECT_NEAR(disk.irradiance() / (pi / 2 * gap), 1, 1e-9) << h << " " << l;
     }
 }
 
 TEST(DiskSampler, NearlyProportionalDensitiesHaveLittleVariance) {
   // Relative standard deviation of one sample.
-  for (const ShapeCase<Disk>& c : cases()) {
-    const DiskSampler s = make(c.shape, c.x, c.n.normalized(), Density::kCosine);
+  for (const ShapeCase<Disk>& c : disks()) {
+    const DiskSampler s = make_disk(c.shape, c.x, c.n.normalized(), Density::kCosine);
     const auto r = test::statistics(s, c.x, c.n.normalized(), 20'000);
     EXPECT_LT(r.error * std::sqrt(20'000) / c.irradiance, 0.15) << c.name;
   }
@@ -83,10 +84,10 @@ TEST(DiskSampler, NearlyProportionalDensitiesHaveLittleVariance) {
 TEST(DiskSampler, TheBackTheHorizonAndThePlaneAreDark) {
   const Vec3 up(0, 0, 1);
   for (const Density d : test::kDensities) {
-    EXPECT_FALSE(make({{0, 0, 1}, {0, 0, 1}, 1}, {0, 0, 0}, up, d).lights());
-    EXPECT_FALSE(make({{0, 0, 1}, {0, 0, -1}, 1}, {0, 0, 0}, -up, d).lights());
-    EXPECT_FALSE(make({{3, 0, 0}, {0, 0, 1}, 1}, {0, 0, 0}, up, d).lights());
-    EXPECT_FALSE(make({{0, 0, 1}, {0, 0, -1}, 0}, {0, 0, 0}, up, d).lights());
+    EXPECT_FALSE(make_disk({{0, 0, 1}, {0, 0, 1}, 1}, {0, 0, 0}, up, d).lights());
+    EXPECT_FALSE(make_disk({{0, 0, 1}, {0, 0, -1}, 1}, {0, 0, 0}, -up, d).lights());
+    EXPECT_FALSE(make_disk({{3, 0, 0}, {0, 0, 1}, 1}, {0, 0, 0}, up, d).lights());
+    EXPECT_FALSE(make_disk({{0, 0, 1}, {0, 0, -1}, 0}, {0, 0, 0}, up, d).lights());
   }
 }
 

@@ -18,7 +18,7 @@ struct Rectangle {
 using Triangle = std::array<Vec3, 3>;
 using Polygon = std::vector<Vec3>;
 
-RectangleSampler make(const Rectangle& r, const Vec3& x, const Vec3& n, Density d) {
+RectangleSampler make_rectangle(const Rectangle& r, const Vec3& x, const Vec3& n, Density d) {
   return {r.corner, r.u, r.v, r.front, x, n, d};
 }
 Vec3 facing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
@@ -91,7 +91,7 @@ bool no_variance(Density d) {
 }
 
 TEST(PolygonSampler, MeansOfRectanglesAreLambertsFormula) {
-  test::expect_means(rectangles(), make, no_variance);
+  test::expect_means(rectangles(), make_rectangle, no_variance);
 }
 TEST(PolygonSampler, MeansOfTrianglesAreLambertsFormula) {
   test::expect_means(triangles(), make_triangle, no_variance);
@@ -102,7 +102,7 @@ TEST(PolygonSampler, MeansOfPolygonsAreLambertsFormula) {
 
 TEST(PolygonSampler, SamplesAndInverseOfRectanglesFollowTheDensity) {
   const std::vector<ShapeCase<Rectangle>> some(rectangles().begin(), rectangles().begin() + 5);
-  test::expect_densities(some, make, [](const Rectangle& r) { return area(r); });
+  test::expect_densities(some, make_rectangle, [](const Rectangle& r) { return area(r); });
 }
 TEST(PolygonSampler, SamplesAndInverseOfTrianglesFollowTheDensity) {
   test::expect_densities(triangles(), make_triangle,
@@ -127,7 +127,8 @@ TEST(PolygonSampler, BothFitsRejectAPlantedBias) {
 TEST(PolygonSampler, ClosedFormIsTheSameForAllDensities) {
   for (const Density d : test::kDensities) {
     for (const auto& c : rectangles())
-      EXPECT_NEAR(make(c.shape, c.x, c.n.normalized(), d).irradiance() / c.irradiance, 1, 1e-12) << c.name;
+      EXPECT_NEAR(make_rectangle(c.shape, c.x, c.n.normalized(), d).irradiance() / c.irradiance, 1, 1e-12)
+          << c.name;
     for (const auto& c : triangles())
       EXPECT_NEAR(make_triangle(c.shape, c.x, c.n, d).irradiance() / c.irradiance, 1, 1e-12) << c.name;
   }
