@@ -130,8 +130,8 @@ void measure(const Case& c, int threads, int rounds) {
   arena.execute([&] {
     tbb::enumerable_thread_specific<std::vector<Ray16>> recorded;
     std::size_t partial = 0;
-    const RayObserver record = [&](const Ray16& block, int count) {
-      if (count == 16) recorded.local().push_back(block);
+    const RayObserver record = [&](const RayBlock& block) {
+      if (block.count == 16) recorded.local().push_back(block.rays);
     };
     run(&record);
     std::vector<Ray16> blocks;

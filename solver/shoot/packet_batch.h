@@ -10,8 +10,16 @@
 
 namespace reemit {
 
+/// Rays that are about to be traced for the first time.
+struct RayBlock {
+  const Ray16& rays;
+  int count;                ///< <= 16
+  const std::uint32_t* id;  ///< Of each ray, the number of its packet: in the batch (walks) or in its sweep.
+  std::uint32_t flight;     ///< Bounce (walks) or sweep, from 0.
+};
+
 /// Is shown every block of rays before it is traced; called from all threads.
-using RayObserver = std::function<void(const Ray16& rays, int count)>;
+using RayObserver = std::function<void(const RayBlock& block)>;
 
 /// Everything one batch needs to know.
 struct BatchTask {

@@ -120,8 +120,8 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
       for (std::uint32_t first = begin; first < end; first += 16) {
         const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
         cursor.start16(first, count, numbers, rays, power.data());
-        if (batch.ray_observer != nullptr) (*batch.ray_observer)(rays, count);
         std::iota(id, id + 16, first);
+        if (batch.ray_observer != nullptr) (*batch.ray_observer)({rays, count, id, number});
         trace_and_book(rays, count, id, power.data(), false);
         if (doubtful.count() >= 16) look_again();
       }

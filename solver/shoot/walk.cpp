@@ -134,7 +134,7 @@ class WalkTask {
 
   void trace(int count, const std::uint32_t id[16], const std::int64_t* power,
              std::vector<std::int64_t>& incident, std::uint32_t bounce) {
-    if (observer_ != nullptr) (*observer_)(rays_, count);
+    if (observer_ != nullptr) (*observer_)({rays_, count, id, bounce});
     ray_count_ += static_cast<std::uint64_t>(count);
     arrive(rays_, count, id, power, incident, bounce, false);
     if (doubtful_.count() >= 16) look_again(incident, bounce);

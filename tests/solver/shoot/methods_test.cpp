@@ -3,13 +3,22 @@
 
 #include "tests/solver/shoot/methods.h"
 
+#include <array>
+#include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
+#include "solver/room/room.h"
+#include "solver/shoot/packet_batch.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/mean_test.h"
 #include "tests/support/test_rooms.h"
 #include "tests/support/zone_irradiances.h"
 
@@ -98,6 +107,77 @@ test::Measured mean_over_quad(const Solution& s, std::size_t quad, std::uint32_t
     mean.stderr_of_mean += e.stderr_of_mean / static_cast<double>(zones);
   }
   return mean;
+}
+
+/// Mean irradiance over the zones of a quad, by the spread of the groups of batches.
+test::MeanTest mean_by_groups(const Solution& s, std::size_t quad, std::uint32_t divisions) {
+  const std::size_t zones = std::size_t{2} * divisions * divisions;
+  const std::size_t bands = s.bands.count();
+  test::MeanTest mean;
+  for (std::size_t g = 0; g < ZoneSums::kGroups; ++g) {
+    double sum = 0;
+    for (std::size_t z = quad * zones; z < (quad + 1) * zones; ++z)
+      sum += static_cast<double>(s.sums.group_total[g * s.sums.direct.size() + z * bands]);
+    mean.add(sum / static_cast<double>(zones) / static_cast<double>(s.sums.group_weight[g]));
+  }
+  return mean;
+}
+
+// A sweep gives most zones no packet of their own and some one that carries what many caught. Five standard
+// errors of 30 degrees of freedom are passed once in 40,000 comparisons, of which there are ten.
+TEST(Methods, FarFewerPacketsThanZonesGiveTheSameMeans) {
+  constexpr std::uint32_t kFine = 24;
+  constexpr std::uint32_t kCoarse = 2;
+  for (const SolveMethod method : kMethods) {
+    SolverSettings settings = settings_of(method, 0);
+    settings.packets = 480 * 1152;
+    settings.batch_packets = 1152;  // one for each zone of the lamp
+    const Solution few = run(coloured_box(false, kFine), settings);
+    ASSERT_EQ(few.mesh.zone_count(), 6 * 1152U);
+    EXPECT_TRUE(few.audit.balanced());
+    const Solution many = run(coloured_box(false, kCoarse), settings_of(method, 640'000));
+    for (const std::size_t quad : {0U, 1U, 2U, 4U, 5U}) {
+      const test::MeanTest a = mean_by_groups(few, quad, kFine);
+      const test::MeanTest b = mean_by_groups(many, quad, kCoarse);
+      const double error = std::hypot(a.standard_error(), b.standard_error());
+      EXPECT_NEAR(a.mean(), b.mean(), 5 * error) << to_string(method) << " quad " << quad;
+      EXPECT_GT(0.02 * b.mean(), 5 * error) << "a bias of 2 % would go unseen";
+    }
+  }
+}
+
+TEST(Methods, ARayIsKnownByItsPacket) {
+  const RoomBuilder room = coloured_box();
+  const ZoneMesh mesh = room.mesh().mesh;
+  const Room walls(room.scene(), mesh);
+  const TransportScene transport(walls);
+  const Emission emission = collect_emission(transport);
+  SolverSettings settings;
+  for (const SolveMethod method : kMethods) {
+    using Ray = std::array<float, 6>;
+    const auto rays_by_packet = [&](int threads) {
+      std::map<std::pair<std::uint32_t, std::uint32_t>, Ray> seen;  // by flight and number
+      std::mutex mutex;
+      const RayObserver observer = [&](const RayBlock& block) {
+        const std::lock_guard lock(mutex);
+        for (int i = 0; i < block.count; ++i) {
+          const Vec3f o = block.rays.origin(i);
+          const Vec3f d = block.rays.direction(i);
+          const Ray ray{o.x(), o.y(), o.z(), d.x(), d.y(), d.z()};
+          EXPECT_TRUE(seen.insert({{block.flight, block.id[i]}, ray}).second) << "two rays of one packet";
+        }
+      };
+      BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
+      BatchTask task{transport, emission, settings, 3, 20'000};
+      task.ray_observer = &observer;
+      tbb::task_arena arena(threads);
+      arena.execute(
+          [&] { method == SolveMethod::kShooting ? shoot_batch(task, books) : walk_batch(task, books); });
+      EXPECT_EQ(seen.size(), books.rays);
+      return seen;
+    };
+    EXPECT_EQ(rays_by_packet(1), rays_by_packet(2)) << to_string(method);
+  }
 }
 
 // A cube of twelve zones whose face z0 emits 1: means over faces of the continuous room, by quadrature

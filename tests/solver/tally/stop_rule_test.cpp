@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/tally/batch_books.h"
+
 namespace reemit {
 namespace {
 
@@ -49,6 +51,19 @@ TEST(StopRule, StopsWhenPacketsAreSpent) {
   s.packets = 1'000'000;
   EXPECT_FALSE(rule_of(s).stop(after(15, 1)));
   EXPECT_EQ(rule_of(s).stop(after(16, 1)), StopReason::kPacketCount);
+}
+
+TEST(StopRule, EndsWhenTheBooksCanHoldNoMore) {
+  SolverSettings s;
+  s.error_target = 1e-9;
+  RunState state = after(100'000, 1e-3);
+  state.weight = (std::int64_t{1} << 21) - 2;
+  EXPECT_EQ(rule_of(s).next_weight(state), 1);
+  EXPECT_FALSE(rule_of(s).stop(state));
+  ++state.weight;
+  EXPECT_EQ(rule_of(s).stop(state), StopReason::kBatchLimit);
+  // The books of that many batches fit into what they are summed in.
+  EXPECT_LE(state.weight, std::numeric_limits<std::int64_t>::max() / kBatchQuanta);
 }
 
 TEST(StopRule, BatchesShrinkToTheTimeLeft) {

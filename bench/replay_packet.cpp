@@ -1,0 +1,128 @@
+// The way of one packet of a solve through its room, ray by ray: what happened where a zone, a leak or a back
+// hit looks wrong. A packet is known by its batch and its number; the random numbers of a solve follow from
+// these, so it goes the same way again.
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include "solver/room/room.h"
+#include "solver/shoot/packet_batch.h"
+#include "solver/solution/room_of_solution.h"
+#include "solver/solution/solution_file.h"
+#include "solver/tally/batch_plan.h"
+
+namespace {
+
+using namespace reemit;
+
+struct Options {
+  std::filesystem::path solution;
+  std::uint32_t batch = 0;
+  std::uint32_t packet = 0;
+  std::uint32_t sweep = 0;
+};
+
+/// Packets of a batch of a run.
+std::uint32_t packets_of_batch(const Solution& solution, std::uint32_t batch) {
+  if (static_cast<std::int64_t>(batch) >= solution.sums.batches)
+    throw std::out_of_range(
+        fmt::format("the solution has {} batches, numbered from 0", solution.sums.batches));
+  const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);
+  std::int64_t done = 0;
+  for (std::int64_t k = 0;; ++k) {
+    const std::int64_t weight = plan.next_weight(k, done);
+    if (k == batch) return static_cast<std::uint32_t>(weight * plan.unit_packets());
+    done += weight;
+  }
+}
+
+std::string place_text(const Vec3& p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+}
+
+/// One line for a ray: where it starts and what it meets, second look included.
+std::string ray_text(const Room& room, const Vec3f& origin, const Vec3f& direction) {
+  const RayScene& rays = room.rays();
+  std::string text = fmt::format("from {} along {}: ", place_text(rays.in_room(origin)),
+                                 place_text(direction.cast<double>()));
+  Hit hit;
+  if (!rays.closest(origin, direction, hit)) return text + "leaves the room";
+  const ZoneMesh& mesh = room.mesh();
+  const ZoneId zone = mesh.zone_at(hit.triangle, hit.u, hit.v, hit.front);
+  const Surface& surface = room.scene().surfaces[mesh.triangle(hit.triangle).surface.index()];
+  text += fmt::format(
+      "meets the {} of '{}' at {} after {:.6g} m", hit.front ? "front" : "back", surface.name,
+      place_text(mesh.point(hit.triangle, static_cast<double>(hit.u), static_cast<double>(hit.v))),
+      static_cast<double>(hit.distance) * rays.metres_per_unit());
+  return text + (zone.valid() ? fmt::format(", zone {}", zone.index()) : ", which absorbs everything");
+}
+
+void replay(const Options& options) {
+  const Solution solution = load_solution(options.solution);
+  if (solution.settings.method == SolveMethod::kMatrix)
+    throw std::invalid_argument("the solution is of the matrix method, which has no packets");
+  const Scene scene = read_room_of(solution, options.solution);
+  const Room room(scene, solution.mesh);
+  const TransportScene transport(room);
+  const Emission emission = collect_emission(transport);
+  const std::uint32_t packets = packets_of_batch(solution, options.batch);
+
+  int found = 0;
+  const RayObserver observer = [&](const RayBlock& block) {
+    for (int lane = 0; lane < block.count; ++lane) {
+      if (block.id[lane] != options.packet) continue;
+      if (solution.settings.method == SolveMethod::kShooting && block.flight != options.sweep) continue;
+      fmt::print("{:4}  {}\n", block.flight,
+                 ray_text(room, block.rays.origin(lane), block.rays.direction(lane)));
+      ++found;
+    }
+  };
+  BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
+  BatchTask task{transport, emission, solution.settings, options.batch, packets};
+  task.ray_observer = &observer;
+  // One thread, so that lines come in order.
+  tbb::task_arena arena(1);
+  arena.execute([&] {
+    if (solution.settings.method == SolveMethod::kShooting)
+      shoot_batch(task, books);
+    else
+      walk_batch(task, books);
+  });
+  if (found == 0)
+    throw std::out_of_range(fmt::format("batch {} has no packet {} there; its luminaires send about {}",
+                                        options.batch, options.packet, packets));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Prints the way of one packet of a solve: for each ray the bounce (walks) or sweep (shooting), where "
+      "it\n"
+      "starts and what it meets. With shooting, zones send on what many packets brought, so a packet has one "
+      "ray.");
+  Options options;
+  app.add_option("solution", options.solution, "Solution file; its room must be where it was")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--batch", options.batch, "Number of the batch, from 0")->capture_default_str();
+  app.add_option("--packet", options.packet, "Number of the packet within its batch or sweep, from 0")
+      ->capture_default_str();
+  app.add_option("--sweep", options.sweep,
+                 "Shooting: 0 is the light of luminaires, 1 what zones send on first")
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    replay(options);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "bench_replay_packet: {}\n", e.what());
+    return 2;
+  }
+  return 0;
+}
