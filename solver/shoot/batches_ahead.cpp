@@ -29,8 +29,11 @@ BatchesAhead::BatchesAhead(const TransportScene& transport, const Emission& emis
   const int together = std::max(1, static_cast<int>(std::sqrt(threads)));
   const auto affordable = static_cast<int>(
       std::clamp<std::size_t>(kMostBytes / std::max<std::size_t>(1, bytes_of_batch(transport)), 1, 1024));
-  most_ = static_cast<std::size_t>(std::clamp(threads / together, 1, affordable));
-  threads_per_batch_ = threads / static_cast<int>(most_);
+  const int running = std::clamp(threads / together, 1, affordable);
+  threads_per_batch_ = threads / running;
+  // Batches of one size end at about the same time. One more waits for its threads, so that these have work
+  // while what has ended is added up.
+  most_ = static_cast<std::size_t>(std::min(running + (threads > 1 ? 1 : 0), affordable));
 }
 
 BatchesAhead::~BatchesAhead() {

@@ -16,7 +16,8 @@ namespace reemit {
 /// of its sweeps; with several batches the other threads have something to do meanwhile.
 class BatchesAhead {
  public:
-  /// `threads` >= 1 are divided among the batches: each has about as many threads as there are batches.
+  /// `threads` >= 1 are divided among the batches: each has about as many threads as there are batches that
+  /// run at once, and one more waits its turn.
   BatchesAhead(const TransportScene& transport, const Emission& emission, const SolverSettings& settings,
                int threads);
   ~BatchesAhead();  ///< Cuts off what is on its way.
