@@ -26,7 +26,7 @@
 #include "solver/sampling/shapes/plane_maps.h"
 #include "solver/sampling/shapes/rectangle_sampler.h"
 #include "solver/sampling/shapes/sphere_sampler.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace {
 
@@ -160,7 +160,7 @@ void measure_shape(const std::string& name, const Make& make, const Options& opt
 double shadow_ray_ns(int repeats) {
   const Scene scene = read_scene(REEMIT_SOURCE_DIR "/scenes/library/cornell_box.json");
   const MeshResult built = build_mesh(scene);
-  const RayScene rays(built.mesh);
+  const RayTracer rays(built.mesh);
   TriangleId lamp;
   for (std::size_t t = 0; t < built.mesh.triangle_count(); ++t) {
     const Surface& surface = scene.surfaces[built.mesh.base().triangles[t].surface.index()];

@@ -35,7 +35,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Embree alone over the base triangles, with the scene settings that the solver uses.
 class BareEmbree {
  public:
-  BareEmbree(const ZoneMesh& mesh, const RayScene& rays)
+  BareEmbree(const ZoneMesh& mesh, const RayTracer& rays)
       : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     const std::size_t count = mesh.triangle_count();
@@ -113,8 +113,8 @@ void measure(const Case& c, int threads, int rounds) {
   mesh_settings.default_zone_count = static_cast<int>(c.zones);
   const MeshResult built = build_mesh(scene, mesh_settings);
   const Room walls(scene, built.mesh);
-  const TransportScene transport(walls);
-  const Emission emission = collect_emission(transport);
+  const PacketRoom transport(walls);
+  const PacketSources emission = collect_packet_sources(transport);
   SolverSettings settings;
   settings.method = c.method;
   const auto packets = static_cast<std::uint32_t>(

@@ -48,7 +48,7 @@ std::string place_text(const Vec3& p) {
 
 /// One line for a ray: where it starts and what it meets, second look included.
 std::string ray_text(const Room& room, const Vec3f& origin, const Vec3f& direction) {
-  const RayScene& rays = room.rays();
+  const RayTracer& rays = room.rays();
   std::string text = fmt::format("from {} along {}: ", place_text(rays.in_room(origin)),
                                  place_text(direction.cast<double>()));
   Hit hit;
@@ -69,8 +69,8 @@ void replay(const Options& options) {
     throw std::invalid_argument("the solution is of the matrix method, which has no packets");
   const Scene scene = read_room_of(solution, options.solution);
   const Room room(scene, solution.mesh);
-  const TransportScene transport(room);
-  const Emission emission = collect_emission(transport);
+  const PacketRoom transport(room);
+  const PacketSources emission = collect_packet_sources(transport);
   const std::uint32_t packets = packets_of_batch(solution, options.batch);
 
   int found = 0;

@@ -26,7 +26,7 @@ struct RayStart {
 };
 
 /// The room of the file, for a reference: its polygons and round shapes just as they were read, all in double
-/// precision, found through a tree of boxes. Nothing of the mesher, of RayScene or of Embree is in it: no
+/// precision, found through a tree of boxes. Nothing of the mesher, of RayTracer or of Embree is in it: no
 /// welding, no cuts, no triangles, no tolerance but one. Holes are where a ray crosses an even number of
 /// outlines, so that holes drawn by seams are holes whatever their winding. Const members may be called from
 /// any thread.

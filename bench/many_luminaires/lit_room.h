@@ -7,7 +7,7 @@
 #include "scenes/model/scene.h"
 #include "solver/emit/selection.h"
 #include "solver/gather/direct_light.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit::bench {
@@ -20,7 +20,7 @@ class LitRoom {
   LitRoom& operator=(const LitRoom&) = delete;
 
   const Scene& scene() const { return scene_; }
-  const RayScene& rays() const { return room_.rays(); }
+  const RayTracer& rays() const { return room_.rays(); }
   /// Unset: the selection that the program takes by default.
   DirectLight light(std::optional<Selection> selection) const;
 

@@ -31,7 +31,7 @@ class Hanging {
   const Scene& scene() const { return room_.scene(); }
   const ZoneMesh& mesh() const { return mesh_->mesh; }
 
-  SurfacePoint place(const RayScene& rays, double x, double y) const {
+  SurfacePoint place(const RayTracer& rays, double x, double y) const {
     // p = a + u (b - a) + v (c - a) for the corners above.
     const double v = (kReach - x - (y + kReach) / 3) / (2 * kReach);
     const double u = (y + kReach) / (3 * kReach);

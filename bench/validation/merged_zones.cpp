@@ -11,7 +11,7 @@ namespace reemit::validation {
 MergedZones::MergedZones(const CodeRoom& room, Merge merge, std::uint64_t seed) {
   const MeshResult built = room.exact_zones();
   const ZoneMesh& mesh = built.mesh;
-  const RayScene rays(mesh);
+  const RayTracer rays(mesh);
   const std::atomic<bool> interrupt{false};
   FormFactorSettings settings;
   settings.seed = seed;

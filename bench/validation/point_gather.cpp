@@ -27,7 +27,7 @@ class AreaSampler {
     }
     if (triangles_.empty()) throw std::out_of_range("surfaces without triangles");
   }
-  SurfacePoint place(const RayScene& rays, const std::array<float, 2>& u) const {
+  SurfacePoint place(const RayTracer& rays, const std::array<float, 2>& u) const {
     const double at = static_cast<double>(u[0]) * total_;
     const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, at);
     const auto i = static_cast<std::size_t>(found - cumulative_.begin());
@@ -46,7 +46,7 @@ class AreaSampler {
 
 }  // namespace
 
-SurfacePoint point_on(const RayScene& rays, const Vec3& point, const Vec3& normal) {
+SurfacePoint point_on(const RayTracer& rays, const Vec3& point, const Vec3& normal) {
   const ZoneMesh& mesh = rays.mesh();
   const Vec3 n = normal.normalized();
   const double tolerance = 1e-6 * rays.metres_per_unit();

@@ -11,7 +11,7 @@ namespace reemit::validation {
 
 /// Flat base triangle whose front faces along `normal` (within 1e-3) and that holds `point` [m], as a point
 /// on it. Throws std::out_of_range when there is none.
-SurfacePoint point_on(const RayScene& rays, const Vec3& point, const Vec3& normal);
+SurfacePoint point_on(const RayTracer& rays, const Vec3& point, const Vec3& normal);
 
 /// Work per replicate.
 struct GatherEffort {

@@ -30,7 +30,7 @@ class SolvedRoom {
   const Scene& scene() const { return *scene_; }
   const ZoneMesh& mesh() const { return solutions_.front().mesh; }
   const Room& room() const { return *room_; }
-  const RayScene& rays() const { return room_->rays(); }
+  const RayTracer& rays() const { return room_->rays(); }
   const std::vector<Solution>& solutions() const { return solutions_; }
   SurfaceId surface(const std::string& name) const;  ///< Throws std::out_of_range.
   double area(SurfaceId s) const;                    ///< Of the fronts [m2].

@@ -6,7 +6,7 @@
 #include "solver/emit/light_ray.h"
 #include "solver/emit/luminaire_sample.h"
 #include "solver/sampling/warp.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -17,10 +17,10 @@ class DirectionalEmitter {
   using Light = DirectionalLight;
   static constexpr bool kAtInfinity = true;
 
-  DirectionalEmitter(const Light& light, const RayScene& /*rays*/)
+  DirectionalEmitter(const Light& light, const RayTracer& /*rays*/)
       : direction_(light.direction.cast<float>()) {}
 
-  static const Spectrum& emission(const Light& light) { return light.irradiance; }
+  static const Spectrum& strength(const Light& light) { return light.irradiance; }
   static Spectrum power(const Light& light, double metres_per_unit) {
     const double radius = kRoomRadius * metres_per_unit;
     return std::numbers::pi * radius * radius * light.irradiance;

@@ -78,7 +78,7 @@ void step_before(const std::vector<NearFace>& faces, double clearance, Vec3& pos
 
 }  // namespace
 
-std::vector<PunctualLight> lights_before_faces(const Scene& scene, const RayScene& rays) {
+std::vector<PunctualLight> lights_before_faces(const Scene& scene, const RayTracer& rays) {
   std::vector<PunctualLight> lights = scene.lights;
   const ZoneMesh& mesh = rays.mesh();
   const double clearance = kLightClearance * rays.metres_per_unit();

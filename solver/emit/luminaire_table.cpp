@@ -15,10 +15,10 @@ LuminaireTable::LuminaireTable(const Room& room) : rays_(&room.rays()), bands_(r
   build_tree();
 }
 
-void LuminaireTable::add_emission(const Spectrum& emission) {
+void LuminaireTable::add_strength(const Spectrum& strength) {
   for (std::size_t b = 0; b < bands_; ++b)
-    emission_.push_back(static_cast<float>(emission[static_cast<Eigen::Index>(b)]));
-  brightness_.push_back(static_cast<float>(emission.sum()));
+    strength_.push_back(static_cast<float>(strength[static_cast<Eigen::Index>(b)]));
+  brightness_.push_back(static_cast<float>(strength.sum()));
 }
 
 void LuminaireTable::add_surfaces(const Room& room) {
@@ -27,7 +27,7 @@ void LuminaireTable::add_surfaces(const Room& room) {
   const double metres = rays_->metres_per_unit();
   const auto add = [&](AreaLuminaire luminaire, SurfaceId surface) {
     areas_.push_back(std::move(luminaire));
-    add_emission(surfaces.normal_radiance(surface));
+    add_strength(surfaces.normal_radiance(surface));
   };
   for (const LuminaireFace& face : luminaire_faces(room)) {
     const double exponent = surfaces.emission_exponent(face.surface);
@@ -53,7 +53,7 @@ void LuminaireTable::add_lights(const Scene& scene) {
     const PunctualLight& light = scene.lights[i];
     if (!(light_power(light, rays_->metres_per_unit()).sum() > 0)) continue;
     punctual_.push_back(make_punctual_emitter(placed[i], *rays_));
-    add_emission(emission_of(light));
+    add_strength(strength_of(light));
   }
 }
 
@@ -91,7 +91,7 @@ bool LuminaireTable::sample(std::size_t entry, const Vec3f& x, const Vec3f& n, f
       return false;
     result.factor = static_cast<float>(point.factor);
     result.at_infinity = false;
-    result.target = (point.point + static_cast<double>(RayScene::kLift) * point.normal).cast<float>();
+    result.target = (point.point + static_cast<double>(RayTracer::kLift) * point.normal).cast<float>();
     result.pdf_per_sr = static_cast<float>(point.pdf_per_sr);
     return true;
   }

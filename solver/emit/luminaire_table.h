@@ -25,11 +25,11 @@ class LuminaireTable {
 
   /// Per band: radiance along the normal [W/(m2 sr)] of an area, intensity [W/sr], irradiance across the beam
   /// [W/m2], or intensity per candela.
-  const float* emission(std::size_t entry) const { return &emission_[entry * bands_]; }
-  /// Sum of emission over bands.
+  const float* strength(std::size_t entry) const { return &strength_[entry * bands_]; }
+  /// Sum of strength over bands.
   float brightness(std::size_t entry) const { return brightness_[entry]; }
 
-  /// About the irradiance at x (normal n) per unit of emission if nothing is in the way; 0 only if the entry
+  /// About the irradiance at x (normal n) per unit of strength if nothing is in the way; 0 only if the entry
   /// cannot light x at all.
   float unoccluded(std::size_t entry, const Vec3f& x, const Vec3f& n) const;
   /// Draws a point of the entry. False if it cannot light x.
@@ -45,13 +45,13 @@ class LuminaireTable {
   void add_surfaces(const Room& room);
   void add_lights(const Scene& scene);
   void build_tree();
-  void add_emission(const Spectrum& emission);
+  void add_strength(const Spectrum& strength);
 
-  const RayScene* rays_;
+  const RayTracer* rays_;
   std::size_t bands_;
   std::vector<AreaLuminaire> areas_;
   std::vector<PunctualEmitter> punctual_;
-  std::vector<float> emission_;
+  std::vector<float> strength_;
   std::vector<float> brightness_;
   LightTree tree_;
   std::vector<std::uint32_t> tree_entry_;

@@ -33,7 +33,7 @@ Vec3 main_direction(const IntensityTable& table) {
 
 }  // namespace
 
-PhotometricEmitter::PhotometricEmitter(const Light& light, const RayScene& rays) {
+PhotometricEmitter::PhotometricEmitter(const Light& light, const RayTracer& rays) {
   const double metres = rays.metres_per_unit();
   const double extent = opening_extent(light.opening) / metres;
   const double extent2 = extent * extent;

@@ -5,7 +5,7 @@
 #include "solver/emit/light_ray.h"
 #include "solver/emit/luminaire_bounds.h"
 #include "solver/emit/luminaire_sample.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -17,9 +17,9 @@ class PhotometricEmitter {
   using Light = PhotometricLight;
   static constexpr bool kAtInfinity = false;
 
-  PhotometricEmitter(const Light& light, const RayScene& rays);
+  PhotometricEmitter(const Light& light, const RayTracer& rays);
 
-  static const Spectrum& emission(const Light& light) { return light.intensity_per_candela; }
+  static const Spectrum& strength(const Light& light) { return light.intensity_per_candela; }
   static Spectrum power(const Light& light, double /*metres_per_unit*/) {
     return light.table->total_flux() * light.intensity_per_candela;
   }

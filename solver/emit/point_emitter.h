@@ -7,7 +7,7 @@
 #include "solver/emit/luminaire_bounds.h"
 #include "solver/emit/luminaire_sample.h"
 #include "solver/sampling/warp.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -25,7 +25,7 @@ float irradiance_of_point(const Vec3f& point, const Vec3f& x, const Vec3f& n, fl
 }
 
 /// Square metres of one square unit of the normalised space.
-inline float square_metres_per_unit(const RayScene& rays) {
+inline float square_metres_per_unit(const RayTracer& rays) {
   const auto metres = static_cast<float>(rays.metres_per_unit());
   return metres * metres;
 }
@@ -36,10 +36,10 @@ class PointEmitter {
   using Light = PointLight;
   static constexpr bool kAtInfinity = false;
 
-  PointEmitter(const Light& light, const RayScene& rays)
+  PointEmitter(const Light& light, const RayTracer& rays)
       : position_(rays.normalised(light.position)), metres2_(square_metres_per_unit(rays)) {}
 
-  static const Spectrum& emission(const Light& light) { return light.intensity; }
+  static const Spectrum& strength(const Light& light) { return light.intensity; }
   static Spectrum power(const Light& light, double /*metres_per_unit*/) {
     return 4 * std::numbers::pi * light.intensity;
   }

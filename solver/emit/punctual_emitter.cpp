@@ -34,14 +34,14 @@ Result of_place(const PunctualEmitter& emitter, Ask&& ask) {
 
 }  // namespace
 
-PunctualEmitter make_punctual_emitter(const PunctualLight& light, const RayScene& rays) {
+PunctualEmitter make_punctual_emitter(const PunctualLight& light, const RayTracer& rays) {
   return std::visit([&]<class Light>(const Light& l) -> PunctualEmitter { return EmitterOf<Light>(l, rays); },
                     light);
 }
 
-const Spectrum& emission_of(const PunctualLight& light) {
+const Spectrum& strength_of(const PunctualLight& light) {
   return std::visit(
-      []<class Light>(const Light& l) -> const Spectrum& { return EmitterOf<Light>::emission(l); }, light);
+      []<class Light>(const Light& l) -> const Spectrum& { return EmitterOf<Light>::strength(l); }, light);
 }
 
 Spectrum light_power(const PunctualLight& light, double metres_per_unit) {

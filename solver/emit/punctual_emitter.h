@@ -13,18 +13,18 @@ namespace reemit {
 /// members that the functions below call; a further kind is a further file and a further name here.
 using PunctualEmitter = std::variant<PointEmitter, SpotEmitter, DirectionalEmitter, PhotometricEmitter>;
 
-PunctualEmitter make_punctual_emitter(const PunctualLight& light, const RayScene& rays);
+PunctualEmitter make_punctual_emitter(const PunctualLight& light, const RayTracer& rays);
 
 /// Intensity [W/sr] on the axis, irradiance [W/m2] across the beam of a directional light, or intensity per
 /// candela of a measured luminaire.
-const Spectrum& emission_of(const PunctualLight& light);
-/// Power that packets of the light carry [W] per band, in a room of this size (RayScene::metres_per_unit),
+const Spectrum& strength_of(const PunctualLight& light);
+/// Power that packets of the light carry [W] per band, in a room of this size (RayTracer::metres_per_unit),
 /// which only light at infinity asks for.
 Spectrum light_power(const PunctualLight& light, double metres_per_unit);
 /// Whether the light comes from infinitely far away, and so from nowhere in the room.
 bool is_at_infinity(const PunctualLight& light);
 
-/// Irradiance at x with unit normal n per unit of emission_of (so [1/m2] for an intensity, [1] for a
+/// Irradiance at x with unit normal n per unit of strength_of (so [1/m2] for an intensity, [1] for a
 /// directional light) if nothing is in the way: I cos(theta) / r^2 with r in metres. Of an opening, whose
 /// light comes from many points, about that (PhotometricEmitter::expected_irradiance). 0 only if the
 /// luminaire cannot light x.
@@ -40,7 +40,7 @@ inline LuminaireSample sample_light(const PunctualEmitter& emitter, const Vec3f&
 inline bool is_at_infinity(const PunctualEmitter& emitter) {
   return std::visit([](const auto& e) { return e.kAtInfinity; }, emitter);
 }
-/// For a light tree; `strength`: emission_of, all bands. Pre: not at infinity.
+/// For a light tree; `strength`: strength_of, all bands. Pre: not at infinity.
 LuminaireBounds bounds_of_light(const PunctualEmitter& emitter, float strength);
 /// Where the light shines out of: what lies between a point of the luminaire and here parts it from the room.
 /// Pre: not at infinity.

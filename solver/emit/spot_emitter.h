@@ -13,14 +13,14 @@ class SpotEmitter {
   using Light = SpotLight;
   static constexpr bool kAtInfinity = false;
 
-  SpotEmitter(const Light& light, const RayScene& rays)
+  SpotEmitter(const Light& light, const RayTracer& rays)
       : position_(rays.normalised(light.position)),
         direction_(light.direction.cast<float>()),
         metres2_(square_metres_per_unit(rays)),
         cos_outer_(static_cast<float>(std::max(0.0, std::cos(light.outer_angle)))),
         distribution_(light) {}
 
-  static const Spectrum& emission(const Light& light) { return light.intensity; }
+  static const Spectrum& strength(const Light& light) { return light.intensity; }
   static Spectrum power(const Light& light, double /*metres_per_unit*/) {
     return SpotDistribution(light).solid_angle() * light.intensity;
   }

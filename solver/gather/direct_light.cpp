@@ -29,25 +29,25 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
   const bool visible =
       sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
   if (!visible) return {};
-  return {table_.emission(entry), sample.factor * inverse_probability, towards.normalized()};
+  return {table_.strength(entry), sample.factor * inverse_probability, towards.normalized()};
 }
 
 void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
                              const float* weight, float* sum) const {
   if (empty()) return;
   const Arrival light = estimate(x, ray_origin(*rays_, x), u);
-  if (light.emission == nullptr) return;
-  for (std::size_t b = 0; b < band_count(); ++b) sum[b] += weight[b] * light.factor * light.emission[b];
+  if (light.strength == nullptr) return;
+  for (std::size_t b = 0; b < band_count(); ++b) sum[b] += weight[b] * light.factor * light.strength[b];
 }
 
 void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
                                        float chance, const float* weight, float* sum) const {
   if (empty()) return;
   const Arrival light = estimate(x, ray_origin(*rays_, x), u);
-  if (light.emission == nullptr) return;
+  if (light.strength == nullptr) return;
   const BrdfValue brdf = surfaces_->value(x, light.from);
   for (std::size_t b = 0; b < band_count(); ++b)
-    sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.emission[b];
+    sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.strength[b];
 }
 
 void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first,
@@ -59,9 +59,9 @@ void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequen
     const std::array<float, kDimensions> u{sequence.sample(index, 0), sequence.sample(index, 1),
                                            sequence.sample(index, 2)};
     const Arrival light = estimate(x, origin, u);
-    if (light.emission == nullptr) continue;
+    if (light.strength == nullptr) continue;
     for (std::size_t b = 0; b < band_count(); ++b) {
-      const double e = static_cast<double>(light.factor) * static_cast<double>(light.emission[b]);
+      const double e = static_cast<double>(light.factor) * static_cast<double>(light.strength[b]);
       sum[b] += e;
       if (sum_of_squares != nullptr) sum_of_squares[b] += e * e;
     }

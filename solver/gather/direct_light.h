@@ -49,15 +49,15 @@ class DirectLight {
                    double* sum, double* sum_of_squares = nullptr) const;
 
  private:
-  /// What arrives at a point: the irradiance is estimated as factor * emission[b].
+  /// What arrives at a point: the irradiance is estimated as factor * strength[b].
   struct Arrival {
-    const float* emission = nullptr;  ///< Null if nothing arrives.
+    const float* strength = nullptr;  ///< Null if nothing arrives.
     float factor = 0;
     Vec3f from{0, 0, 0};  ///< Unit, towards the luminaire.
   };
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
 
-  const RayScene* rays_;
+  const RayTracer* rays_;
   const SurfaceModel* surfaces_;
   LuminaireTable table_;
   Selection selection_;

@@ -37,7 +37,7 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
 
 void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
                                      float* sum) const {
-  const RayScene& rays = room().rays();
+  const RayTracer& rays = room().rays();
   const SurfaceModel& surfaces = room().surfaces();
   const std::size_t bands = band_count();
   Hit hit = y;
@@ -74,7 +74,7 @@ GatherBatch::GatherBatch(const HemisphereGather& gather)
 
 void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
                       float* sum) {
-  const RayScene& rays = gather_->room().rays();
+  const RayTracer& rays = gather_->room().rays();
   const Vec3f direction = sample_lambert(x.normal, u0, u1);
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(side_normal(rays, x)) > 0)) return;
@@ -106,7 +106,7 @@ void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
 
 void GatherBatch::trace() {
   const RadianceField& field = gather_->field();
-  const RayScene& rays = gather_->room().rays();
+  const RayTracer& rays = gather_->room().rays();
   const ZoneMesh& mesh = gather_->room().mesh();
   Hit16 hits;
   rays.closest16(rays_, count_, hits);
@@ -117,7 +117,7 @@ void GatherBatch::trace() {
       keep_for_second_look(i, hits);
       continue;
     }
-    if (t == RayScene::kMiss) continue;
+    if (t == RayTracer::kMiss) continue;
     float* weight = &weights_[i * bands_];
     const ZoneId zone = mesh.zone_at(TriangleId(t), hits.u[i], hits.v[i], hits.front[i]);
     if (!zone.valid()) continue;

@@ -11,7 +11,7 @@ PathTracer::PathTracer(const Room& room, const DirectLight& direct, std::uint64_
 
 void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const PathKey& key, float* weight,
                               float* sum) const {
-  const RayScene& rays = room_->rays();
+  const RayTracer& rays = room_->rays();
   const SurfaceModel& surfaces = room_->surfaces();
   const std::size_t bands = surfaces.band_count();
   SurfacePoint point = x;

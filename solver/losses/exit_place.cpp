@@ -13,14 +13,14 @@ namespace {
 
 /// Tilts in `kTurns` directions about the ray, opposite ones `kTurns / 2` apart.
 constexpr std::size_t kTurns = 8;
-/// Tangent of the smallest tilt: above that of the second look (RayScene::second_direction).
+/// Tangent of the smallest tilt: above that of the second look (RayTracer::second_direction).
 constexpr float kLeastTilt = 1e-5F;
 constexpr float kMostTilt = 4;
 constexpr float kStep = 2;
 
 }  // namespace
 
-ExitPlace find_exit(const RayScene& rays, const Vec3f& origin, const Vec3f& direction) {
+ExitPlace find_exit(const RayTracer& rays, const Vec3f& origin, const Vec3f& direction) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const Frame frame(direction);
   std::array<double, kTurns> reach;  // from the ray to the rim [normalised units]
@@ -52,7 +52,7 @@ ExitPlace find_exit(const RayScene& rays, const Vec3f& origin, const Vec3f& dire
   return exit;
 }
 
-bool is_outside(const RayScene& rays, const Vec3f& origin, const Vec3f& direction) {
+bool is_outside(const RayTracer& rays, const Vec3f& origin, const Vec3f& direction) {
   constexpr std::uint32_t kLooks = 32;
   constexpr int kMostHits = 2;
   const Frame frame(direction);

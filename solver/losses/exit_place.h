@@ -13,9 +13,9 @@ struct ExitPlace {
   std::set<SurfaceId> surfaces;  ///< That make the rim.
 };
 
-ExitPlace find_exit(const RayScene& rays, const Vec3f& origin, const Vec3f& direction);
+ExitPlace find_exit(const RayTracer& rays, const Vec3f& origin, const Vec3f& direction);
 
 /// True if nothing, or next to nothing, lies in the half space before the start of a ray that left the room.
-bool is_outside(const RayScene& rays, const Vec3f& origin, const Vec3f& direction);
+bool is_outside(const RayTracer& rays, const Vec3f& origin, const Vec3f& direction);
 
 }  // namespace reemit

@@ -37,12 +37,12 @@ struct ProbeSet {
 };
 
 /// As luminaires send out their light, directional ones excepted: theirs comes from outside.
-ProbeSet emitted_probes(const TransportScene& transport, const Emission& emission) {
+ProbeSet emitted_probes(const PacketRoom& transport, const PacketSources& emission) {
   const std::size_t bands = transport.bands();
   ProbeSet probes;
-  probes.flight = plan_emission_flight(emission, bands, kProbes, 0.5);
+  probes.flight = plan_first_flight(emission, bands, kProbes, 0.5);
   for (std::size_t s = 0; s < emission.sources.size(); ++s) {
-    const EmissionSource& source = emission.sources[s];
+    const PacketSource& source = emission.sources[s];
     const bool outside = !source.zone.valid() && is_at_infinity(transport.scene().lights[source.light]);
     double power = 0;
     for (std::size_t b = 0; b < bands && !outside; ++b)
@@ -83,7 +83,7 @@ ProbeSet reflected_probes(const Solution& solution) {
 
 /// Shows every probe with its power [W] and the surface it left; no surface for lights without area.
 template <class Visit>
-void visit_probes(const TransportScene& transport, const Emission& emission, const Solution& solution,
+void visit_probes(const PacketRoom& transport, const PacketSources& emission, const Solution& solution,
                   const StopToken* stop, const Visit& visit) {
   std::uint32_t stream = 1;
   for (const ProbeSet& probes : {emitted_probes(transport, emission), reflected_probes(solution)}) {
@@ -181,7 +181,7 @@ bool has_directional(const Scene& scene) {
                      [](const PunctualLight& l) { return is_at_infinity(l); });
 }
 
-void warn_of_escapes(const TransportScene& transport, const Emission& emission, const Solution& solution,
+void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission, const Solution& solution,
                      const StopToken* stop, std::vector<std::string>& warnings) {
   const EnergyAudit& audit = solution.audit;
   double escaped = 0;
@@ -202,7 +202,7 @@ void warn_of_escapes(const TransportScene& transport, const Emission& emission, 
   warnings.push_back(text);
 }
 
-void warn_of_backs(const TransportScene& transport, const Emission& emission, const Solution& solution,
+void warn_of_backs(const PacketRoom& transport, const PacketSources& emission, const Solution& solution,
                    const StopToken* stop, std::vector<std::string>& warnings) {
   const Scene& scene = transport.scene();
   const EnergyAudit& audit = solution.audit;
@@ -256,8 +256,8 @@ void warn_of_backs(const TransportScene& transport, const Emission& emission, co
 
 }  // namespace
 
-EscapedLight find_escapes(const TransportScene& transport, const Emission& emission, const Solution& solution,
-                          const StopToken* stop) {
+EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emission,
+                          const Solution& solution, const StopToken* stop) {
   struct Escape {
     Vec3f origin, direction;
     double watts;
@@ -267,7 +267,7 @@ EscapedLight find_escapes(const TransportScene& transport, const Emission& emiss
   visit_probes(transport, emission, solution, stop, [&](const ProbeRay& probe, double watts, SurfaceId from) {
     if (!probe.met) escapes.push_back({probe.origin, probe.direction, watts, from});
   });
-  const RayScene& rays = transport.rays();
+  const RayTracer& rays = transport.rays();
   const double diagonal = room_diagonal(transport.scene());
   const double emitted = emitted_watts(solution.audit);
   thin_out(escapes);
@@ -293,7 +293,7 @@ EscapedLight find_escapes(const TransportScene& transport, const Emission& emiss
   return found;
 }
 
-std::vector<std::string> lost_light_warnings(const TransportScene& transport, const Emission& emission,
+std::vector<std::string> lost_light_warnings(const PacketRoom& transport, const PacketSources& emission,
                                              const Solution& solution, const StopToken* stop) {
   end_if_requested(stop);
   std::vector<std::string> warnings;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "scenes/model/stop_check.h"
-#include "solver/shoot/emission.h"
+#include "solver/shoot/packet_sources.h"
 #include "solver/solution/solution.h"
 
 namespace reemit {
@@ -29,8 +29,8 @@ struct EscapedLight {
   double through_gaps = 0;      ///< Share of the emitted power [0,1], by probes.
   double through_openings = 0;  ///< Share of the emitted power [0,1], by probes.
 };
-EscapedLight find_escapes(const TransportScene& transport, const Emission& emission, const Solution& solution,
-                          const StopToken* stop = nullptr);
+EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emission,
+                          const Solution& solution, const StopToken* stop = nullptr);
 
 /// Warnings about light that a room loses although its faces close, with share, place and surfaces: light
 /// that escapes, and light that ends on backs of one-sided faces. Faces count as closed when at most 1 % of
@@ -38,7 +38,7 @@ EscapedLight find_escapes(const TransportScene& transport, const Emission& emiss
 /// opening (the Cornell box) loses light by intent and gets no warning, nor does one that is mostly outdoors.
 /// Where directional lights shine in from outside, only gaps count. Reads Solution::audit and sums. Throws
 /// Interrupted when `stop` (may be null) is requested.
-std::vector<std::string> lost_light_warnings(const TransportScene& transport, const Emission& emission,
+std::vector<std::string> lost_light_warnings(const PacketRoom& transport, const PacketSources& emission,
                                              const Solution& solution, const StopToken* stop = nullptr);
 
 }  // namespace reemit

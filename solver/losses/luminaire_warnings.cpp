@@ -38,7 +38,7 @@ std::string warning_of(const OpeningLoss& loss, const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> luminaire_warnings(const TransportScene& transport, const Emission& emission,
+std::vector<std::string> luminaire_warnings(const PacketRoom& transport, const PacketSources& emission,
                                             const StopToken* stop) {
   const Scene& scene = transport.scene();
   std::vector<std::string> warnings;
@@ -55,8 +55,8 @@ std::vector<std::string> luminaire_warnings(const TransportScene& transport, con
 
 std::vector<std::string> luminaire_warnings(const Scene& scene, const ZoneMesh& mesh) {
   const Room room(scene, mesh);
-  const TransportScene transport(room);
-  return luminaire_warnings(transport, collect_emission(transport));
+  const PacketRoom transport(room);
+  return luminaire_warnings(transport, collect_packet_sources(transport));
 }
 
 }  // namespace reemit

@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "scenes/model/stop_check.h"
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 
 namespace reemit {
 
 /// What the user should know about luminaires that lose light (opening_losses.h) or light themselves
 /// (self_lit_luminaires.h), with names and shares. Throws Interrupted when `stop` (may be null) is requested.
-std::vector<std::string> luminaire_warnings(const TransportScene& transport, const Emission& emission,
+std::vector<std::string> luminaire_warnings(const PacketRoom& transport, const PacketSources& emission,
                                             const StopToken* stop = nullptr);
 /// The same before a solve.
 std::vector<std::string> luminaire_warnings(const Scene& scene, const ZoneMesh& mesh);

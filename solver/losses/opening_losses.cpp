@@ -10,7 +10,7 @@
 #include "scenes/model/opening_reach.h"
 #include "solver/emit/punctual_emitter.h"
 #include "solver/losses/probe_flight.h"
-#include "solver/shoot/emission.h"
+#include "solver/shoot/packet_sources.h"
 
 namespace reemit {
 namespace {
@@ -21,10 +21,10 @@ constexpr std::uint32_t kMostPackets = 1U << 19;
 constexpr double kLeastLoss = 1e-3;
 
 /// The surface between two points, if there is one.
-std::optional<SurfaceId> between(const TransportScene& transport, const Vec3f& from, const Vec3f& to) {
+std::optional<SurfaceId> between(const PacketRoom& transport, const Vec3f& from, const Vec3f& to) {
   const Vec3f way = to - from;
   const float distance = way.norm();
-  if (!(distance > RayScene::kLift) || transport.rays().visible(from, to)) return std::nullopt;
+  if (!(distance > RayTracer::kLift) || transport.rays().visible(from, to)) return std::nullopt;
   Hit hit;
   if (!transport.rays().closest(from, way / distance, hit) || hit.distance > distance) return std::nullopt;
   return transport.mesh().triangle(hit.triangle).surface;
@@ -36,9 +36,9 @@ struct Contact {
   bool front = true;  ///< The side that the light stands on.
   Vec3f normal;       ///< Of that side.
 };
-constexpr float kTouching = 4 * RayScene::kLift;
+constexpr float kTouching = 4 * RayTracer::kLift;
 
-std::optional<Contact> contact_of(const TransportScene& transport, const PunctualLight& light,
+std::optional<Contact> contact_of(const PacketRoom& transport, const PunctualLight& light,
                                   const Vec3f& point) {
   if (std::holds_alternative<PhotometricLight>(light)) return std::nullopt;  // these start off their opening
   for (int k = 0; k < 3; ++k) {
@@ -63,7 +63,7 @@ std::optional<Contact> contact_of(const TransportScene& transport, const Punctua
 /// before them and the room behind them.
 class SideLooks {
  public:
-  explicit SideLooks(const RayScene& rays) : rays_(rays), numbers_(0) {}
+  explicit SideLooks(const RayTracer& rays) : rays_(rays), numbers_(0) {}
 
   void look(const Hit& hit) {
     constexpr std::uint32_t kMostLooks = 256;
@@ -84,7 +84,7 @@ class SideLooks {
   }
 
  private:
-  const RayScene& rays_;
+  const RayTracer& rays_;
   SobolSequence numbers_;
   std::uint32_t looks_ = 0, open_before_ = 0, open_behind_ = 0;
 };
@@ -92,7 +92,7 @@ class SideLooks {
 /// Books where the packets of one light end.
 class OpeningBooks {
  public:
-  OpeningBooks(const TransportScene& transport, const PunctualLight& light, const Vec3f& mouth)
+  OpeningBooks(const PacketRoom& transport, const PunctualLight& light, const Vec3f& mouth)
       : transport_(transport),
         mouth_(mouth),
         contact_(contact_of(transport, light, mouth)),
@@ -145,7 +145,7 @@ class OpeningBooks {
     return most == counts.end() ? SurfaceId() : most->first;
   }
 
-  const TransportScene& transport_;
+  const PacketRoom& transport_;
   Vec3f mouth_;
   std::optional<Contact> contact_;
   SideLooks looks_;
@@ -153,7 +153,7 @@ class OpeningBooks {
   std::uint32_t packets_ = 0, on_backs_ = 0, beyond_ = 0, touching_ = 0, seen_ = 0;
 };
 
-OpeningLoss loss_of(const TransportScene& transport, std::uint32_t light, const PunctualEmitter& emitter,
+OpeningLoss loss_of(const PacketRoom& transport, std::uint32_t light, const PunctualEmitter& emitter,
                     const Vec3f& mouth, std::uint32_t packets) {
   const PunctualLight& source = transport.scene().lights[light];
   OpeningBooks books(transport, source, mouth);
@@ -173,7 +173,7 @@ OpeningLoss loss_of(const TransportScene& transport, std::uint32_t light, const 
 
 }  // namespace
 
-std::vector<OpeningLoss> opening_losses(const TransportScene& transport, const StopToken* stop) {
+std::vector<OpeningLoss> opening_losses(const PacketRoom& transport, const StopToken* stop) {
   const std::vector<PunctualLight>& lights = transport.scene().lights;
   std::vector<OpeningLoss> losses;
   if (lights.empty()) return losses;

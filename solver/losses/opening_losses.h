@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "scenes/model/stop_check.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
 
 namespace reemit {
 
@@ -23,6 +23,6 @@ struct OpeningLoss {
 /// Of all luminaires without area but directional ones, those that lose more than one part in 1000 or lie in
 /// a surface. The error of a share is 1 % at most (4096 packets each; at least 64 where there are very many
 /// luminaires). Throws Interrupted when `stop` (may be null) is requested.
-std::vector<OpeningLoss> opening_losses(const TransportScene& transport, const StopToken* stop = nullptr);
+std::vector<OpeningLoss> opening_losses(const PacketRoom& transport, const StopToken* stop = nullptr);
 
 }  // namespace reemit

@@ -6,7 +6,7 @@
 
 #include "scenes/model/stop_check.h"
 #include "solver/shoot/flight.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -22,7 +22,7 @@ struct ProbeRay {
 /// Traces up to 16 rays as packets are traced, second looks included, and calls visit(lane, ProbeRay) for
 /// each; `source` is left 0.
 template <class Visit>
-void trace_probes(const RayScene& scene, const Ray16& rays, int count, const Visit& visit) {
+void trace_probes(const RayTracer& scene, const Ray16& rays, int count, const Visit& visit) {
   Hit16 hits;
   scene.closest16(rays, count, hits);
   scene.look_again16(rays, count, hits);
@@ -30,7 +30,7 @@ void trace_probes(const RayScene& scene, const Ray16& rays, int count, const Vis
     ProbeRay probe;
     probe.origin = rays.origin(lane);
     probe.direction = rays.direction(lane);
-    probe.met = hits.triangle[lane] != RayScene::kMiss;
+    probe.met = hits.triangle[lane] != RayTracer::kMiss;
     if (probe.met)
       probe.hit = {TriangleId(hits.triangle[lane]), hits.u[lane], hits.v[lane], hits.distance[lane],
                    hits.front[lane]};
@@ -42,8 +42,8 @@ void trace_probes(const RayScene& scene, const Ray16& rays, int count, const Vis
 /// same rays always: the random numbers are fixed. `stream` tells flights apart. Throws Interrupted when
 /// `stop` (may be null) is requested.
 template <class Visit>
-void trace_probes(const TransportScene& transport, const Flight& flight, std::uint32_t stream,
-                  const Visit& visit, const StopToken* stop = nullptr) {
+void trace_probes(const PacketRoom& transport, const Flight& flight, std::uint32_t stream, const Visit& visit,
+                  const StopToken* stop = nullptr) {
   constexpr std::uint64_t kSeed = 0;
   const FlightNumbers numbers(SamplingKind::kSobol, kSeed, 0, stream);
   std::vector<std::int64_t> quanta(16 * transport.bands());
@@ -72,7 +72,7 @@ std::string share_text(double share);
 std::string place_text(const Vec3& point);
 
 /// True if a ray that ended in `hit` met the back of a one-sided face, which absorbs everything.
-inline bool is_back(const TransportScene& transport, const Hit& hit) {
+inline bool is_back(const PacketRoom& transport, const Hit& hit) {
   return !hit.front && !transport.mesh().triangle(hit.triangle).two_sided;
 }
 

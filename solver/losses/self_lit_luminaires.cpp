@@ -63,12 +63,12 @@ class LampGroups {
 
 }  // namespace
 
-std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission,
+std::vector<SelfLitLuminaire> self_lit_luminaires(const PacketRoom& transport, const PacketSources& emission,
                                                   const StopToken* stop) {
   const Scene& scene = transport.scene();
   const ZoneMesh& mesh = transport.mesh();
   const std::size_t bands = transport.bands();
-  Emission surfaces;  // without the lights that have no area
+  PacketSources surfaces;  // without the lights that have no area
   std::vector<double> watts;
   std::vector<bool> emits(scene.surfaces.size(), false);
   for (std::size_t s = 0; s < emission.sources.size(); ++s) {
@@ -86,7 +86,7 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transpor
   if (lamps.extents().empty()) return {};
   const auto packets =
       static_cast<std::uint32_t>(std::clamp<std::size_t>(1024 * lamps.extents().size(), 4096, 65536));
-  const Flight flight = plan_emission_flight(surfaces, bands, packets, 0.5);
+  const Flight flight = plan_first_flight(surfaces, bands, packets, 0.5);
   std::map<std::size_t, double> sent;
   std::map<std::size_t, double> kept;
   const auto visit = [&](const ProbeRay& probe) {

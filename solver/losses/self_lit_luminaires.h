@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "scenes/model/stop_check.h"
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 
 namespace reemit {
 
@@ -16,7 +16,7 @@ struct SelfLitLuminaire {
 /// Lamps smaller than the room that send a quarter of their power or more onto themselves: closed ones whose
 /// inner side emits. A room whose walls emit is none. The error of a share is 2 % at most. Throws Interrupted
 /// when `stop` (may be null) is requested.
-std::vector<SelfLitLuminaire> self_lit_luminaires(const TransportScene& transport, const Emission& emission,
+std::vector<SelfLitLuminaire> self_lit_luminaires(const PacketRoom& transport, const PacketSources& emission,
                                                   const StopToken* stop = nullptr);
 
 }  // namespace reemit

@@ -57,7 +57,7 @@ Eigen::VectorXd FormFactors::row_sums() const {
 
 class FormFactorBuilder {
  public:
-  FormFactorBuilder(const ZoneMesh& mesh, const RayScene& rays, const FormFactorSettings& settings)
+  FormFactorBuilder(const ZoneMesh& mesh, const RayTracer& rays, const FormFactorSettings& settings)
       : settings_(settings),
         sieve_(mesh, kSieveTolerance * rays.metres_per_unit()),
         visibility_(rays, settings.seed) {
@@ -89,7 +89,7 @@ class FormFactorBuilder {
  private:
   /// Points nearer to a plane than this [normalised units] cannot be told from points on it by rays, which
   /// start as far away.
-  static constexpr double kSieveTolerance = RayScene::kLift;
+  static constexpr double kSieveTolerance = RayTracer::kLift;
 
   void fill(const std::function<void(double)>& progress, const std::atomic<bool>& interrupt) {
     const std::size_t zones = polygons_.size();
@@ -192,7 +192,7 @@ class FormFactorBuilder {
   FormFactors result_;
 };
 
-FormFactors compute_form_factors(const ZoneMesh& mesh, const RayScene& rays,
+FormFactors compute_form_factors(const ZoneMesh& mesh, const RayTracer& rays,
                                  const FormFactorSettings& settings,
                                  const std::function<void(double)>& progress,
                                  const std::atomic<bool>& interrupt) {

@@ -11,7 +11,7 @@
 #include "solver/matrix/leaks.h"
 #include "solver/matrix/symmetric_table.h"
 #include "solver/solution/form_factor_report.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -57,7 +57,7 @@ struct FormFactorSettings {
 /// arena of the caller. `progress`, if any, gets the share done [0,1], from one thread at a time.
 /// Throws InputError for more zones than kMostZones and for curved zones, ResourceError when the table does
 /// not fit into memory, Interrupted when `interrupt` becomes true.
-FormFactors compute_form_factors(const ZoneMesh& mesh, const RayScene& rays,
+FormFactors compute_form_factors(const ZoneMesh& mesh, const RayTracer& rays,
                                  const FormFactorSettings& settings,
                                  const std::function<void(double)>& progress,
                                  const std::atomic<bool>& interrupt);

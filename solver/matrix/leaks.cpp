@@ -10,7 +10,7 @@
 #include "solver/matrix/zone_points.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"
-#include "solver/shoot/emission.h"
+#include "solver/shoot/packet_sources.h"
 
 namespace reemit {
 namespace {
@@ -22,7 +22,7 @@ std::uint32_t nearest_axis(const Vec3f& direction) {
 }
 
 /// Account in which a ray ends; nothing if it meets a zone.
-std::optional<std::uint32_t> end_of_ray(const RayScene& rays, const Vec3f& origin, const Vec3f& direction) {
+std::optional<std::uint32_t> end_of_ray(const RayTracer& rays, const Vec3f& origin, const Vec3f& direction) {
   Hit hit;
   if (!rays.closest(origin, direction, hit)) return nearest_axis(direction);
   const BaseTriangle& triangle = rays.mesh().triangle(hit.triangle);
@@ -41,7 +41,7 @@ void count(std::vector<LeakAccount>& accounts, std::uint32_t account) {
 
 }  // namespace
 
-ZoneLeaks trace_leaks(const RayScene& rays, std::uint64_t seed) {
+ZoneLeaks trace_leaks(const RayTracer& rays, std::uint64_t seed) {
   const ZoneMesh& mesh = rays.mesh();
   std::vector<std::vector<LeakAccount>> leaks(mesh.zone_count());
   tbb::parallel_for(std::size_t{0}, mesh.zone_count(), [&](std::size_t z) {
@@ -58,7 +58,7 @@ ZoneLeaks trace_leaks(const RayScene& rays, std::uint64_t seed) {
   return ZoneLeaks(std::move(leaks));
 }
 
-std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const RayScene& rays,
+std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const RayTracer& rays,
                                            std::uint64_t seed) {
   std::vector<LeakAccount> leaks;
   const SobolSequence numbers(seed);

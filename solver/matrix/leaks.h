@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenes/model/luminaire.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -34,11 +34,11 @@ class ZoneLeaks {
   std::vector<std::vector<LeakAccount>> of_zone_;
 };
 
-ZoneLeaks trace_leaks(const RayScene& rays, std::uint64_t seed);
+ZoneLeaks trace_leaks(const RayTracer& rays, std::uint64_t seed);
 
 inline constexpr std::uint32_t kRaysPerLight = 16384;
 /// The same for kRaysPerLight rays of a luminaire without area, distributed as its power.
-std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const RayScene& rays,
+std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const RayTracer& rays,
                                            std::uint64_t seed);
 
 }  // namespace reemit

@@ -32,7 +32,7 @@ struct Powers {
 
 }  // namespace
 
-void book_matrix_solution(const TransportScene& transport, const Emission& emission,
+void book_matrix_solution(const PacketRoom& transport, const PacketSources& emission,
                           const FormFactors& factors, const RowMatrix& radiosity, const RowMatrix& irradiance,
                           const std::vector<LuminaireLeak>& light_losses, std::int64_t batches,
                           EnergyAudit& audit) {

@@ -3,8 +3,8 @@
 
 #include "solver/matrix/form_factors.h"
 #include "solver/matrix/leaks.h"
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 #include "solver/solution/energy_audit.h"
 
 namespace reemit {
@@ -20,7 +20,7 @@ struct LuminaireLeak {
 /// account is rounded to quanta. What is then missing from the emitted power goes to `unshot`, so that the
 /// books balance: roundings, the residual of the system, and what rows whose sums are off by sampling gain or
 /// lose; it may be negative. `radiosity` and `irradiance` [W/m2]: zone x band.
-void book_matrix_solution(const TransportScene& transport, const Emission& emission,
+void book_matrix_solution(const PacketRoom& transport, const PacketSources& emission,
                           const FormFactors& factors, const RowMatrix& radiosity, const RowMatrix& irradiance,
                           const std::vector<LuminaireLeak>& light_losses, std::int64_t batches,
                           EnergyAudit& audit);

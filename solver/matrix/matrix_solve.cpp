@@ -48,10 +48,10 @@ struct ZonalSystem {
   }
 };
 
-void add_punctual_lights(const TransportScene& transport, std::uint64_t seed, ZonalSystem& system) {
+void add_punctual_lights(const PacketRoom& transport, std::uint64_t seed, ZonalSystem& system) {
   const std::vector<PunctualLight>& lights = transport.lights();
   for (std::size_t l = 0; l < lights.size(); ++l) {
-    const Spectrum& emission = emission_of(lights[l]);
+    const Spectrum& emission = strength_of(lights[l]);
     const Spectrum power = light_power(lights[l], transport.rays().metres_per_unit());
     Eigen::Index band = 0;
     if (!(emission.maxCoeff(&band) > 0)) continue;
@@ -75,8 +75,7 @@ void add_punctual_lights(const TransportScene& transport, std::uint64_t seed, Zo
             .mean();
 }
 
-ZonalSystem make_system(const TransportScene& transport, const FormFactors& factors,
-                        const Solution& solution) {
+ZonalSystem make_system(const PacketRoom& transport, const FormFactors& factors, const Solution& solution) {
   const Eigen::Index zones = to_index(factors.zones());
   const Eigen::Index bands = to_index(transport.bands());
   ZonalSystem system{factors,
@@ -182,7 +181,7 @@ void store(const RowMatrix& direct, const RowMatrix& total, const ReplicateNoise
 
 }  // namespace
 
-void solve_by_matrix(const TransportScene& transport, const Emission& emission,
+void solve_by_matrix(const PacketRoom& transport, const PacketSources& emission,
                      const std::function<void(double)>& progress, const std::atomic<bool>& interrupt,
                      Solution& solution) {
   const std::uint64_t seed = solution.settings.seed;

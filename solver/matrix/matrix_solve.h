@@ -2,8 +2,8 @@
 #include <atomic>
 #include <functional>
 
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 #include "solver/solution/solution.h"
 
 namespace reemit {
@@ -15,7 +15,7 @@ namespace reemit {
 /// for the zones is stored as the spread of 16 batches. Fills sums, audit, form_factors, record.rays and
 /// record.stopped of the solution; runs in the task arena of the caller. Throws InputError when the system
 /// has no finite solution, and what compute_form_factors throws.
-void solve_by_matrix(const TransportScene& transport, const Emission& emission,
+void solve_by_matrix(const PacketRoom& transport, const PacketSources& emission,
                      const std::function<void(double)>& progress, const std::atomic<bool>& interrupt,
                      Solution& solution);
 

@@ -43,7 +43,7 @@ struct FanTriangle {
 /// A facing part as a fan of triangles in the space of rays.
 class Fan {
  public:
-  Fan(const ConvexPolygon& part, const RayScene& rays, const ZonePoints& zone) : zone_(&zone) {
+  Fan(const ConvexPolygon& part, const RayTracer& rays, const ZonePoints& zone) : zone_(&zone) {
     std::array<Vec3f, ConvexPolygon::kMostCorners> p;
     middle_ = rays.normalised(part.middle());
     corners_ = part.count;
@@ -67,7 +67,7 @@ class Fan {
   std::size_t corners() const { return corners_; }
   const Vec3f& near_corner(std::size_t k) const { return near_corner_[k]; }
   const ZonePoints& zone() const { return *zone_; }
-  Vec3f lifted(const Vec3f& point) const { return RayScene::lifted(point, zone_->normal(), middle_); }
+  Vec3f lifted(const Vec3f& point) const { return RayTracer::lifted(point, zone_->normal(), middle_); }
   /// Triangle chosen in proportion to its area; `u` is then uniform again.
   const FanTriangle& pick(float& u) const {
     float left = u * area_;
@@ -112,7 +112,7 @@ struct WeightedRay {
   bool arrived = false;
 };
 
-WeightedRay look_in_solid_angle(const RayScene& rays, const Fan& from, const Fan& to,
+WeightedRay look_in_solid_angle(const RayTracer& rays, const Fan& from, const Fan& to,
                                 const SobolSequence& numbers, std::uint32_t index) {
   const Vec3f x = from.point(numbers.sample(index, 0), numbers.sample(index, 1));
   float u = numbers.sample(index, 2);
@@ -149,7 +149,7 @@ VisibleShare share_of_parts(std::span<const Tally> parts) {
 }
 
 /// Share of a pair that first looks found uniform. Its rays count one by one, as if they were independent.
-VisibleShare checked_share(const RayScene& rays, const Fan& a, const Fan& b, std::uint64_t seed,
+VisibleShare checked_share(const RayTracer& rays, const Fan& a, const Fan& b, std::uint64_t seed,
                            std::uint32_t count) {
   const SobolSequence numbers(seed);
   std::array<Tally, kMostCheckRays> tallies;
@@ -169,7 +169,7 @@ VisibleShare checked_share(const RayScene& rays, const Fan& a, const Fan& b, std
 }
 
 /// Share of a pair that first looks found mixed.
-VisibleShare mixed_share(const RayScene& rays, const Fan& a, const Fan& b,
+VisibleShare mixed_share(const RayTracer& rays, const Fan& a, const Fan& b,
                          const std::array<std::uint64_t, kScrambles>& seeds, std::uint32_t per_scramble) {
   std::array<Tally, kScrambles> tallies;
   for (std::size_t s = 0; s < kScrambles; ++s) {

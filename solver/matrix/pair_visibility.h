@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "solver/matrix/polygon_form_factor.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -23,13 +23,13 @@ struct VisibleShare {
 /// and are weighted by the cosine: the weights are bounded even where zones touch.
 class PairVisibility {
  public:
-  PairVisibility(const RayScene& rays, std::uint64_t seed) : rays_(&rays), seed_(seed) {}
+  PairVisibility(const RayTracer& rays, std::uint64_t seed) : rays_(&rays), seed_(seed) {}
 
   /// `factor`: the larger of the two unoccluded form factors of the pair.
   VisibleShare look(ZoneId i, ZoneId j, const FacingPair& pair, double factor) const;
 
  private:
-  const RayScene* rays_;
+  const RayTracer* rays_;
   std::uint64_t seed_;
 };
 

@@ -13,16 +13,16 @@ namespace {
 constexpr std::uint32_t kPointsPerScramble =
     PunctualIrradiance::kRaysPerZone / PunctualIrradiance::kReplicates;
 
-bool lit(const RayScene& rays, const LuminaireSample& sample, const Vec3f& origin) {
+bool lit(const RayTracer& rays, const LuminaireSample& sample, const Vec3f& origin) {
   return sample.at_infinity ? rays.escapes(origin, sample.target) : rays.visible(origin, sample.target);
 }
 
 }  // namespace
 
-PunctualIrradiance punctual_irradiance(const PunctualLight& light, const TransportScene& transport,
+PunctualIrradiance punctual_irradiance(const PunctualLight& light, const PacketRoom& transport,
                                        std::uint64_t seed, double power_per_unit) {
   const ZoneMesh& mesh = transport.mesh();
-  const RayScene& rays = transport.rays();
+  const RayTracer& rays = transport.rays();
   const PunctualEmitter emitter = make_punctual_emitter(light, rays);
   PunctualIrradiance result;
   const auto zones = static_cast<Eigen::Index>(mesh.zone_count());

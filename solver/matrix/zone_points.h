@@ -4,7 +4,7 @@
 #include "mesh/zones/zone_mesh.h"
 #include "solver/matrix/convex_polygon.h"
 #include "solver/sampling/counter_rng.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -22,7 +22,7 @@ inline std::uint64_t matrix_seed(std::uint64_t seed, MatrixNumbers what, std::ui
 /// Points of a zone as starts of rays.
 class ZonePoints {
  public:
-  ZonePoints(const ZoneMesh& mesh, const RayScene& rays, ZoneId zone) {
+  ZonePoints(const ZoneMesh& mesh, const RayTracer& rays, ZoneId zone) {
     const TriangleId t = mesh.zone_triangle(zone);
     const bool front = mesh.zone_is_front(zone);
     const auto corners = mesh.zone_barycentrics(zone);
@@ -35,7 +35,7 @@ class ZonePoints {
   const Vec3f& normal() const { return normal_; }
   /// Start of a ray at barycentric point (u,v) of the zone [normalised units].
   Vec3f origin(float u, float v) const {
-    return RayScene::lifted((1 - u - v) * corner_[0] + u * corner_[1] + v * corner_[2], normal_, middle_);
+    return RayTracer::lifted((1 - u - v) * corner_[0] + u * corner_[1] + v * corner_[2], normal_, middle_);
   }
 
  private:

@@ -2,7 +2,7 @@
 #include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 #include "solver/reflect/surface_model.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -20,14 +20,14 @@ class Room {
 
   const Scene& scene() const { return *scene_; }
   const ZoneMesh& mesh() const { return *mesh_; }
-  const RayScene& rays() const { return rays_; }
+  const RayTracer& rays() const { return rays_; }
   const SurfaceModel& surfaces() const { return surfaces_; }
   std::size_t band_count() const { return scene_->bands.count(); }
 
  private:
   const Scene* scene_;
   const ZoneMesh* mesh_;
-  RayScene rays_;
+  RayTracer rays_;
   SurfaceModel surfaces_;
 };
 

@@ -5,7 +5,9 @@
 namespace reemit {
 
 PreparedRoom::PreparedRoom(const Scene& scene, Solution& solution, const WorkWatch& preparing)
-    : room((preparing.at(0), scene), solution.mesh), transport(room), emission(collect_emission(transport)) {
+    : room((preparing.at(0), scene), solution.mesh),
+      transport(room),
+      emission(collect_packet_sources(transport)) {
   for (std::size_t b = 0; b < scene.bands.count(); ++b)
     solution.audit.bands[b].watts_per_quantum = emission.watts_per_quantum[b];
   if (is_dark()) {

@@ -2,8 +2,8 @@
 #include "scenes/model/scene.h"
 #include "scenes/model/work_watch.h"
 #include "solver/room/room.h"
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 #include "solver/solution/solution.h"
 
 namespace reemit {
@@ -22,8 +22,8 @@ struct PreparedRoom {
   bool is_dark() const { return emission.sources.empty(); }
 
   Room room;
-  TransportScene transport;
-  Emission emission;
+  PacketRoom transport;
+  PacketSources emission;
 };
 
 }  // namespace reemit

@@ -14,14 +14,14 @@ namespace {
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
 /// Of one batch: its books, and what zones have caught and have yet to send on in a sweep.
-std::size_t bytes_of_batch(const TransportScene& transport) {
+std::size_t bytes_of_batch(const PacketRoom& transport) {
   constexpr std::size_t kAccountsPerValue = 4;
   return kAccountsPerValue * transport.zones() * transport.bands() * sizeof(std::int64_t);
 }
 
 }  // namespace
 
-BatchesAhead::BatchesAhead(const TransportScene& transport, const Emission& emission,
+BatchesAhead::BatchesAhead(const PacketRoom& transport, const PacketSources& emission,
                            const SolverSettings& settings, int threads)
     : transport_(transport), emission_(emission), settings_(settings) {
   // Threads inside a batch wait for each other at every sweep; batches are run in vain when the run ends, and

@@ -18,7 +18,7 @@ class BatchesAhead {
  public:
   /// `threads` >= 1 are divided among the batches: each has about as many threads as there are batches that
   /// run at once, and one more waits its turn.
-  BatchesAhead(const TransportScene& transport, const Emission& emission, const SolverSettings& settings,
+  BatchesAhead(const PacketRoom& transport, const PacketSources& emission, const SolverSettings& settings,
                int threads);
   ~BatchesAhead();  ///< Cuts off what is on its way.
   BatchesAhead(const BatchesAhead&) = delete;
@@ -49,8 +49,8 @@ class BatchesAhead {
     std::future<void> done;
   };
 
-  const TransportScene& transport_;
-  const Emission& emission_;
+  const PacketRoom& transport_;
+  const PacketSources& emission_;
   const SolverSettings& settings_;
   std::size_t most_ = 1;
   int threads_per_batch_ = 1;

@@ -18,7 +18,7 @@ constexpr std::uint32_t kMostProbeBounces = 64;
 /// Follows light of one band from luminaires until it meets anything that takes some of it.
 class WayOut {
  public:
-  WayOut(const TransportScene& transport, std::size_t band, std::uint64_t seed)
+  WayOut(const PacketRoom& transport, std::size_t band, std::uint64_t seed)
       : transport_(transport),
         band_(band),
         numbers_(SamplingKind::kSobol, seed, 0, 0),
@@ -26,7 +26,7 @@ class WayOut {
         open_(transport.zones(), false) {}
 
   /// True if light of this source is absorbed or gets out; else surfaces() are those that it met.
-  bool exists(const EmissionSource& source) {
+  bool exists(const PacketSource& source) {
     if (source.zone.valid() && open_[source.zone.index()]) return true;
     Flight flight;
     flight.add(source, kProbes);
@@ -61,7 +61,7 @@ class WayOut {
       transport_.rays().closest16(rays, 16, hits);
       transport_.rays().look_again16(rays, 16, hits);
       for (int lane = 0; lane < 16; ++lane) {
-        if (hits.triangle[lane] == RayScene::kMiss) return true;
+        if (hits.triangle[lane] == RayTracer::kMiss) return true;
         const ZoneId zone =
             transport_.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
         if (!zone.valid() || open_[zone.index()]) return true;
@@ -77,7 +77,7 @@ class WayOut {
     return false;
   }
 
-  const TransportScene& transport_;
+  const PacketRoom& transport_;
   std::size_t band_;
   FlightNumbers numbers_;
   CounterRng rng_;
@@ -85,7 +85,7 @@ class WayOut {
   std::vector<ZoneId> met_;
 };
 
-std::string name_of(const EmissionSource& source, const TransportScene& transport) {
+std::string name_of(const PacketSource& source, const PacketRoom& transport) {
   const Scene& scene = transport.scene();
   if (source.zone.valid()) return scene.surfaces[transport.mesh().zone_surface(source.zone).index()].name;
   return std::visit([](const auto& light) { return light.name; }, scene.lights[source.light]);
@@ -105,7 +105,7 @@ std::string list_of(const std::set<std::size_t>& surfaces, const Scene& scene) {
 
 }  // namespace
 
-void refuse_closed_perfect_reflector(const TransportScene& transport, const Emission& emission,
+void refuse_closed_perfect_reflector(const PacketRoom& transport, const PacketSources& emission,
                                      std::uint64_t seed) {
   const Scene& scene = transport.scene();
   const std::size_t bands = transport.bands();

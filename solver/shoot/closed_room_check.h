@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 
 namespace reemit {
 
@@ -11,7 +11,7 @@ namespace reemit {
 /// of the part and the band. Each luminaire (zone by zone) is looked at by itself, so a sealed cell is found
 /// within a room that absorbs. A part with a way out passes; one whose way out is met by less than one in
 /// some 100,000 bounces may be taken for sealed. Sealed parts in the dark are of no concern.
-void refuse_closed_perfect_reflector(const TransportScene& transport, const Emission& emission,
+void refuse_closed_perfect_reflector(const PacketRoom& transport, const PacketSources& emission,
                                      std::uint64_t seed);
 
 }  // namespace reemit

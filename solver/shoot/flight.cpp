@@ -16,8 +16,8 @@ std::uint64_t scramble_seed(std::uint64_t seed, std::uint32_t batch, std::uint32
 
 }  // namespace
 
-Flight plan_emission_flight(const Emission& emission, std::size_t bands, std::uint32_t packets,
-                            double offset) {
+Flight plan_first_flight(const PacketSources& emission, std::size_t bands, std::uint32_t packets,
+                         double offset) {
   Flight flight;
   flight.quanta = emission.quanta;
   double total = 0;
@@ -80,7 +80,7 @@ void FlightNumbers::get_directions16(std::uint32_t first, UniformLanes& numbers)
   get16(first, numbers);
 }
 
-FlightCursor::FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet,
+FlightCursor::FlightCursor(const PacketRoom& transport, const Flight& flight, std::uint32_t first_packet,
                            const ArrivalPoints* arrivals)
     : transport_(transport),
       flight_(flight),
@@ -118,14 +118,14 @@ bool FlightCursor::put_arrivals(ZoneId zone, std::uint32_t packet, int first, in
 
 void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
                            std::int64_t* quanta) {
-  std::array<const EmissionSource*, 16> special{};  // those that do not send packets as zones reflect them
+  std::array<const PacketSource*, 16> special{};  // those that do not send packets as zones reflect them
   bool any_special = false;
   bool any_uniform = false;  // points are to be drawn
   for (int lane = 0; lane < count;) {
     const std::uint32_t packet = first + static_cast<std::uint32_t>(lane);
     while (packet >= end_) enter_source(current_ + 1);
     const int until = static_cast<int>(std::min(end_ - first, static_cast<std::uint32_t>(count)));
-    const EmissionSource& s = flight_.sources[current_];
+    const PacketSource& s = flight_.sources[current_];
     if (arrivals_ == nullptr || !put_arrivals(s.zone, packet, lane, until)) {
       if (s.zone.valid()) transport_.put_zone(s.zone, lanes_, lane, until);
       any_uniform = true;
@@ -146,7 +146,7 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
   transport_.start(lanes_, x, rays);
   if (!any_special) return;
   for (int lane = 0; lane < count; ++lane) {
-    const EmissionSource* s = special[static_cast<std::size_t>(lane)];
+    const PacketSource* s = special[static_cast<std::size_t>(lane)];
     if (s == nullptr) continue;
     if (s->zone.valid()) {
       transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane],

@@ -5,8 +5,8 @@
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/sobol.h"
 #include "solver/shoot/arrival_points.h"
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 #include "solver/solution/solver_settings.h"
 #include "solver/tally/batch_books.h"
 
@@ -15,7 +15,7 @@ namespace reemit {
 /// Packets that set out together: source s sends packets first_packet[s] .. first_packet[s+1]-1, which share
 /// its quanta.
 struct Flight {
-  std::vector<EmissionSource> sources;
+  std::vector<PacketSource> sources;
   std::vector<std::uint32_t> first_packet{0};  ///< One more entry than sources.
   std::vector<std::int64_t> quanta;            ///< [source * bands + band]
 
@@ -25,7 +25,7 @@ struct Flight {
     first_packet.assign(1, 0);
     quanta.clear();
   }
-  void add(EmissionSource source, std::uint32_t packet_count) {
+  void add(PacketSource source, std::uint32_t packet_count) {
     sources.push_back(source);
     first_packet.push_back(first_packet.back() + packet_count);
   }
@@ -33,8 +33,8 @@ struct Flight {
 
 /// The first flight of a batch: `packets` packets over the luminaires in proportion to power, at least one
 /// each. Sources keep exactly their own power; only how many packets carry it depends on `offset` in [0,1).
-Flight plan_emission_flight(const Emission& emission, std::size_t bands, std::uint32_t packets,
-                            double offset);
+Flight plan_first_flight(const PacketSources& emission, std::size_t bands, std::uint32_t packets,
+                         double offset);
 
 /// Books the power of packets begin .. end-1, which stay where they are, as unshot. Any thread may call it.
 void leave_unshot(const Flight& flight, std::uint32_t begin, std::uint32_t end, BatchBooks& books);
@@ -62,7 +62,7 @@ class FlightCursor {
  public:
   /// Starts at packet `first_packet`, which the flight has. Zones send their packets from the points where
   /// others arrived, if given; else, and where nothing did, from uniform points.
-  FlightCursor(const TransportScene& transport, const Flight& flight, std::uint32_t first_packet,
+  FlightCursor(const PacketRoom& transport, const Flight& flight, std::uint32_t first_packet,
                const ArrivalPoints* arrivals = nullptr);
 
   /// Starts packets first .. first+count-1 (first is a multiple of 16, count <= 16).
@@ -76,7 +76,7 @@ class FlightCursor {
   /// nothing arrived in the zone.
   bool put_arrivals(ZoneId zone, std::uint32_t packet, int first, int last);
 
-  const TransportScene& transport_;
+  const PacketRoom& transport_;
   const Flight& flight_;
   const ArrivalPoints* arrivals_;
   std::size_t bands_;

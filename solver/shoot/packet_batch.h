@@ -3,8 +3,8 @@
 #include <functional>
 
 #include "scenes/model/stop_token.h"
-#include "solver/shoot/emission.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 #include "solver/solution/solver_settings.h"
 #include "solver/tally/batch_books.h"
 
@@ -23,8 +23,8 @@ using RayObserver = std::function<void(const RayBlock& block)>;
 
 /// Everything one batch needs to know.
 struct BatchTask {
-  const TransportScene& transport;
-  const Emission& emission;
+  const PacketRoom& transport;
+  const PacketSources& emission;
   const SolverSettings& settings;
   std::uint32_t batch;    ///< Number of the batch: selects its random numbers.
   std::uint32_t packets;  ///< Aimed at; each luminaire zone sends at least one.

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
 #include "solver/tally/batch_books.h"
 
 namespace reemit {
@@ -56,7 +56,7 @@ struct PacketBlock {
   std::vector<std::int64_t> power;  ///< [lane * bands + band]
 };
 
-/// Packets whose rays ended in doubt (RayScene::is_doubtful), waiting for their second look until there are
+/// Packets whose rays ended in doubt (RayTracer::is_doubtful), waiting for their second look until there are
 /// enough for a block: traced one by one beside others, they would cost as much as a whole block.
 class DoubtfulPackets {
  public:
@@ -64,7 +64,7 @@ class DoubtfulPackets {
 
   std::size_t count() const { return id_.size(); }
 
-  void add(const RayScene& scene, const Ray16& rays, const Hit16& hits, int lane, std::uint32_t id,
+  void add(const RayTracer& scene, const Ray16& rays, const Hit16& hits, int lane, std::uint32_t id,
            const std::int64_t* power) {
     origin_.push_back(rays.origin(lane));
     direction_.push_back(scene.second_direction(rays.direction(lane), hits, lane));

@@ -24,10 +24,10 @@ void start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restric
     const float my = zones.middle[1][i] - py;
     const float mz = zones.middle[2][i] - pz;
     const float distance = std::sqrt(mx * mx + my * my + mz * mz);
-    const float inset = RayScene::inset_share(distance);
-    rays.ox[i] = px + RayScene::kLift * zones.normal[0][i] + inset * mx;
-    rays.oy[i] = py + RayScene::kLift * zones.normal[1][i] + inset * my;
-    rays.oz[i] = pz + RayScene::kLift * zones.normal[2][i] + inset * mz;
+    const float inset = RayTracer::inset_share(distance);
+    rays.ox[i] = px + RayTracer::kLift * zones.normal[0][i] + inset * mx;
+    rays.oy[i] = py + RayTracer::kLift * zones.normal[1][i] + inset * my;
+    rays.oz[i] = pz + RayTracer::kLift * zones.normal[2][i] + inset * mz;
 
     // Concentric map [SC97]: the angle stays within a quarter of pi, where short polynomials give sine and
     // cosine to the last bits of a float.

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "scenes/model/vec.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -15,7 +15,7 @@ struct alignas(64) ZoneLanes {
   std::uint32_t zone[16];    ///< Where the zone is curved; else, at feet, the triangle that it is in.
   std::uint32_t curved = 0;  ///< Lanes of curved zones as bits; the geometry above is not theirs.
   std::uint32_t points = 0;  ///< Of these, lanes of given points: zone is the triangle, corner u, v and side.
-  std::uint32_t feet = 0;    ///< Lanes of flat zones that rays leave clear of shapes (RayScene::is_foot).
+  std::uint32_t feet = 0;    ///< Lanes of flat zones that rays leave clear of shapes (RayTracer::is_foot).
 };
 
 /// Four uniform numbers of each of 16 packets: u[dimension][lane].
@@ -24,7 +24,7 @@ struct alignas(64) UniformLanes {
 };
 
 /// Makes 16 rays from uniform points of the zones (u[0], u[1]) in cosine-distributed directions (u[2], u[3]).
-/// Lane by lane the same as sample_triangle, RayScene::lifted and sample_cosine_hemisphere.
+/// Lane by lane the same as sample_triangle, RayTracer::lifted and sample_cosine_hemisphere.
 void start_rays(const ZoneLanes& zones, const UniformLanes& numbers, Ray16& rays);
 
 }  // namespace reemit

@@ -31,14 +31,14 @@ struct Account {
 
 /// Accounts of 16 packets. Their memory is asked for at once, before the first is needed: with many zones the
 /// books are larger than the caches.
-void find_accounts(const TransportScene& transport, const Hit16& hits, int count,
+void find_accounts(const PacketRoom& transport, const Hit16& hits, int count,
                    SweepAccounts::Incident& incident, bool shared, bool second_look, ArrivalPoints* arrivals,
                    const std::uint32_t* bits, BatchBooks& books, Account* accounts) {
   const std::size_t bands = transport.bands();
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t t = hits.triangle[lane];
     accounts[lane] = {};
-    if (t == RayScene::kMiss) continue;
+    if (t == RayTracer::kMiss) continue;
     const ZoneId zone = transport.zone_of(t, hits.u[lane], hits.v[lane], hits.front[lane]);
     if (!second_look && (!zone.valid() || transport.rays().is_at_edge(t, hits.u[lane], hits.v[lane])))
       continue;
@@ -63,7 +63,7 @@ void find_accounts(const TransportScene& transport, const Hit16& hits, int count
 /// unshot.
 bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t number, ArrivalPoints* arrivals,
                   SweepAccounts& sweep, BatchBooks& books) {
-  const TransportScene& transport = batch.transport;
+  const PacketRoom& transport = batch.transport;
   const std::size_t bands = transport.bands();
   const bool shared = accounts_are_shared(sweep.incident.size());
   const FlightNumbers numbers(batch.settings.sampling, batch.settings.seed, batch.batch, number);
@@ -133,7 +133,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
 }
 
 /// Moves what a sweep brought in into `part` of the books; the reflected share becomes unshot power.
-void reflect(const TransportScene& transport, SweepAccounts& sweep, std::vector<std::int64_t>& part,
+void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std::int64_t>& part,
              BatchBooks& books) {
   const std::size_t bands = transport.bands();
   const ZoneMesh& mesh = transport.mesh();
@@ -179,13 +179,13 @@ void reflect(const TransportScene& transport, SweepAccounts& sweep, std::vector<
 }  // namespace
 
 bool shoot_batch(const BatchTask& task, BatchBooks& books) {
-  const TransportScene& transport = task.transport;
+  const PacketRoom& transport = task.transport;
   const std::size_t bands = transport.bands();
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
   SweepAccounts accounts(transport.zones(), bands);
 
   Flight flight =
-      plan_emission_flight(task.emission, bands, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
+      plan_first_flight(task.emission, bands, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
   for (std::size_t i = 0; i < flight.quanta.size(); ++i) books.emitted[i % bands] += flight.quanta[i];
   const auto emitted =
       static_cast<double>(std::accumulate(books.emitted.begin(), books.emitted.end(), std::int64_t{0}));

@@ -151,7 +151,7 @@ class WalkTask {
     transport_.rays().closest16(rays, count, hits_);
     ZoneId zone[16];
     for (int lane = 0; lane < count; ++lane) {
-      if (hits_.triangle[lane] == RayScene::kMiss) continue;
+      if (hits_.triangle[lane] == RayTracer::kMiss) continue;
       zone[lane] = transport_.zone_of(hits_.triangle[lane], hits_.u[lane], hits_.v[lane], hits_.front[lane]);
       // With many zones the books are larger than the caches.
       if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * bands_], 1);
@@ -166,7 +166,7 @@ class WalkTask {
         count_event(books_.events.second_looks);
         continue;
       }
-      if (hits_.triangle[lane] == RayScene::kMiss) {
+      if (hits_.triangle[lane] == RayTracer::kMiss) {
         for (std::size_t b = 0; b < bands_; ++b)
           local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
         continue;
@@ -213,7 +213,7 @@ class WalkTask {
       book(books_.unshot[i % bands_], waiting_.quanta[i]);
   }
 
-  const TransportScene& transport_;
+  const PacketRoom& transport_;
   std::size_t bands_;
   CounterRng rng_;
   std::uint32_t batch_;
@@ -248,7 +248,7 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
   const std::size_t bands = task.transport.bands();
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
   const Flight flight =
-      plan_emission_flight(task.emission, bands, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
+      plan_first_flight(task.emission, bands, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
   const FlightNumbers numbers(task.settings.sampling, task.settings.seed, task.batch, 0);
   for (std::size_t i = 0; i < flight.quanta.size(); ++i) books.emitted[i % bands] += flight.quanta[i];
   books.packets += flight.packets();

@@ -19,7 +19,7 @@ namespace {
 constexpr double kTouching = 4e-6;
 /// Distance from a mantle at which rays start beside it.
 constexpr double kBeside = 4e-6;
-/// Gap between a sphere and a face in which rays can start: several times RayScene::kLift.
+/// Gap between a sphere and a face in which rays can start: several times RayTracer::kLift.
 constexpr double kGap = 8e-6;
 /// What snapping may have moved the corners of a cut by.
 constexpr double kSnapped = 1e-4;

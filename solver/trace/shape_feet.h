@@ -10,7 +10,7 @@
 namespace reemit {
 
 /// Where curved shapes stand on flat triangles, so that neither carries light to the wrong side. Lengths are
-/// those of the corners and shapes given, normalised as in RayScene.
+/// those of the corners and shapes given, normalised as in RayTracer.
 ///
 /// A mantle (cylinder, cone) stands on a circle, but the face below is cut along a polygon inscribed in it,
 /// so a triangle outside the polygon reaches under the mantle by a circle's segment. It stays on one side all

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -20,25 +20,25 @@ struct SurfacePoint {
 };
 
 /// Geometric normal at a point of one side of a triangle or patch.
-inline Vec3f side_normal(const RayScene& rays, TriangleId t, float u, float v, bool front) {
+inline Vec3f side_normal(const RayTracer& rays, TriangleId t, float u, float v, bool front) {
   const Vec3f normal = rays.normal(t, u, v);
   return front ? normal : Vec3f(-normal);
 }
-inline Vec3f side_normal(const RayScene& rays, const SurfacePoint& x) {
+inline Vec3f side_normal(const RayTracer& rays, const SurfacePoint& x) {
   return side_normal(rays, x.triangle, x.u, x.v, x.front);
 }
 
 /// Start of a ray that leaves the point.
-inline Vec3f ray_origin(const RayScene& rays, const SurfacePoint& x) {
+inline Vec3f ray_origin(const RayTracer& rays, const SurfacePoint& x) {
   return rays.ray_origin(x.triangle, x.u, x.v, x.front);
 }
 
 /// Point with the geometric normal.
-inline SurfacePoint surface_point(const RayScene& rays, TriangleId t, float u, float v, bool front) {
+inline SurfacePoint surface_point(const RayTracer& rays, TriangleId t, float u, float v, bool front) {
   return {t, u, v, front, side_normal(rays, t, u, v, front)};
 }
 /// Where a ray of this direction (unit) met the room.
-inline SurfacePoint surface_point(const RayScene& rays, const Hit& hit, const Vec3f& direction) {
+inline SurfacePoint surface_point(const RayTracer& rays, const Hit& hit, const Vec3f& direction) {
   SurfacePoint point = surface_point(rays, hit.triangle, hit.u, hit.v, hit.front);
   point.towards = -direction;
   return point;

@@ -20,7 +20,7 @@ function(expect_refused file line header)
 endfunction()
 
 expect_refused(scenes/model/planted.h "#include \"mesh/zones/zone_mesh.h\"" "mesh/zones/zone_mesh.h")
-expect_refused(mesh/planted.cpp "#include \"solver/trace/ray_scene.h\"" "solver/trace/ray_scene.h")
+expect_refused(mesh/planted.cpp "#include \"solver/trace/ray_tracer.h\"" "solver/trace/ray_tracer.h")
 expect_refused(solver/shoot/planted.cpp "  #  include \"viewer_export/cli/commands.h\"" "viewer_export/cli/commands.h")
 expect_refused(viewer_export/vertex/planted.h "#include \"tests/support/anything.h\"" "tests/support/anything.h")
 expect_refused(solver/planted.cpp "#include \"bench/anything.h\"" "bench/anything.h")

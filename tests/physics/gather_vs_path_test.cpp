@@ -38,7 +38,7 @@ RoomBuilder furnished_room(std::uint32_t divisions) {
 /// odds below 1 in 2,000 to fail here.
 constexpr std::size_t kPointCount = 24;
 
-SurfacePoint point_number(const RayScene& rays, std::size_t i) {
+SurfacePoint point_number(const RayTracer& rays, std::size_t i) {
   const float u = i % 3 == 0 ? 0.02F : 0.31F;
   const float v = i % 2 == 0 ? 0.04F : 0.45F;
   return surface_point(rays, TriangleId((7 * i) % rays.mesh().triangle_count()), u, v, true);

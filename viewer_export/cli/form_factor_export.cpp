@@ -48,7 +48,7 @@ ExitCode export_form_factors(const FormFactorExport& options) {
   form_factor_format_of(options.output);  // refuses an unknown one before the work
   check_output_file(options.output, options.solution);
   const Solution solution = reemit::load_solution(options.solution);
-  const RayScene rays(solution.mesh);
+  const RayTracer rays(solution.mesh);
 
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;

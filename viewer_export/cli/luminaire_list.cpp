@@ -20,7 +20,7 @@ LuminaireRow row_of(const PunctualLight& light) {
   const auto [name, kind] =
       std::visit([](const auto& l) { return std::pair<std::string, std::string>(l.name, l.kKind); }, light);
   // Where the light comes from outside, its power is that of any beam one cares to cut out of it.
-  if (is_at_infinity(light)) return {name, kind, 0, Spectrum(), emission_of(light)};
+  if (is_at_infinity(light)) return {name, kind, 0, Spectrum(), strength_of(light)};
   constexpr double kAnySize = 1;
   return {name, kind, 0, light_power(light, kAnySize)};
 }

@@ -19,7 +19,7 @@ std::string where(const Camera& camera) {
 
 }  // namespace
 
-PinholeCamera::PinholeCamera(const Camera& camera, int width, int height, const RayScene& rays)
+PinholeCamera::PinholeCamera(const Camera& camera, int width, int height, const RayTracer& rays)
     : half_width_(0.5 * width), half_height_(0.5 * height) {
   if (width < 1 || height < 1 || width > 65536 || height > 65536)
     throw InputError(where(camera),

@@ -1,7 +1,7 @@
 #pragma once
 #include "scenes/model/camera.h"
 #include "scenes/model/vec.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
@@ -17,7 +17,7 @@ class PinholeCamera {
 
   /// Size of the picture in pixels. Throws InputError when a value is not finite or out of range, the eye is
   /// where it looks at, or `up` lies along the viewing direction.
-  PinholeCamera(const Camera& camera, int width, int height, const RayScene& rays);
+  PinholeCamera(const Camera& camera, int width, int height, const RayTracer& rays);
 
   /// Ray through a point of the picture [px]: (0,0) is its upper left corner, y runs down.
   Ray ray(double x, double y) const;

@@ -48,11 +48,11 @@ struct View {
 
 /// A room as the choice of eyes sees it.
 struct Surroundings {
-  const RayScene& rays;
+  const RayTracer& rays;
   RoomAxes axes;
   float low, high;  // of the room along up, normalised
 
-  Surroundings(const RayScene& rays_of_room, const Vec3& up) : rays(rays_of_room), axes(up) {
+  Surroundings(const RayTracer& rays_of_room, const Vec3& up) : rays(rays_of_room), axes(up) {
     low = high = axes.up.dot(rays.corner(TriangleId(0), 0));
     for (std::size_t t = 0; t < rays.mesh().triangle_count(); ++t)
       for (int k = 0; k < 3; ++k) {
@@ -183,7 +183,7 @@ Camera camera_of(const View& view, const Surroundings& room, double distance, st
 }
 
 /// The whole room from outside, from the side its largest triangle faces.
-Camera outside_camera(const RayScene& rays, const Vec3& up) {
+Camera outside_camera(const RayTracer& rays, const Vec3& up) {
   const ZoneMesh& mesh = rays.mesh();
   TriangleId largest(0);
   for (std::size_t t = 1; t < mesh.triangle_count(); ++t) {

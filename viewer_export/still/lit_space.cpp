@@ -5,9 +5,9 @@
 
 #include "solver/losses/probe_flight.h"
 #include "solver/sampling/warp.h"
-#include "solver/shoot/emission.h"
 #include "solver/shoot/flight.h"
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
 
 namespace reemit {
 namespace {
@@ -19,7 +19,7 @@ constexpr std::uint64_t kSeed = 0;
 constexpr float kEscape = 1;
 
 /// Packets over sources in proportion to weight, by systematic sampling: each gets its share to within one.
-Flight spread_packets(const Emission& emission, const std::vector<double>& weights, std::size_t bands) {
+Flight spread_packets(const PacketSources& emission, const std::vector<double>& weights, std::size_t bands) {
   double total = 0;
   for (const double w : weights) total += w;
   Flight flight;
@@ -38,7 +38,7 @@ Flight spread_packets(const Emission& emission, const std::vector<double>& weigh
 }
 
 /// Notes a leg; true if the side it ends on reflects.
-bool note(const TransportScene& transport, const ProbeRay& probe, LitSpace& space) {
+bool note(const PacketRoom& transport, const ProbeRay& probe, LitSpace& space) {
   space.legs.push_back({probe.origin, probe.direction, probe.met ? probe.hit.distance : kEscape});
   if (!probe.met || is_back(transport, probe.hit)) return false;
   const Vec3f normal = transport.rays().normal(probe.hit.triangle, probe.hit.u, probe.hit.v);
@@ -48,7 +48,7 @@ bool note(const TransportScene& transport, const ProbeRay& probe, LitSpace& spac
 }
 
 /// One more reflection of packets, from where they fell: the zones of a coarse mesh may reach through walls.
-std::vector<Hit> reflect(const TransportScene& transport, const std::vector<Hit>& hits, std::uint32_t stream,
+std::vector<Hit> reflect(const PacketRoom& transport, const std::vector<Hit>& hits, std::uint32_t stream,
                          LitSpace& space) {
   const FlightNumbers numbers(SamplingKind::kSobol, kSeed, 0, stream);
   std::vector<Hit> next;
@@ -72,7 +72,7 @@ std::vector<Hit> reflect(const TransportScene& transport, const std::vector<Hit>
   return next;
 }
 
-LitSpace follow(const TransportScene& transport, const Flight& flight) {
+LitSpace follow(const PacketRoom& transport, const Flight& flight) {
   LitSpace space;
   std::vector<Hit> hits;
   std::uint32_t stream = 0;
@@ -102,8 +102,8 @@ LitSpace follow(const TransportScene& transport, const Flight& flight) {
 }  // namespace
 
 LitSpace trace_light(const Room& room) {
-  const TransportScene transport(room);
-  const Emission emission = collect_emission(transport);
+  const PacketRoom transport(room);
+  const PacketSources emission = collect_packet_sources(transport);
   const std::size_t bands = transport.bands();
   std::vector<double> weights(emission.sources.size(), 0.0);
   for (std::size_t s = 0; s < weights.size(); ++s)
@@ -113,8 +113,8 @@ LitSpace trace_light(const Room& room) {
 }
 
 LitSpace trace_from_all_surfaces(const Room& room) {
-  const TransportScene transport(room);
-  Emission all;
+  const PacketRoom transport(room);
+  PacketSources all;
   std::vector<double> weights;
   for (std::size_t z = 0; z < transport.zones(); ++z) {
     all.sources.push_back({ZoneId(z)});

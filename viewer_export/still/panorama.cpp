@@ -56,7 +56,7 @@ std::uint64_t surface_cell(const Vec3f& point, const Vec3f& normal, float size) 
   return number;
 }
 
-Panorama look_around(const RayScene& rays, const RoomAxes& axes, const LitCells& lit, float cell,
+Panorama look_around(const RayTracer& rays, const RoomAxes& axes, const LitCells& lit, float cell,
                      const Vec3f& eye) {
   Panorama panorama;
   panorama.eye = eye;

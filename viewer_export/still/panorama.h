@@ -3,7 +3,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 #include "viewer_export/still/lit_space.h"
 
 namespace reemit {
@@ -54,7 +54,7 @@ struct Panorama {
   std::vector<Sight> sights;           ///< [column * kRows + row], column 0 begins at azimuth 0.
 };
 /// `cell`: size of the pieces of surface told apart, normalised.
-Panorama look_around(const RayScene& rays, const RoomAxes& axes, const LitCells& lit, float cell,
+Panorama look_around(const RayTracer& rays, const RoomAxes& axes, const LitCells& lit, float cell,
                      const Vec3f& eye);
 
 /// How a view of 78 x 60 degrees is filled. All but `variety` are shares [0,1].

@@ -129,7 +129,7 @@ void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) cons
 void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const {
   const PinholeCamera::Ray ray = camera_->ray(x, y);
   Hit hit;
-  const RayScene& rays = room_->rays();
+  const RayTracer& rays = room_->rays();
   if (!rays.closest_for_camera(ray.origin, ray.direction, hit)) return;
   const std::size_t bands = field_.band_count();
   const SurfaceModel& surfaces = room_->surfaces();
@@ -233,7 +233,7 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const 
 }
 
 SurfacePoint TileRenderer::seen_point(const Hit& hit, const Vec3f& direction) const {
-  const RayScene& rays = room_->rays();
+  const RayTracer& rays = room_->rays();
   SurfacePoint point = surface_point(rays, hit, direction);
   const BaseMesh& base = room_->mesh().base();
   const BaseTriangle& triangle = room_->mesh().triangle(hit.triangle);

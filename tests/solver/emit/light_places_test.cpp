@@ -20,7 +20,7 @@ Vec3 placed(const PunctualLight& light) {
   room.quad(both, {Vec3(1, 1, 1), Vec3(1, 3, 1), Vec3(1, 3, 3), Vec3(1, 1, 3)}, 1);
   room.scene().lights.push_back(light);
   const MeshResult built = room.mesh();
-  const RayScene rays(built.mesh);
+  const RayTracer rays(built.mesh);
   const PunctualLight moved = lights_before_faces(room.scene(), rays).at(0);
   return std::visit(
       [](const auto& l) -> Vec3 {

@@ -26,7 +26,7 @@ class Emitters : public ::testing::Test {
     const MaterialId grey = room_.material("grey", 0.5);
     room_.box(Vec3(-4, -4, -4), Vec3(4, 4, 4), {grey, grey, grey, grey, grey, grey}, 1);
     mesh_ = std::make_unique<ZoneMesh>(room_.mesh().mesh);
-    rays_ = std::make_unique<RayScene>(*mesh_);
+    rays_ = std::make_unique<RayTracer>(*mesh_);
   }
 
   PhotometricLight light(std::shared_ptr<const IntensityTable> table, const LuminousOpening& o) const {
@@ -39,7 +39,7 @@ class Emitters : public ::testing::Test {
     return l;
   }
 
-  /// Irradiance at a point by many samples [1/m2 per unit of emission].
+  /// Irradiance at a point by many samples [1/m2 per unit of strength].
   double irradiance(const PunctualLight& l, const Vec3& x, const Vec3& n) const {
     const PunctualEmitter e = make_punctual_emitter(l, *rays_);
     const SobolSequence numbers(3);
@@ -68,7 +68,7 @@ class Emitters : public ::testing::Test {
 
   test::RoomBuilder room_;
   std::unique_ptr<ZoneMesh> mesh_;
-  std::unique_ptr<RayScene> rays_;
+  std::unique_ptr<RayTracer> rays_;
 };
 
 TEST_F(Emitters, flux_through_a_closed_surface_is_the_power_of_the_packets) {

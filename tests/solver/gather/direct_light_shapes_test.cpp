@@ -154,7 +154,7 @@ class LitReceiver {
         point_ = surface_point(walls_.rays(), TriangleId(t), kThird, kThird, true);
   }
 
-  /// Where shadow rays start: RayScene::kLift off the receiver, which counts where the luminaire is about
+  /// Where shadow rays start: RayTracer::kLift off the receiver, which counts where the luminaire is about
   /// to set.
   Vec3 ray_start() const { return walls_.rays().in_room(ray_origin(walls_.rays(), point_)); }
 

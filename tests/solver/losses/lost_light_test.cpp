@@ -72,8 +72,8 @@ TEST_F(LostLight, AGapIsNamedWithItsPlaceAndShare) {
               ElementsAre(AllOf(HasSubstr("leaves the room, although its faces close"),
                                 HasSubstr("gap of about"), HasSubstr("'quad5' and 'quad6'"))));
   const Room walls(room_.scene(), solution.mesh);
-  const TransportScene transport(walls);
-  const EscapedLight found = find_escapes(transport, collect_emission(transport), solution);
+  const PacketRoom transport(walls);
+  const EscapedLight found = find_escapes(transport, collect_packet_sources(transport), solution);
   // The ends of the slit may count as wider, and the share is that of some 2^17 probes.
   EXPECT_NEAR(found.through_gaps, share, 0.3 * share);
   ASSERT_FALSE(found.places.empty());
@@ -135,8 +135,8 @@ TEST_F(LostLight, IsNotLookedForOnceSomebodyWaits) {
   ceiling(1.004, 4);
   const Solution solution = solved();
   const Room walls(room_.scene(), solution.mesh);
-  const TransportScene transport(walls);
-  const Emission emission = collect_emission(transport);
+  const PacketRoom transport(walls);
+  const PacketSources emission = collect_packet_sources(transport);
   const std::atomic<bool> interrupt{true};
   const StopToken stop(interrupt);
   EXPECT_THROW(find_escapes(transport, emission, solution, &stop), Interrupted);

@@ -44,7 +44,7 @@ class LuminaireLosses : public ::testing::TestWithParam<bool> {
   std::vector<OpeningLoss> losses() const {
     const MeshResult meshed = room_.mesh();
     const Room walls(room_.scene(), meshed.mesh);
-    const TransportScene transport(walls);
+    const PacketRoom transport(walls);
     return opening_losses(transport);
   }
   std::vector<std::string> warnings() const {
@@ -159,8 +159,8 @@ TEST_F(LuminaireLosses, BacksFarAwayCountToo) {
 std::vector<SelfLitLuminaire> self_lit(const RoomBuilder& room) {
   const MeshResult meshed = room.mesh();
   const Room walls(room.scene(), meshed.mesh);
-  const TransportScene transport(walls);
-  return self_lit_luminaires(transport, collect_emission(transport));
+  const PacketRoom transport(walls);
+  return self_lit_luminaires(transport, collect_packet_sources(transport));
 }
 
 TEST_F(LuminaireLosses, ClosedLampsThatEmitInsideLightThemselvesByHalf) {
@@ -198,11 +198,11 @@ TEST_P(LuminaireLosses, AreNotLookedForOnceSomebodyWaits) {
   light(troffer(Vec3(2, 3, 2)));
   const MeshResult meshed = room_.mesh();
   const Room walls(room_.scene(), meshed.mesh);
-  const TransportScene transport(walls);
+  const PacketRoom transport(walls);
   const std::atomic<bool> interrupt{true};
   const StopToken stop(interrupt);
   EXPECT_THROW(opening_losses(transport, &stop), Interrupted);
-  EXPECT_THROW(luminaire_warnings(transport, collect_emission(transport), &stop), Interrupted);
+  EXPECT_THROW(luminaire_warnings(transport, collect_packet_sources(transport), &stop), Interrupted);
 }
 
 }  // namespace

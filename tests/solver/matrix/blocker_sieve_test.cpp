@@ -19,7 +19,7 @@ TEST(BlockerSieve, OpenPairsAreClearAndHiddenPairsAreBlocked) {
   room.quad(screen, {Vec3(0.8, 0.1, 0), Vec3(1.1, 0.9, 0), Vec3(1.1, 0.9, 0.8), Vec3(0.8, 0.1, 0.8)}, 2);
   const MeshResult meshed = room.mesh();
   const ZoneMesh& mesh = meshed.mesh;
-  const RayScene rays(mesh);
+  const RayTracer rays(mesh);
   const BlockerSieve sieve(mesh, 1e-6);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0, 1);

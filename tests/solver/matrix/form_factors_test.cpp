@@ -18,7 +18,7 @@ using test::RoomBuilder;
 
 FormFactors factors_of(const RoomBuilder& room, bool enforce = true, int threads = 2) {
   const MeshResult meshed = room.mesh();
-  const RayScene rays(meshed.mesh);
+  const RayTracer rays(meshed.mesh);
   const std::atomic<bool> interrupt = false;
   FormFactors result;
   tbb::task_arena(threads).execute([&] {
@@ -197,7 +197,7 @@ TEST(FormFactors, TooManyZonesAreRefusedWithAdvice) {
 
 TEST(FormFactors, InterruptLeavesNothing) {
   const MeshResult meshed = cube(4).mesh();
-  const RayScene rays(meshed.mesh);
+  const RayTracer rays(meshed.mesh);
   const std::atomic<bool> interrupt = true;
   EXPECT_THROW(compute_form_factors(meshed.mesh, rays, {}, nullptr, interrupt), Interrupted);
 }

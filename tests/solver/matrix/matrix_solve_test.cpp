@@ -172,7 +172,7 @@ TEST(MatrixSolve, LightThroughANarrowGapArrives) {
 TEST(MatrixSolve, ConjugateGradientsSolveWhatEliminationSolves) {
   const RoomBuilder room = room_with_screen(false, 2);
   const Solution s = run(room, SolveMethod::kMatrix);
-  const RayScene rays(s.mesh);
+  const RayTracer rays(s.mesh);
   const std::atomic<bool> interrupt = false;
   const FormFactors f =
       compute_form_factors(s.mesh, rays, {.seed = 77, .enforce_closure = true}, nullptr, interrupt);

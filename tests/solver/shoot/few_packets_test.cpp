@@ -35,7 +35,7 @@ class Batches {
       : mesh_(room.mesh().mesh),
         room_(room.scene(), mesh_),
         transport_(room_),
-        emission_(collect_emission(transport_)),
+        emission_(collect_packet_sources(transport_)),
         books_(transport_.zones(), transport_.surfaces(), transport_.bands()) {}
 
   std::size_t shares() const { return books_.absorbed.size(); }
@@ -56,8 +56,8 @@ class Batches {
  private:
   ZoneMesh mesh_;
   Room room_;
-  TransportScene transport_;
-  Emission emission_;
+  PacketRoom transport_;
+  PacketSources emission_;
   BatchBooks books_;
 };
 

@@ -150,8 +150,8 @@ TEST(Methods, ARayIsKnownByItsPacket) {
   const RoomBuilder room = coloured_box();
   const ZoneMesh mesh = room.mesh().mesh;
   const Room walls(room.scene(), mesh);
-  const TransportScene transport(walls);
-  const Emission emission = collect_emission(transport);
+  const PacketRoom transport(walls);
+  const PacketSources emission = collect_packet_sources(transport);
   SolverSettings settings;
   for (const SolveMethod method : kMethods) {
     using Ray = std::array<float, 6>;

@@ -38,7 +38,7 @@ TEST(RayLanes, EqualTheScalarMappings) {
     start_rays(zones, numbers, rays);
     for (int i = 0; i < 16; ++i) {
       const auto [a, b] = sample_triangle(numbers.u[0][i], numbers.u[1][i]);
-      const Vec3f origin = RayScene::lifted(corner + a * edge1 + b * edge2, frame.normal, middle);
+      const Vec3f origin = RayTracer::lifted(corner + a * edge1 + b * edge2, frame.normal, middle);
       const Vec3f direction = frame.to_world(sample_cosine_hemisphere(numbers.u[2][i], numbers.u[3][i]));
       EXPECT_LT((rays.origin(i) - origin).norm(), 3e-7F);
       // Near the horizon the cosine is the root of a small difference.

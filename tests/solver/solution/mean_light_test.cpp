@@ -35,7 +35,7 @@ class LitBox {
     mesh_ = room_.mesh().mesh;
     walls_.emplace(room_.scene(), mesh_);
     transport_.emplace(*walls_);
-    emission_ = collect_emission(*transport_);
+    emission_ = collect_packet_sources(*transport_);
   }
 
   /// Batches of these weights, as `solve` runs them.
@@ -66,8 +66,8 @@ class LitBox {
   RoomBuilder room_{BandSet::rgb()};
   ZoneMesh mesh_{BaseMesh{}};
   std::optional<Room> walls_;
-  std::optional<TransportScene> transport_;
-  Emission emission_;
+  std::optional<PacketRoom> transport_;
+  PacketSources emission_;
 };
 
 /// Twenty batches, the last four as large as five others: groups of unequal weight.

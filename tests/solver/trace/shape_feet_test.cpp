@@ -8,7 +8,7 @@
 #include "mesh/build_mesh.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/warp.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 #include "tests/mesh/test_room.h"
 
 namespace reemit {
@@ -21,7 +21,7 @@ struct OnShape {
   TriangleId triangle;
   float u, v;
 };
-OnShape on_shape(const RayScene& rays, const Vec3& point, std::size_t shape = 0) {
+OnShape on_shape(const RayTracer& rays, const Vec3& point, std::size_t shape = 0) {
   const TriangleId first = rays.mesh().first_patch(shape);
   const CurvedPatches& patches = rays.patches(first);
   const auto place = patches.place_of(rays.normalised(point).cast<double>());
@@ -36,7 +36,7 @@ TEST(ShapeFeet, FloorUnderAMantleIsOneSideAndFloorBesideItTheOther) {
   const SurfaceId tower = room.surface("tower", room.material());
   room.scene().surfaces[tower.index()].shapes.push_back(Cylinder{{0, 0, 0}, {0, 0, 2}, 1, false});
   const MeshResult built = build_mesh(room.scene());
-  const RayScene rays(built.mesh);
+  const RayTracer rays(built.mesh);
   const auto is_inside = [&](TriangleId t) {
     return built.mesh.point(t, 1.0 / 3, 1.0 / 3).head<2>().norm() < 1;
   };
@@ -68,7 +68,7 @@ TEST(ShapeFeet, RaysStartBesideTheMantleOnTheSideOfTheirTriangle) {
   const SurfaceId tower = room.surface("tower", room.material());
   room.scene().surfaces[tower.index()].shapes.push_back(Cylinder{{0, 0, 0}, {0, 0, 2}, 1, false});
   const MeshResult built = build_mesh(room.scene());
-  const RayScene rays(built.mesh);
+  const RayTracer rays(built.mesh);
   const CounterRng rng(4, RngPurpose::kProbe);
   int moved = 0;
   for (std::uint32_t i = 0; i < 400'000; ++i) {
@@ -92,7 +92,7 @@ TEST(ShapeFeet, RaysLeaveBallAndFloorWhereTheGapIsWideEnough) {
     const SurfaceId ball = room.surface("ball", room.material(false));
     room.scene().surfaces[ball.index()].shapes.push_back(Sphere{{0.3, 0.2, radius}, radius, false});
     const MeshResult built = build_mesh(room.scene());
-    const RayScene rays(built.mesh);
+    const RayTracer rays(built.mesh);
     const CounterRng rng(5, RngPurpose::kProbe);
     const double close = 2 * std::sqrt(2 * radius * 2e-6);  // where the gap is 8 um or less
     for (std::uint32_t i = 0; i < 20'000; ++i) {
@@ -130,7 +130,7 @@ TEST(ShapeFeet, RaysLeaveBallsAndWhatTheyStandOnWhereTheGapIsWideEnough) {
     const SurfaceId round = room.surface("round", room.material(false));
     room.scene().surfaces[round.index()].shapes = {Sphere{touch + Vec3(0, 0, radius), radius, false}, below};
     const MeshResult built = build_mesh(room.scene());
-    const RayScene rays(built.mesh);
+    const RayTracer rays(built.mesh);
     const CounterRng rng(6, RngPurpose::kProbe);
     const double close = std::sqrt(2 * radius * 8e-6);
     for (std::uint32_t i = 0; i < 20'000; ++i) {
@@ -161,7 +161,7 @@ TEST(ShapeFeet, NothingThatTouchesABallIsSeenFromWithinIt) {
     const SurfaceId round = room.surface("round", room.material(false));
     room.scene().surfaces[round.index()].shapes = {Sphere{touch + Vec3(0, 0, 0.2), 0.2, false}, below};
     const MeshResult built = build_mesh(room.scene());
-    const RayScene rays(built.mesh);
+    const RayTracer rays(built.mesh);
     const CounterRng rng(7, RngPurpose::kProbe);
     int lost = 0;
     for (std::uint32_t i = 0; i < 20'000; ++i) {

@@ -10,7 +10,7 @@
 
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/warp.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
@@ -188,11 +188,11 @@ RoomBuilder mixed_room(MaterialId& wall) {
   return room;
 }
 
-TEST(CurvedRayScene, BlocksOfSixteenEqualSingleRays) {
+TEST(CurvedRayTracer, BlocksOfSixteenEqualSingleRays) {
   MaterialId wall;
   const RoomBuilder room = mixed_room(wall);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(6, RngPurpose::kProbe);
   int curved = 0;
   for (std::uint32_t block = 0; block < 2000; ++block) {
@@ -219,11 +219,11 @@ TEST(CurvedRayScene, BlocksOfSixteenEqualSingleRays) {
   EXPECT_GT(curved, 2000);
 }
 
-TEST(CurvedRayScene, HitsLieWhereTheRayMeetsTheShapeAndOnItsNormal) {
+TEST(CurvedRayTracer, HitsLieWhereTheRayMeetsTheShapeAndOnItsNormal) {
   MaterialId wall;
   const RoomBuilder room = mixed_room(wall);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(7, RngPurpose::kProbe);
   for (std::uint32_t i = 0; i < 20'000; ++i) {
     const auto u = rng.uniform4(i, 0, 0);
@@ -241,11 +241,11 @@ TEST(CurvedRayScene, HitsLieWhereTheRayMeetsTheShapeAndOnItsNormal) {
   }
 }
 
-TEST(CurvedRayScene, VisibilityStopsAtShapesAndNotAtItsEnds) {
+TEST(CurvedRayTracer, VisibilityStopsAtShapesAndNotAtItsEnds) {
   MaterialId wall;
   const RoomBuilder room = mixed_room(wall);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(8, RngPurpose::kProbe);
   int seen = 0;
   int hidden = 0;
@@ -280,7 +280,7 @@ TEST(CurvedRayScene, VisibilityStopsAtShapesAndNotAtItsEnds) {
 template <class Covered>
 int lost_rays(const RoomBuilder& room, std::uint32_t count, const Covered& covered) {
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(9, RngPurpose::kProbe);
   int lost = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -298,7 +298,7 @@ int lost_rays(const RoomBuilder& room, std::uint32_t count, const Covered& cover
   return lost;
 }
 
-TEST(CurvedRayScene, AMillionRaysStayInAClosedRoom) {
+TEST(CurvedRayTracer, AMillionRaysStayInAClosedRoom) {
   for (const double scale : {1.0, 1e-3, 1e4}) {
     RoomBuilder room;
     const MaterialId wall = room.material("wall", 0.5);
@@ -312,7 +312,7 @@ TEST(CurvedRayScene, AMillionRaysStayInAClosedRoom) {
   }
 }
 
-TEST(CurvedRayScene, RaysAtTheRimOfACappedCylinderDoNotSlipInside) {
+TEST(CurvedRayTracer, RaysAtTheRimOfACappedCylinderDoNotSlipInside) {
   RoomBuilder room;
   const MaterialId wall = room.material("wall", 0.5);
   const Vec3 top(0.3, -0.2, 0.4);
@@ -323,7 +323,7 @@ TEST(CurvedRayScene, RaysAtTheRimOfACappedCylinderDoNotSlipInside) {
   room.shape(wall, Disk{top, axis, 0.25, 0}, 1);
   room.shape(wall, Disk{base, -axis, 0.25, 0}, 1);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(10, RngPurpose::kProbe);
   const Vec3 u = axis.unitOrthogonal();
   const Vec3 v = axis.cross(u);

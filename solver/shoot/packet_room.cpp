@@ -1,17 +1,17 @@
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
 
 #include "solver/emit/light_places.h"
 
 namespace reemit {
 
-TransportScene::TransportScene(const Room& room)
+PacketRoom::PacketRoom(const Room& room)
     : room_(&room),
       mesh_(&room.mesh()),
       rays_(&room.rays()),
       bands_(room.band_count()),
       lights_(lights_before_faces(room.scene(), room.rays())) {
   const ZoneMesh& mesh = *mesh_;
-  const RayScene& rays = *rays_;
+  const RayTracer& rays = *rays_;
   for (const PunctualLight& light : lights_) emitters_.push_back(make_punctual_emitter(light, rays));
   patches_.reserve(mesh.triangle_count());
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
@@ -26,22 +26,21 @@ TransportScene::TransportScene(const Room& room)
   }
 }
 
-void TransportScene::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays,
-                                int lane) const {
+void PacketRoom::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const {
   const auto [a, b] = sample_triangle(u0, u1);
   const SidePoint x = mesh_->zone_point(z, a, b);
   start_at(x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v), x.front, local, rays, lane);
 }
 
-void TransportScene::start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays,
-                              int lane) const {
+void PacketRoom::start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays,
+                          int lane) const {
   const Vec3f origin = rays_->ray_origin(t, u, v, front);
   const Vec3f normal = rays_->normal(t, u, v);
   const Vec3f direction = Frame(front ? normal : Vec3f(-normal)).to_world(local);
   rays.set(lane, origin, direction);
 }
 
-void TransportScene::start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
+void PacketRoom::start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
   for (int lane = 0; lane < 16; ++lane) {
     if ((lanes.curved >> lane & 1U) == 0) continue;
     const Vec3f local = sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]);
@@ -53,7 +52,7 @@ void TransportScene::start_curved(const ZoneLanes& lanes, const UniformLanes& nu
   }
 }
 
-void TransportScene::start_at_feet(const ZoneLanes& lanes, Ray16& rays) const {
+void PacketRoom::start_at_feet(const ZoneLanes& lanes, Ray16& rays) const {
   for (int lane = 0; lane < 16; ++lane) {
     if ((lanes.feet >> lane & 1U) == 0) continue;
     const Vec3f start = rays_->clear_of_shapes(TriangleId(lanes.zone[lane]), rays.origin(lane));

@@ -9,15 +9,15 @@
 #include "solver/room/room.h"
 #include "solver/sampling/warp.h"
 #include "solver/shoot/ray_lanes.h"
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
 /// What packets need of the room, laid out for the inner loop: one cache-friendly record per base triangle.
 /// The room must outlive it.
-class TransportScene {
+class PacketRoom {
  public:
-  explicit TransportScene(const Room& room);
+  explicit PacketRoom(const Room& room);
 
   const Room& room() const { return *room_; }
   const Scene& scene() const { return room_->scene(); }
@@ -26,7 +26,7 @@ class TransportScene {
   /// The same as packets start at them.
   const std::vector<PunctualEmitter>& emitters() const { return emitters_; }
   const ZoneMesh& mesh() const { return *mesh_; }
-  const RayScene& rays() const { return *rays_; }
+  const RayTracer& rays() const { return *rays_; }
   const SurfaceModel& surface_model() const { return room_->surfaces(); }
   std::size_t bands() const { return bands_; }
   std::size_t zones() const { return mesh_->zone_count(); }
@@ -148,7 +148,7 @@ class TransportScene {
 
   const Room* room_;
   const ZoneMesh* mesh_;
-  const RayScene* rays_;
+  const RayTracer* rays_;
   std::size_t bands_;
   std::vector<PunctualLight> lights_;
   std::vector<PunctualEmitter> emitters_;

@@ -1,4 +1,4 @@
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 #include <algorithm>
 #include <cstring>
@@ -21,7 +21,7 @@ int leaks(double scale, const Vec3& shift) {
   const MaterialId m = room.material("wall", 0.5);
   room.box(shift, shift + scale * Vec3(1, 0.7, 0.4), {m, m, m, m, m, m}, 2);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(1, RngPurpose::kProbe);
   int lost = 0;
   for (std::uint32_t i = 0; i < 200'000; ++i) {
@@ -37,19 +37,19 @@ int leaks(double scale, const Vec3& shift) {
   return lost;
 }
 
-TEST(RayScene, ClosedBoxLosesNoRayAtAnyScaleAndPlace) {
+TEST(RayTracer, ClosedBoxLosesNoRayAtAnyScaleAndPlace) {
   EXPECT_EQ(leaks(1, Vec3::Zero()), 0);
   EXPECT_EQ(leaks(1e-3, Vec3::Zero()), 0);
   EXPECT_EQ(leaks(1e6, Vec3::Zero()), 0);
   EXPECT_EQ(leaks(1, Vec3(1e4, -1e4, 1e4)), 0);
 }
 
-TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
+TEST(RayTracer, BlocksOfSixteenEqualSingleRays) {
   RoomBuilder room;
   const MaterialId m = room.material("wall", 0.5);
   room.box(Vec3::Zero(), Vec3(1, 1, 1), {m, m, m, m, m, MaterialId()}, 1);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(2, RngPurpose::kProbe);
   int misses = 0;
   for (std::uint32_t block = 0; block < 200; ++block) {
@@ -71,7 +71,7 @@ TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
       ASSERT_LE(front, 1);
       Hit hit;
       const bool found = scene.closest(rays.origin(i), rays.direction(i), hit);
-      ASSERT_EQ(found, hits.triangle[i] != RayScene::kMiss);
+      ASSERT_EQ(found, hits.triangle[i] != RayTracer::kMiss);
       if (!found) {
         ++misses;
         continue;
@@ -86,14 +86,14 @@ TEST(RayScene, BlocksOfSixteenEqualSingleRays) {
 
 // A wedge of two one-sided walls, seen from outside: where they meet, rounding decides whether a ray meets
 // the front of one or, a hair behind it, the back of the other.
-TEST(RayScene, AWedgeShowsFewBacksAtItsEdge) {
+TEST(RayTracer, AWedgeShowsFewBacksAtItsEdge) {
   RoomBuilder room;
   const MaterialId m = room.material("wall", 0.5);
   room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
   room.quad(m, {Vec3(0, 0.1, -1), Vec3(0, 0.1, 1), Vec3(1, 0.7, 1), Vec3(1, 0.7, -1)}, 1);
   room.quad(m, {Vec3(0, 0.1, -1), Vec3(0.9, -0.8, -1), Vec3(0.9, -0.8, 1), Vec3(0, 0.1, 1)}, 1);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const CounterRng rng(5, RngPurpose::kProbe);
   int first_look = 0;
   int second_look = 0;
@@ -108,7 +108,7 @@ TEST(RayScene, AWedgeShowsFewBacksAtItsEdge) {
     Hit16 hits;
     const auto backs = [&] {
       int count = 0;
-      for (int i = 0; i < 16; ++i) count += hits.triangle[i] == RayScene::kMiss || !hits.front[i] ? 1 : 0;
+      for (int i = 0; i < 16; ++i) count += hits.triangle[i] == RayTracer::kMiss || !hits.front[i] ? 1 : 0;
       return count;
     };
     scene.closest16(rays, 16, hits);
@@ -123,7 +123,7 @@ TEST(RayScene, AWedgeShowsFewBacksAtItsEdge) {
 
 // From outside, the near and the far face of a rim are equally far; which of them a ray meets first was
 // decided by rounding, so that a few packets of 1e8 lit the insides of closed boxes.
-TEST(RayScene, RimsHideTheInsidesOfTwoSidedBoxes) {
+TEST(RayTracer, RimsHideTheInsidesOfTwoSidedBoxes) {
   RoomBuilder room;
   const MaterialId m = room.material("wall", 0.5, 0, true);
   room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
@@ -131,11 +131,11 @@ TEST(RayScene, RimsHideTheInsidesOfTwoSidedBoxes) {
   const Vec3 high(0.1, 0.2, 0.3);
   room.solid(low, high, m, 1);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   constexpr std::uint32_t kHullTriangles = 12;  // those of the box follow
   const CounterRng rng(6, RngPurpose::kProbe);
   const auto is_inside = [](std::uint32_t t, bool front) {
-    return t != RayScene::kMiss && t >= kHullTriangles && !front;
+    return t != RayTracer::kMiss && t >= kHullTriangles && !front;
   };
   int first_look = 0;
   int second_look = 0;
@@ -174,13 +174,13 @@ TEST(RayScene, RimsHideTheInsidesOfTwoSidedBoxes) {
   EXPECT_LE(alone, first_look / 1000);
 }
 
-TEST(RayScene, VisibilityStopsAtWallsAndNotAtItsEnds) {
+TEST(RayTracer, VisibilityStopsAtWallsAndNotAtItsEnds) {
   RoomBuilder room;
   const MaterialId m = room.material("wall", 0.5, 0, true);
   room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
   room.quad(m, {Vec3(0, -0.5, -0.5), Vec3(0, 0.5, -0.5), Vec3(0, 0.5, 0.5), Vec3(0, -0.5, 0.5)}, 1);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   const Vec3f left = scene.ray_origin(TriangleId(0), 0.3F, 0.3F, true);
   const Vec3f right = scene.ray_origin(TriangleId(2), 0.3F, 0.3F, true);
   const Vec3f floor = scene.ray_origin(TriangleId(4), 0.2F, 0.2F, true);
@@ -189,12 +189,12 @@ TEST(RayScene, VisibilityStopsAtWallsAndNotAtItsEnds) {
   EXPECT_TRUE(scene.visible(floor, floor));
 }
 
-TEST(RayScene, CamerasSeeThroughTheBacksOfOneSidedFaces) {
+TEST(RayTracer, CamerasSeeThroughTheBacksOfOneSidedFaces) {
   RoomBuilder room;
   const MaterialId m = room.material("wall", 0.5);
   room.box(Vec3(-1, -1, -1), Vec3(1, 1, 1), {m, m, m, m, m, m}, 1);
   const MeshResult built = room.mesh();
-  const RayScene scene(built.mesh);
+  const RayTracer scene(built.mesh);
   Hit hit;
   ASSERT_TRUE(scene.closest(Vec3f(-3, 0.1F, 0.2F), Vec3f(1, 0, 0), hit));
   EXPECT_FALSE(hit.front);

@@ -3,26 +3,26 @@
 #include <variant>
 #include <vector>
 
-#include "solver/shoot/transport_scene.h"
+#include "solver/shoot/packet_room.h"
 #include "solver/tally/batch_books.h"
 
 namespace reemit {
 
 /// A luminaire, or the part of one that lies in a zone, as packets see it.
-struct EmissionSource {
+struct PacketSource {
   ZoneId zone;              ///< Valid for surfaces that emit.
   std::uint32_t light = 0;  ///< Else index into Scene::lights.
   float exponent = 0;       ///< Of a surface: Material::emission_exponent.
 };
 
 /// All that emits, with its power in quanta: the sources of one band share kBatchQuanta exactly.
-struct Emission {
-  std::vector<EmissionSource> sources;
+struct PacketSources {
+  std::vector<PacketSource> sources;
   std::vector<std::int64_t> quanta;       ///< [source * bands + band]
   std::vector<double> watts;              ///< Emitted power of the room per band [W].
   std::vector<double> watts_per_quantum;  ///< Per band [W]; 0 for a band in which nothing emits.
 };
 
-Emission collect_emission(const TransportScene& transport);
+PacketSources collect_packet_sources(const PacketRoom& transport);
 
 }  // namespace reemit

@@ -18,9 +18,9 @@ namespace reemit {
 /// How far rays without an end reach.
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// What RayScene gives to Embree to build its tree from. Throws ResourceError when Embree cannot be started
+/// What RayTracer gives to Embree to build its tree from. Throws ResourceError when Embree cannot be started
 /// or runs out of memory.
-class EmbreeScene {
+class EmbreeTree {
  public:
   /// Geometry numbers. The triangles of kTriangles have their number in the base mesh, shapes theirs in
   /// BaseMesh::shapes, those of kFeet their place in the list of triangles set apart.
@@ -28,10 +28,10 @@ class EmbreeScene {
   static constexpr unsigned kShapes = 1;
   static constexpr unsigned kFeet = 2;
 
-  EmbreeScene();
-  ~EmbreeScene();
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
+  EmbreeTree();
+  ~EmbreeTree();
+  EmbreeTree(const EmbreeTree&) = delete;
+  EmbreeTree& operator=(const EmbreeTree&) = delete;
 
   /// `apart`: triangles that form a geometry of their own (kFeet).
   void add_triangles(const std::vector<Vec3f>& vertices, std::span<const BaseTriangle> triangles,

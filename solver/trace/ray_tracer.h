@@ -9,14 +9,14 @@
 
 namespace reemit {
 
-class EmbreeScene;
+class EmbreeTree;
 
 /// Where a ray met the room.
 struct Hit {
   TriangleId triangle;
   float u = 0;  ///< Barycentric, as ZoneMesh::point.
   float v = 0;
-  float distance = 0;  ///< In normalised units (RayScene::metres_per_unit).
+  float distance = 0;  ///< In normalised units (RayTracer::metres_per_unit).
   bool front = true;   ///< The ray came from the front of the triangle.
 };
 
@@ -38,7 +38,7 @@ struct alignas(64) Ray16 {
 };
 
 struct Hit16 {
-  std::uint32_t triangle[16];  ///< RayScene::kMiss where the ray left the room.
+  std::uint32_t triangle[16];  ///< RayTracer::kMiss where the ray left the room.
   float u[16], v[16];
   float distance[16];
   bool front[16];  ///< False where the ray left the room.
@@ -47,7 +47,7 @@ struct Hit16 {
 /// Owner of the ray-tracing structure over the base triangles and curved shapes. Rays live in a normalised
 /// space in which the room fits into [-1,1]^3, so that rooms of any size and place behave alike. Const
 /// members may be called from any thread.
-class RayScene {
+class RayTracer {
  public:
   static constexpr std::uint32_t kMiss = 0xffffffff;
   /// Distance by which rays start off their surface [normalised units]: some 16 roundings of a coordinate
@@ -59,10 +59,10 @@ class RayScene {
     return 4 * kLift / (distance > 4 * kLift ? distance : 4 * kLift);
   }
 
-  explicit RayScene(const ZoneMesh& mesh);
-  ~RayScene();
-  RayScene(RayScene&&) noexcept;
-  RayScene& operator=(RayScene&&) noexcept;
+  explicit RayTracer(const ZoneMesh& mesh);
+  ~RayTracer();
+  RayTracer(RayTracer&&) noexcept;
+  RayTracer& operator=(RayTracer&&) noexcept;
 
   double metres_per_unit() const { return metres_per_unit_; }
   const Vec3& centre() const { return centre_; }  ///< The origin of the normalised space [m].
@@ -158,7 +158,7 @@ class RayScene {
   std::size_t flat_count_ = 0;
   std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
   ShapeFeet feet_;
-  std::unique_ptr<EmbreeScene> embree_;
+  std::unique_ptr<EmbreeTree> embree_;
 };
 
 }  // namespace reemit

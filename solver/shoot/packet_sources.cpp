@@ -1,4 +1,4 @@
-#include "solver/shoot/emission.h"
+#include "solver/shoot/packet_sources.h"
 
 #include <cmath>
 
@@ -6,14 +6,14 @@
 
 namespace reemit {
 
-Emission collect_emission(const TransportScene& transport) {
+PacketSources collect_packet_sources(const PacketRoom& transport) {
   const ZoneMesh& mesh = transport.mesh();
   const Scene& scene = transport.scene();
   const SurfaceModel& surfaces = transport.surface_model();
   const std::size_t bands = transport.bands();
-  Emission emission;
+  PacketSources emission;
   std::vector<double> watts;  // [source * bands + band]
-  const auto add = [&](EmissionSource source, const Spectrum& power) {
+  const auto add = [&](PacketSource source, const Spectrum& power) {
     if (!(power > 0).any()) return;
     emission.sources.push_back(source);
     watts.insert(watts.end(), power.begin(), power.end());

@@ -1,4 +1,4 @@
-#include "solver/trace/embree_scene.h"
+#include "solver/trace/embree_tree.h"
 
 #include <array>
 #include <cmath>
@@ -59,7 +59,7 @@ void occlude_shape(const RTCOccludedFunctionNArguments* args) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene() : device_(rtcNewDevice(nullptr)) {
+EmbreeTree::EmbreeTree() : device_(rtcNewDevice(nullptr)) {
   if (device_ == nullptr)
     throw ResourceError("ray tracing",
                         "Embree could not be started (error " +
@@ -68,13 +68,13 @@ EmbreeScene::EmbreeScene() : device_(rtcNewDevice(nullptr)) {
   scene_ = rtcNewScene(device_);
 }
 
-EmbreeScene::~EmbreeScene() {
+EmbreeTree::~EmbreeTree() {
   if (scene_ != nullptr) rtcReleaseScene(scene_);
   if (device_ != nullptr) rtcReleaseDevice(device_);
 }
 
-void EmbreeScene::add(const std::vector<Vec3f>& vertices,
-                      const std::vector<std::array<std::uint32_t, 3>>& indices, unsigned number) {
+void EmbreeTree::add(const std::vector<Vec3f>& vertices,
+                     const std::vector<std::array<std::uint32_t, 3>>& indices, unsigned number) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
@@ -93,8 +93,8 @@ void EmbreeScene::add(const std::vector<Vec3f>& vertices,
   rtcReleaseGeometry(geometry);
 }
 
-void EmbreeScene::add_triangles(const std::vector<Vec3f>& vertices, std::span<const BaseTriangle> triangles,
-                                const std::vector<std::uint32_t>& apart) {
+void EmbreeTree::add_triangles(const std::vector<Vec3f>& vertices, std::span<const BaseTriangle> triangles,
+                               const std::vector<std::uint32_t>& apart) {
   std::vector<std::array<std::uint32_t, 3>> indices;
   indices.reserve(triangles.size());
   for (const BaseTriangle& t : triangles) indices.push_back(t.vertex);
@@ -113,7 +113,7 @@ void EmbreeScene::add_triangles(const std::vector<Vec3f>& vertices, std::span<co
   if (!apart.empty()) add(apart_vertices, apart_indices, kFeet);
 }
 
-void EmbreeScene::add_shapes(const std::vector<CurvedShape>& shapes) {
+void EmbreeTree::add_shapes(const std::vector<CurvedShape>& shapes) {
   for (const CurvedShape& shape : shapes) targets_.emplace_back(shape);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(targets_.size()));
@@ -127,7 +127,7 @@ void EmbreeScene::add_shapes(const std::vector<CurvedShape>& shapes) {
   rtcReleaseGeometry(geometry);
 }
 
-void EmbreeScene::commit() {
+void EmbreeTree::commit() {
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
   rtcCommitScene(scene_);

@@ -1,10 +1,10 @@
-#include "solver/trace/ray_scene.h"
+#include "solver/trace/ray_tracer.h"
 
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "solver/trace/embree_scene.h"
+#include "solver/trace/embree_tree.h"
 
 namespace reemit {
 namespace {
@@ -65,7 +65,7 @@ Vec3f turned(const Vec3f& d) {
 
 }  // namespace
 
-RayScene::RayScene(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_unique<EmbreeScene>()) {
+RayTracer::RayTracer(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_unique<EmbreeTree>()) {
   const BaseMesh& base = mesh.base();
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
   Vec3 high = -low;
@@ -116,20 +116,20 @@ RayScene::RayScene(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_uniqu
   embree_->commit();
 }
 
-Vec3 RayScene::curved_point(TriangleId t, float u, float v) const {
+Vec3 RayTracer::curved_point(TriangleId t, float u, float v) const {
   const BaseTriangle& patch = mesh_->triangle(t);
   return shapes_[patch.shape].point(patch.patch, u, v);
 }
 
-Vec3f RayScene::curved_normal(TriangleId t, float u, float v) const {
+Vec3f RayTracer::curved_normal(TriangleId t, float u, float v) const {
   const BaseTriangle& patch = mesh_->triangle(t);
   return shapes_[patch.shape].normal(patch.patch, u, v).cast<float>();
 }
 
-void RayScene::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
-                        const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
+void RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
+                         const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
   hit.distance = distance;
-  if (geometry == EmbreeScene::kTriangles) {
+  if (geometry == EmbreeTree::kTriangles) {
     hit.triangle = TriangleId(primitive);
     hit.u = u;
     hit.v = v;
@@ -137,7 +137,7 @@ void RayScene::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u
     return;
   }
   const Vec3 d = direction.cast<double>();
-  if (geometry == EmbreeScene::kFeet) {
+  if (geometry == EmbreeTree::kFeet) {
     const ShapeFeet::Place place = feet_.place_of({feet_.triangles()[primitive], u, v}, origin.cast<double>(),
                                                   d, static_cast<double>(distance));
     hit.triangle = TriangleId(place.triangle);
@@ -155,16 +155,16 @@ void RayScene::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u
   hit.front = patches.normal_at(point).dot(d) < 0;
 }
 
-RayScene::~RayScene() = default;
-RayScene::RayScene(RayScene&&) noexcept = default;
-RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayTracer::~RayTracer() = default;
+RayTracer::RayTracer(RayTracer&&) noexcept = default;
+RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 
-Vec3f RayScene::lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle) {
+Vec3f RayTracer::lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle) {
   const Vec3f inward = middle - point;
   return point + kLift * side_normal + inset_share(inward.norm()) * inward;
 }
 
-Vec3f RayScene::ray_origin(TriangleId t, float u, float v, bool front) const {
+Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front) const {
   if (is_curved(t)) {
     // Drawn inwards along the shape, so that the start stays on its side of faces that the shape stands on.
     constexpr float kMiddle = 1.0F / 3;
@@ -185,7 +185,7 @@ Vec3f RayScene::ray_origin(TriangleId t, float u, float v, bool front) const {
   return is_foot(t) ? clear_of_shapes(t, start) : start;
 }
 
-bool RayScene::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
+bool RayTracer::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
   const auto trace = [&](const Vec3f& d, Hit& found) {
     RTCRayHit query{};
     query.ray = make_ray(origin, d, 0, kInfinity);
@@ -205,7 +205,7 @@ bool RayScene::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) co
   return true;
 }
 
-bool RayScene::closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
+bool RayTracer::closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
   const auto look = [&](const Vec3f& d) {
     float near = 0;
     for (;;) {
@@ -222,7 +222,7 @@ bool RayScene::closest_for_camera(const Vec3f& origin, const Vec3f& direction, H
   return look(direction) || look(turned(direction));
 }
 
-void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
+void RayTracer::closest16(const Ray16& rays, int count, Hit16& hits) const {
   alignas(64) int valid[16];
   alignas(64) RTCRayHit16 query;
   for (int i = 0; i < 16; ++i) {
@@ -259,7 +259,7 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
       hits.front[i] = false;
       continue;
     }
-    if (query.hit.geomID[i] != EmbreeScene::kTriangles) {
+    if (query.hit.geomID[i] != EmbreeTree::kTriangles) {
       Hit hit;
       read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i], rays.origin(i),
                rays.direction(i), hit);
@@ -280,7 +280,7 @@ void RayScene::closest16(const Ray16& rays, int count, Hit16& hits) const {
 
 /// Unit direction in the plane of a flat triangle from the edge opposite to a corner towards it, and how far
 /// the corner is from that edge. A triangle without area has neither.
-Vec3f RayScene::into_triangle(TriangleId t, int corner_number, float& height) const {
+Vec3f RayTracer::into_triangle(TriangleId t, int corner_number, float& height) const {
   const Vec3f& from = corner(t, (corner_number + 1) % 3);
   const Vec3f edge = corner(t, (corner_number + 2) % 3) - from;
   const Vec3f up = corner(t, corner_number) - from;
@@ -290,7 +290,7 @@ Vec3f RayScene::into_triangle(TriangleId t, int corner_number, float& height) co
   return height > 0 ? Vec3f(across / height) : Vec3f(Vec3f::Zero());
 }
 
-unsigned RayScene::edges_near(std::uint32_t triangle, float u, float v) const {
+unsigned RayTracer::edges_near(std::uint32_t triangle, float u, float v) const {
   const float weight[3] = {1 - u - v, u, v};
   unsigned edges = 0;
   for (int k = 0; k < 3; ++k) {
@@ -301,7 +301,7 @@ unsigned RayScene::edges_near(std::uint32_t triangle, float u, float v) const {
   return edges;
 }
 
-Vec3f RayScene::second_direction(const Vec3f& direction, std::uint32_t triangle, float u, float v) const {
+Vec3f RayTracer::second_direction(const Vec3f& direction, std::uint32_t triangle, float u, float v) const {
   if (triangle == kMiss || is_curved(TriangleId(triangle))) return turned(direction);
   const unsigned edges = edges_near(triangle, u, v);
   Vec3f turn = Vec3f::Zero();
@@ -320,7 +320,7 @@ Vec3f RayScene::second_direction(const Vec3f& direction, std::uint32_t triangle,
   return (direction + kTurn * turn).normalized();
 }
 
-void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
+void RayTracer::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   Ray16 doubtful;
   int lanes[16];
   int doubtful_count = 0;
@@ -344,7 +344,7 @@ void RayScene::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   }
 }
 
-bool RayScene::visible(const Vec3f& from, const Vec3f& to) const {
+bool RayTracer::visible(const Vec3f& from, const Vec3f& to) const {
   const Vec3f d = to - from;
   const float distance = d.norm();
   if (!(distance > 0)) return true;
@@ -353,7 +353,7 @@ bool RayScene::visible(const Vec3f& from, const Vec3f& to) const {
   return ray.tfar >= 0;
 }
 
-bool RayScene::escapes(const Vec3f& origin, const Vec3f& direction) const {
+bool RayTracer::escapes(const Vec3f& origin, const Vec3f& direction) const {
   RTCRay ray = make_ray(origin, direction, 0, kInfinity);
   occluded1(embree_->scene(), ray);
   if (ray.tfar < 0) return false;
