@@ -189,7 +189,7 @@ Camera outside_camera(const RayTracer& rays, const Vec3& up) {
   for (std::size_t t = 1; t < mesh.triangle_count(); ++t) {
     if (mesh.triangle_area(TriangleId(t)) > mesh.triangle_area(largest)) largest = TriangleId(t);
   }
-  const Vec3 normal = mesh.triangle_normal(largest);
+  const Vec3& normal = mesh.triangle_normal(largest);
   const Vec3 middle = rays.in_room(Vec3f::Zero());
   const double distance = 3 * rays.metres_per_unit();
   const Vec3 level = std::abs(normal.dot(up)) < 0.99 ? up : Vec3(up.z(), up.x(), up.y());

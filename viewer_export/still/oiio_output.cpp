@@ -55,7 +55,7 @@ void OutputFileProxy::check() const {
 }
 
 // Empty if all went well, else what OpenImageIO says.
-std::string encode(const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+std::string encode(const std::string& format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                    const void* pixels, OIIO::Filesystem::IOProxy& proxy) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format, &proxy);
   if (!output) return OIIO::geterror();
@@ -80,7 +80,7 @@ void describe_image(const StillImage& image, OIIO::ImageSpec& spec) {
   }
 }
 
-void encode_image(const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+void encode_image(const std::string& format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                   const void* pixels, OutputFile& file) {
   OutputFileProxy proxy(file);
   const std::string error = encode(format, spec, type, pixels, proxy);
@@ -89,7 +89,7 @@ void encode_image(const std::string& format, const OIIO::ImageSpec& spec, OIIO::
 }
 
 std::vector<unsigned char> encode_image(const std::string& format, const OIIO::ImageSpec& spec,
-                                        OIIO::TypeDesc type, const void* pixels) {
+                                        const OIIO::TypeDesc& type, const void* pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const std::string error = encode(format, spec, type, pixels, memory);

@@ -15,10 +15,10 @@ void describe_image(const StillImage& image, OIIO::ImageSpec& spec);
 
 /// Encodes a whole picture. `pixels` holds spec.nchannels values of `type` per pixel, rows from the top.
 /// Throws ResourceError when the disk is full or OpenImageIO fails.
-void encode_image(const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+void encode_image(const std::string& format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                   const void* pixels, OutputFile& file);
 /// The same into memory.
 std::vector<unsigned char> encode_image(const std::string& format, const OIIO::ImageSpec& spec,
-                                        OIIO::TypeDesc type, const void* pixels);
+                                        const OIIO::TypeDesc& type, const void* pixels);
 
 }  // namespace reemit

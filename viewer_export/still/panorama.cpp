@@ -24,7 +24,7 @@ void for_view(const Panorama& panorama, int column, const Visit& visit) {
   for (int c = 0; c < kViewColumns; ++c) {
     const int at = (column + c - kViewColumns / 2 + Panorama::kColumns) % Panorama::kColumns;
     for (int r = 0; r < Panorama::kRows; ++r)
-      visit(panorama.sights[static_cast<std::size_t>(at * Panorama::kRows + r)]);
+      visit(panorama.sights[static_cast<std::size_t>(at) * Panorama::kRows + static_cast<std::size_t>(r)]);
   }
 }
 
@@ -68,7 +68,8 @@ Panorama look_around(const RayTracer& rays, const RoomAxes& axes, const LitCells
       const Vec3f direction = axes.direction(azimuth, elevation).normalized();
       Hit hit;
       if (!rays.closest_for_camera(eye, direction, hit)) continue;
-      Sight& sight = panorama.sights[static_cast<std::size_t>(c * Panorama::kRows + r)];
+      Sight& sight =
+          panorama.sights[static_cast<std::size_t>(c) * Panorama::kRows + static_cast<std::size_t>(r)];
       Vec3f normal = rays.normal(hit.triangle, hit.u, hit.v);
       if (!hit.front) normal = -normal;
       sight.distance = hit.distance;

@@ -212,7 +212,8 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const 
     const std::size_t quarter = i / ZoneBiasEffort::kPointsPerGroup;
     const std::array<float, 2> u = sampler.place(static_cast<int>(i % ZoneBiasEffort::kPointsPerGroup));
     const double x = 0.5 * (static_cast<double>(quarter % 2) + static_cast<double>(u[0])) * image.width;
-    const double y = 0.5 * (static_cast<double>(quarter / 2) + static_cast<double>(u[1])) * image.height;
+    const std::size_t row = quarter / 2;
+    const double y = 0.5 * (static_cast<double>(row) + static_cast<double>(u[1])) * image.height;
     const PinholeCamera::Ray ray = camera_->ray(x, y);
     Hit hit;
     const bool seen = room_->rays().closest_for_camera(ray.origin, ray.direction, hit);

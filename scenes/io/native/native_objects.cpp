@@ -59,7 +59,7 @@ NativeObjects::NativeObjects(std::filesystem::path folder, const ReadOptions& op
     : folder_(std::move(folder)),
       options_(options),
       unit_(unit),
-      groups_(std::move(groups)),
+      groups_(groups),
       materials_(materials),
       scene_(scene) {
   if (groups_) groups_->expect_object();

@@ -52,7 +52,7 @@ Eigen::Affine3d read_matrix(const JsonCursor& at) {
   transform.matrix().row(3) << 0, 0, 0, 1;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
-      transform(row, column) = m[static_cast<std::size_t>(4 * row + column)];
+      transform(row, column) = m[4 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)];
     }
   }
   return transform;
