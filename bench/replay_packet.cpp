@@ -35,11 +35,17 @@ std::uint32_t packets_of_batch(const Solution& solution, std::uint32_t batch) {
         fmt::format("the solution has {} batches, numbered from 0", solution.sums.batches));
   const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);
   std::int64_t done = 0;
-  for (std::int64_t k = 0;; ++k) {
+  std::int64_t of_batch = 0;
+  for (std::int64_t k = 0; k < solution.sums.batches; ++k) {
     const std::int64_t weight = plan.next_weight(k, done);
-    if (k == batch) return static_cast<std::uint32_t>(weight * plan.unit_packets());
+    if (k == batch) of_batch = weight;
     done += weight;
   }
+  if (done != solution.sums.weight())
+    throw std::invalid_argument(
+        "a time limit made batches of this solution shorter than planned, by how much it does not say; solve "
+        "it with --packets instead of --time to replay it");
+  return static_cast<std::uint32_t>(of_batch * plan.unit_packets());
 }
 
 std::string place_text(const Vec3& p) {

@@ -94,7 +94,7 @@ Vec3 CurvedPatches::point(std::uint32_t patch, double u, double v) const {
   const bool upper = patch % 2 == 1;
   const double a = upper ? 1 - at.u : at.u;
   const double b = upper ? 1 - at.v : at.v;
-  const auto slab = cell / 4;
+  const std::uint32_t slab = cell / 4;
   return frustum_point(cell % 4, a, (slab + b) / slabs_);
 }
 
@@ -171,7 +171,7 @@ Barycentric CurvedPatches::in_patch(std::uint32_t patch, const Vec3& point) cons
     const double s = std::sqrt(std::max(0.0, 1 - share));
     return swapped_if(frustum_.inward, into_triangle(s * (1 - a), s * a));
   }
-  const auto slab = cell / 4;
+  const std::uint32_t slab = cell / 4;
   const double b = std::clamp(share * slabs_ - slab, 0.0, 1.0);
   const bool upper = patch % 2 == 1;
   return swapped_if(frustum_.inward, upper ? into_triangle(1 - a, 1 - b) : into_triangle(a, b));

@@ -37,9 +37,9 @@ PhotometricEmitter::PhotometricEmitter(const Light& light, const RayTracer& rays
   const double metres = rays.metres_per_unit();
   const double extent = opening_extent(light.opening) / metres;
   const double extent2 = extent * extent;
-  data_ = std::make_shared<const Data>(Data{light.table, light.opening,
-                                            rays.normalised(light.position).cast<double>(), light.orientation,
-                                            metres, kNearest * kNearest * extent2, extent2});
+  data_ =
+      std::make_shared<const Data>(Data{light.table, light.opening, rays.normalised_double(light.position),
+                                        light.orientation, metres, kNearest * kNearest * extent2, extent2});
 }
 
 Vec3 PhotometricEmitter::point(double u0, double u1) const {

@@ -29,7 +29,7 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
   const bool visible =
       sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
   if (!visible) return {};
-  return {table_.strength(entry), sample.factor * inverse_probability, towards.normalized()};
+  return {table_.strength(entry), sample.factor * inverse_probability, towards};
 }
 
 void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
@@ -45,7 +45,7 @@ void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<f
   if (empty()) return;
   const Arrival light = estimate(x, ray_origin(*rays_, x), u);
   if (light.strength == nullptr) return;
-  const BrdfValue brdf = surfaces_->value(x, light.from);
+  const BrdfValue brdf = surfaces_->value(x, light.towards.normalized());
   for (std::size_t b = 0; b < band_count(); ++b)
     sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.strength[b];
 }

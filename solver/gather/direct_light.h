@@ -53,7 +53,7 @@ class DirectLight {
   struct Arrival {
     const float* strength = nullptr;  ///< Null if nothing arrives.
     float factor = 0;
-    Vec3f from{0, 0, 0};  ///< Unit, towards the luminaire.
+    Vec3f towards{0, 0, 0};  ///< The luminaire; of any length.
   };
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
 

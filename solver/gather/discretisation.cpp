@@ -62,13 +62,13 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
     }
     batch.flush();
     for (std::size_t i = first; i < last; ++i) {
-      const double* reflectance = room.surfaces().reflectance(room.mesh().zone_surface(probes[i].zone));
+      const float* reflectance = room.zone_reflectance(probes[i].zone);
       for (std::size_t b = 0; b < bands; ++b) {
         double difference = probes[i].area;
         double value = probes[i].area;
         for (std::size_t half = 0; half < kFieldHalves; ++half) {
           const float* light = &found[((i - first) * kFieldHalves + half) * 2 * bands];
-          const double rho = static_cast<double>(static_cast<float>(reflectance[b]));
+          const double rho = static_cast<double>(reflectance[b]);
           const double at_point = rho * (static_cast<double>(light[b]) / std::numbers::pi +
                                          static_cast<double>(light[bands + b]));
           const double of_zone = static_cast<double>(field.reflected(probes[i].zone, half)[b]);

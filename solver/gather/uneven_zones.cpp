@@ -67,7 +67,7 @@ class Looker {
 
   Spread look(ZoneId zone, const Look& effort) const {
     const std::size_t bands = field_.band_count();
-    const double* reflectance = room_.surfaces().reflectance(room_.mesh().zone_surface(zone));
+    const float* reflectance = room_.zone_reflectance(zone);
     const float* direct = field_.reflected_direct(zone);
     bool dim = true;
     for (std::size_t b = 0; b < bands; ++b) dim = dim && static_cast<double>(direct[b]) <= kDim * mean_[b];
@@ -88,7 +88,7 @@ class Looker {
     Spread worst;
     for (std::size_t b = 0; b < bands; ++b) {
       if (!(mean_[b] > 0)) continue;
-      const double scale = lambert_brdf_per_sr(static_cast<float>(reflectance[b])) / mean_[b];
+      const double scale = lambert_brdf_per_sr(reflectance[b]) / mean_[b];
       const Spread spread = spread_of(&found[b], points, bands, scale);
       worst.mean = std::max(worst.mean, spread.mean);
       worst.variance = std::max(worst.variance, spread.variance);

@@ -73,7 +73,7 @@ std::string place_text(const Vec3& point);
 
 /// True if a ray that ended in `hit` met the back of a one-sided face, which absorbs everything.
 inline bool is_back(const PacketRoom& transport, const Hit& hit) {
-  return !hit.front && !transport.mesh().triangle(hit.triangle).two_sided;
+  return !transport.mesh().has_zones(hit.triangle, hit.front);
 }
 
 }  // namespace reemit

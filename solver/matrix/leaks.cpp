@@ -6,7 +6,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include "solver/emit/punctual_emitter.h"
 #include "solver/matrix/zone_points.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"
@@ -25,9 +24,9 @@ std::uint32_t nearest_axis(const Vec3f& direction) {
 std::optional<std::uint32_t> end_of_ray(const RayTracer& rays, const Vec3f& origin, const Vec3f& direction) {
   Hit hit;
   if (!rays.closest(origin, direction, hit)) return nearest_axis(direction);
-  const BaseTriangle& triangle = rays.mesh().triangle(hit.triangle);
-  if (hit.front || triangle.two_sided) return std::nullopt;
-  return LeakAccount::kAxes + static_cast<std::uint32_t>(triangle.surface.index());
+  const ZoneMesh& mesh = rays.mesh();
+  if (mesh.has_zones(hit.triangle, hit.front)) return std::nullopt;
+  return LeakAccount::kAxes + static_cast<std::uint32_t>(mesh.triangle(hit.triangle).surface.index());
 }
 
 void count(std::vector<LeakAccount>& accounts, std::uint32_t account) {
@@ -58,13 +57,12 @@ ZoneLeaks trace_leaks(const RayTracer& rays, std::uint64_t seed) {
   return ZoneLeaks(std::move(leaks));
 }
 
-std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const RayTracer& rays,
+std::vector<LeakAccount> trace_light_leaks(const PunctualEmitter& light, const RayTracer& rays,
                                            std::uint64_t seed) {
   std::vector<LeakAccount> leaks;
   const SobolSequence numbers(seed);
-  const PunctualEmitter emitter = make_punctual_emitter(light, rays);
   for (std::uint32_t k = 0; k < kRaysPerLight; ++k) {
-    const LightRay start = start_light_ray(emitter, numbers.sample(k, 0), numbers.sample(k, 1),
+    const LightRay start = start_light_ray(light, numbers.sample(k, 0), numbers.sample(k, 1),
                                            numbers.sample(k, 2), numbers.sample(k, 3));
     if (const auto account = end_of_ray(rays, start.origin, start.direction)) count(leaks, *account);
   }

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "scenes/model/luminaire.h"
+#include "solver/emit/punctual_emitter.h"
 #include "solver/trace/ray_tracer.h"
 
 namespace reemit {
@@ -38,7 +38,7 @@ ZoneLeaks trace_leaks(const RayTracer& rays, std::uint64_t seed);
 
 inline constexpr std::uint32_t kRaysPerLight = 16384;
 /// The same for kRaysPerLight rays of a luminaire without area, distributed as its power.
-std::vector<LeakAccount> trace_light_leaks(const PunctualLight& light, const RayTracer& rays,
+std::vector<LeakAccount> trace_light_leaks(const PunctualEmitter& light, const RayTracer& rays,
                                            std::uint64_t seed);
 
 }  // namespace reemit

@@ -49,7 +49,7 @@ struct ZonalSystem {
 };
 
 void add_punctual_lights(const PacketRoom& transport, std::uint64_t seed, ZonalSystem& system) {
-  const std::vector<PunctualLight>& lights = transport.lights();
+  const std::vector<PunctualLight>& lights = transport.scene().lights;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const Spectrum& emission = strength_of(lights[l]);
     const Spectrum power = light_power(lights[l], transport.rays().metres_per_unit());
@@ -57,10 +57,10 @@ void add_punctual_lights(const PacketRoom& transport, std::uint64_t seed, ZonalS
     if (!(emission.maxCoeff(&band) > 0)) continue;
     const std::uint64_t light_seed = matrix_seed(seed, MatrixNumbers::kLightLeaks, l, 0);
     LuminaireLeak loss;
-    loss.leaks = trace_light_leaks(lights[l], transport.rays(), light_seed);
+    loss.leaks = trace_light_leaks(transport.emitters()[l], transport.rays(), light_seed);
     const double known_to_arrive = loss.leaks.empty() ? power(band) / emission(band) : 0;
     const PunctualIrradiance irradiance =
-        punctual_irradiance(lights[l], transport, light_seed, known_to_arrive);
+        punctual_irradiance(transport.emitters()[l], transport, light_seed, known_to_arrive);
     loss.watts = power - irradiance.arriving * emission;
     system.light_losses.push_back(std::move(loss));
     for (Eigen::Index b = 0; b < emission.size(); ++b)

@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include "solver/emit/punctual_emitter.h"
 #include "solver/matrix/zone_points.h"
 #include "solver/sampling/sobol.h"
 #include "solver/sampling/warp.h"
@@ -19,11 +18,10 @@ bool lit(const RayTracer& rays, const LuminaireSample& sample, const Vec3f& orig
 
 }  // namespace
 
-PunctualIrradiance punctual_irradiance(const PunctualLight& light, const PacketRoom& transport,
+PunctualIrradiance punctual_irradiance(const PunctualEmitter& light, const PacketRoom& transport,
                                        std::uint64_t seed, double power_per_unit) {
   const ZoneMesh& mesh = transport.mesh();
   const RayTracer& rays = transport.rays();
-  const PunctualEmitter emitter = make_punctual_emitter(light, rays);
   PunctualIrradiance result;
   const auto zones = static_cast<Eigen::Index>(mesh.zone_count());
   result.of_zone = RowMatrix::Zero(zones, PunctualIrradiance::kReplicates);
@@ -37,7 +35,7 @@ PunctualIrradiance punctual_irradiance(const PunctualLight& light, const PacketR
         const auto [u, v] = sample_triangle(numbers.sample(k, 0), numbers.sample(k, 1));
         const Vec3f origin = points.origin(u, v);
         const LuminaireSample sample =
-            sample_light(emitter, origin, points.normal(), numbers.sample(k, 2), numbers.sample(k, 3));
+            sample_light(light, origin, points.normal(), numbers.sample(k, 2), numbers.sample(k, 3));
         if (sample.factor > 0 && lit(rays, sample, origin)) sum += static_cast<double>(sample.factor);
       }
       result.of_zone(z, r) = sum / kPointsPerScramble;

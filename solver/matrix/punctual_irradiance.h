@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/emit/punctual_emitter.h"
 #include "solver/matrix/symmetric_table.h"
 #include "solver/shoot/packet_room.h"
 #include "solver/solution/solution.h"
@@ -20,7 +21,7 @@ struct PunctualIrradiance {
 /// By 16 scrambles of 16 points per zone with a shadow ray each. If `power_per_unit` > 0, all of that power
 /// is known to arrive, and each replicate is scaled such that it does. Deterministic; runs in the arena of
 /// the caller.
-PunctualIrradiance punctual_irradiance(const PunctualLight& light, const PacketRoom& transport,
+PunctualIrradiance punctual_irradiance(const PunctualEmitter& light, const PacketRoom& transport,
                                        std::uint64_t seed, double power_per_unit);
 
 }  // namespace reemit

@@ -9,8 +9,8 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh)
   std::vector<bool> emits_both_sides;
   for (const Surface& surface : scene.surfaces) {
     const Material& m = scene.material_of(surface);
-    surfaces_.push_back({m.emitted_radiance, m.exitance(), m.reflectance.maxCoeff(), m.emission_exponent,
-                         static_cast<float>(m.emission_exponent), m.emits()});
+    surfaces_.push_back(
+        {m.emitted_radiance, m.exitance(), m.reflectance.maxCoeff(), m.emission_exponent, m.emits()});
     emits_both_sides.push_back(m.emits_both_sides);
     reflectance_.insert(reflectance_.end(), m.reflectance.begin(), m.reflectance.end());
     for (const double x : m.reflectance) side_reflectance_.push_back(static_cast<float>(x));

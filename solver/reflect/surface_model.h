@@ -49,7 +49,7 @@ class SurfaceModel {
   }
   /// Radiance at an angle to the normal over emitted(): (e+2)/2 cos^e, 1 for Lambertian emission.
   float emission_shape(TriangleId t, float cosine) const {
-    const float e = surfaces_[surface_of(t)].exponent;
+    const float e = static_cast<float>(surfaces_[surface_of(t)].emission_exponent);
     return e == 0 ? 1.0F : (0.5F * e + 1) * std::pow(cosine, e);
   }
   /// e of Material::emission_exponent.
@@ -64,7 +64,6 @@ class SurfaceModel {
     Spectrum normal_radiance, exitance;
     double largest_reflectance;
     double emission_exponent;
-    float exponent;  // the same, for rays
     bool emits;
   };
   struct Side {

@@ -23,6 +23,10 @@ class Room {
   const RayTracer& rays() const { return rays_; }
   const SurfaceModel& surfaces() const { return surfaces_; }
   std::size_t band_count() const { return scene_->bands.count(); }
+  /// Diffuse reflectance of a zone, one number per band [0,1].
+  const float* zone_reflectance(ZoneId z) const {
+    return surfaces_.reflectance(mesh_->zone_triangle(z), mesh_->zone_is_front(z));
+  }
 
  private:
   const Scene* scene_;

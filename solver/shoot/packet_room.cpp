@@ -5,14 +5,11 @@
 namespace reemit {
 
 PacketRoom::PacketRoom(const Room& room)
-    : room_(&room),
-      mesh_(&room.mesh()),
-      rays_(&room.rays()),
-      bands_(room.band_count()),
-      lights_(lights_before_faces(room.scene(), room.rays())) {
+    : room_(&room), mesh_(&room.mesh()), rays_(&room.rays()), bands_(room.band_count()) {
   const ZoneMesh& mesh = *mesh_;
   const RayTracer& rays = *rays_;
-  for (const PunctualLight& light : lights_) emitters_.push_back(make_punctual_emitter(light, rays));
+  for (const PunctualLight& light : lights_before_faces(room.scene(), rays))
+    emitters_.push_back(make_punctual_emitter(light, rays));
   patches_.reserve(mesh.triangle_count());
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const TriangleId t(i);

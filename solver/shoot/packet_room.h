@@ -21,9 +21,7 @@ class PacketRoom {
 
   const Room& room() const { return *room_; }
   const Scene& scene() const { return room_->scene(); }
-  /// The lights of the room where their rays start (lights_before_faces).
-  const std::vector<PunctualLight>& lights() const { return lights_; }
-  /// The same as packets start at them.
+  /// The lights of the scene as packets start at them (lights_before_faces).
   const std::vector<PunctualEmitter>& emitters() const { return emitters_; }
   const ZoneMesh& mesh() const { return *mesh_; }
   const RayTracer& rays() const { return *rays_; }
@@ -150,7 +148,6 @@ class PacketRoom {
   const ZoneMesh* mesh_;
   const RayTracer* rays_;
   std::size_t bands_;
-  std::vector<PunctualLight> lights_;
   std::vector<PunctualEmitter> emitters_;
   std::vector<TrianglePatch> patches_;
 };

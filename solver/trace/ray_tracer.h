@@ -66,7 +66,8 @@ class RayTracer {
 
   double metres_per_unit() const { return metres_per_unit_; }
   const Vec3& centre() const { return centre_; }  ///< The origin of the normalised space [m].
-  Vec3f normalised(const Vec3& point) const { return ((point - centre_) / metres_per_unit_).cast<float>(); }
+  Vec3 normalised_double(const Vec3& point) const { return (point - centre_) / metres_per_unit_; }
+  Vec3f normalised(const Vec3& point) const { return normalised_double(point).cast<float>(); }
   Vec3 in_room(const Vec3f& point) const { return point.cast<double>() * metres_per_unit_ + centre_; }
 
   Vec3f corner(TriangleId t, int k) const { return corners_[3 * t.index() + static_cast<std::size_t>(k)]; }
@@ -141,7 +142,7 @@ class RayTracer {
   Vec3 curved_point(TriangleId t, float u, float v) const;
   Vec3f curved_normal(TriangleId t, float u, float v) const;
   bool is_lost(std::uint32_t triangle, bool front) const {
-    return triangle == kMiss || (!front && !mesh_->triangle(TriangleId(triangle)).two_sided);
+    return triangle == kMiss || !mesh_->has_zones(TriangleId(triangle), front);
   }
   /// Edges within kEdgeWidth of (u,v), as bits: bit k is the edge opposite to corner k.
   unsigned edges_near(std::uint32_t triangle, float u, float v) const;

@@ -9,6 +9,7 @@
 
 #include "solver/progressive_solver.h"
 #include "solver/solution/solution_file.h"
+#include "tests/support/never.h"
 #include "tests/support/same_light.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_rooms.h"
@@ -22,8 +23,6 @@ using test::expect_same_record;
 using test::RoomBuilder;
 using test::TempFolder;
 using test::VariableFurnace;
-
-const std::atomic<bool> never{false};
 
 void expect_same_result(const Solution& a, const Solution& b) {
   expect_same_record(a.record, b.record);
@@ -64,7 +63,7 @@ class Resume : public testing::Test {
     Solution stands = new_solution(room.scene(), mesh_of(room), settings);
     for (int sitting = 0;; ++sitting) {
       stands.settings.threads = 1 + sitting % 2;
-      ProgressiveSolver solver(room.scene(), std::move(stands), never);
+      ProgressiveSolver solver(room.scene(), std::move(stands), test::kNever);
       bool goes_on = true;
       for (int i = 0; i < batches && goes_on; ++i) goes_on = solver.step();
       if (!goes_on) return solver.finish();
@@ -85,7 +84,7 @@ TEST_F(Resume, AnyNumberOfBreaksLeavesNoTrace) {
       SCOPED_TRACE(to_string(method) + ", " + std::to_string(batches));
       SolverSettings settings = twenty_batches();
       settings.method = method;
-      const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
+      const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, test::kNever);
       ASSERT_GT(whole.record.gathered_zones, 0U);
       ASSERT_EQ(whole.sums.batches, 20);
       expect_same_result(whole, in_sittings(room, settings, batches));
@@ -98,13 +97,13 @@ TEST_F(Resume, AFinishedSolutionGoesOnToALowerError) {
   SolverSettings settings;
   settings.batch_packets = 4000;
   settings.error_target = 0.02;
-  const Solution at_once = solve(room.scene(), mesh_of(room), settings, {}, never);
+  const Solution at_once = solve(room.scene(), mesh_of(room), settings, {}, test::kNever);
   settings.error_target = 0.06;
-  Solution first = through_file(solve(room.scene(), mesh_of(room), settings, {}, never));
+  Solution first = through_file(solve(room.scene(), mesh_of(room), settings, {}, test::kNever));
   ASSERT_LT(first.sums.batches, at_once.sums.batches);
   ASSERT_GT(first.gathered.zones.size(), 0U);
   first.settings.error_target = 0.02;
-  expect_same_result(at_once, solve(room.scene(), std::move(first), {}, never));
+  expect_same_result(at_once, solve(room.scene(), std::move(first), {}, test::kNever));
 }
 
 TEST_F(Resume, BatchesGrowAsIfThereHadBeenNoBreak) {
@@ -113,7 +112,7 @@ TEST_F(Resume, BatchesGrowAsIfThereHadBeenNoBreak) {
   const RoomBuilder& room = furnace.room();
   SolverSettings settings;
   settings.packets = 5'000'000;
-  const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
+  const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, test::kNever);
   ASSERT_GT(whole.sums.weight(), whole.sums.batches) << "of unequal size";
   expect_same_result(whole, in_sittings(room, settings, 9));
 }
@@ -123,11 +122,11 @@ TEST_F(Resume, MorePacketsThanAtFirstKeepTheSizeOfBatches) {
   const RoomBuilder& room = furnace.room();
   SolverSettings settings;
   settings.packets = 30'000;
-  Solution first = solve(room.scene(), mesh_of(room), settings, {}, never);
+  Solution first = solve(room.scene(), mesh_of(room), settings, {}, test::kNever);
   const std::int64_t batches = first.sums.batches;
   const std::uint64_t unit = first.record.unit_packets;
   first.settings.packets = 60'000;
-  const Solution more = solve(room.scene(), std::move(first), {}, never);
+  const Solution more = solve(room.scene(), std::move(first), {}, test::kNever);
   EXPECT_EQ(more.record.unit_packets, unit);
   EXPECT_EQ(more.sums.batches, 2 * batches);
   EXPECT_EQ(more.record.stopped, StopReason::kPacketCount);
@@ -140,18 +139,18 @@ TEST_F(Resume, AFirstBatchThatWasCutOffIsRunAgain) {
   const std::atomic<bool> at_once{true};
   Solution cut_off = through_file(solve(room.scene(), mesh_of(room), settings, {}, at_once));
   ASSERT_TRUE(cut_off.record.cut_off);
-  const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, never);
-  expect_same_result(whole, solve(room.scene(), std::move(cut_off), {}, never));
+  const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, test::kNever);
+  expect_same_result(whole, solve(room.scene(), std::move(cut_off), {}, test::kNever));
 }
 
 TEST_F(Resume, ATimeLimitIsThatOfAllSittings) {
   const VariableFurnace furnace(4);
   const RoomBuilder& room = furnace.room();
-  Solution stands = solve(room.scene(), mesh_of(room), twenty_batches(), {}, never);
+  Solution stands = solve(room.scene(), mesh_of(room), twenty_batches(), {}, test::kNever);
   stands.record.seconds = 3600;
   stands.settings.packets = 0;
   stands.settings.time_limit_s = 3600.5;
-  const Solution more = solve(room.scene(), std::move(stands), {}, never);
+  const Solution more = solve(room.scene(), std::move(stands), {}, test::kNever);
   EXPECT_EQ(more.record.stopped, StopReason::kTimeLimit);
   EXPECT_GT(more.record.seconds, 3600);
   // Not another hour; how punctual it is depends on the machine.
@@ -165,7 +164,7 @@ TEST_F(Resume, TellsWhichRuleHoldsAlreadyAndChangesNothing) {
   SolverSettings settings;
   settings.batch_packets = 4000;
   settings.error_target = 0.05;
-  const Solution before = solve(room.scene(), mesh_of(room), settings, {}, never);
+  const Solution before = solve(room.scene(), mesh_of(room), settings, {}, test::kNever);
   ASSERT_GT(before.gathered.zones.size(), 0U);
   Solution solution = before;
   EXPECT_EQ(rule_that_holds(room.scene(), solution), StopReason::kErrorTarget);

@@ -1,8 +1,8 @@
 #pragma once
-#include <atomic>
 #include <cstdint>
 
 #include "solver/progressive_solver.h"
+#include "tests/support/never.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit::test {
@@ -38,8 +38,7 @@ class LampByCeiling {
     settings.reemission = reemission;
     settings.packets = packets;
     settings.seed = seed;
-    const std::atomic<bool> never{false};
-    return solve(room_.scene(), room_.mesh(), settings, {}, never);
+    return solve(room_.scene(), room_.mesh(), settings, {}, kNever);
   }
 
  private:

@@ -103,10 +103,9 @@ SurfacePoint VertexGatherer::point_beside(std::size_t v, const std::array<float,
 }
 
 void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) const {
-  const ZoneMesh& mesh = room_.mesh();
   const ZoneId zone = rings_.begin(v)->zone;
   const float* own = emitted(v);
-  const float* reflectance = room_.surfaces().reflectance(mesh.zone_triangle(zone), mesh.zone_is_front(zone));
+  const float* reflectance = room_.zone_reflectance(zone);
   for (std::size_t b = 0; b < bands_; ++b) {
     const auto value_of = [&](std::size_t r) {
       const float* replicate = means + r * 2 * bands_;

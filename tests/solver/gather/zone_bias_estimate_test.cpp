@@ -1,6 +1,5 @@
 #include "solver/gather/zone_bias_estimate.h"
 
-#include <atomic>
 #include <numbers>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/lamp_by_ceiling.h"
+#include "tests/support/never.h"
 #include "tests/support/variable_furnace.h"
 
 namespace reemit {
@@ -55,8 +55,7 @@ TEST(ZoneBiasEstimate, solve_states_next_to_nothing_in_a_furnace) {
   const test::VariableFurnace furnace(8);
   SolverSettings settings;
   settings.packets = 2'000'000;
-  const std::atomic<bool> never{false};
-  const Solution solution = solve(furnace.room().scene(), furnace.room().mesh(), settings, {}, never);
+  const Solution solution = solve(furnace.room().scene(), furnace.room().mesh(), settings, {}, test::kNever);
   ASSERT_TRUE(solution.record.gather_bias.has_value());
   EXPECT_FALSE(solution.record.gather_bias->certain());
   EXPECT_LT(solution.record.gather_bias->bound, 0.04);

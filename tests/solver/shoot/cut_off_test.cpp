@@ -13,6 +13,7 @@
 #include "solver/progressive_solver.h"
 #include "solver/shoot/packet_batch.h"
 #include "tests/solver/shoot/methods.h"
+#include "tests/support/never.h"
 #include "tests/support/refusal.h"
 #include "tests/support/test_rooms.h"
 
@@ -55,10 +56,9 @@ TEST(CutOff, TimeLimitHoldsWithinTheFirstBatch) {
     settings.method = method;
     settings.time_limit_s = 0.5;
     const RoomBuilder room = sealed_room(0.9999);
-    const std::atomic<bool> never{false};
     Solution s;
     const double seconds =
-        seconds_of([&] { s = solve(room.scene(), room.mesh(), settings, nullptr, never); });
+        seconds_of([&] { s = solve(room.scene(), room.mesh(), settings, nullptr, test::kNever); });
     EXPECT_LT(seconds, 10) << "asked for 0.5 s; allowed more only because tests run on busy machines";
     EXPECT_EQ(s.record.stopped, StopReason::kTimeLimit) << to_string(method);
     EXPECT_EQ(s.sums.batches, 1);
@@ -150,16 +150,16 @@ TEST(CutOff, WhatComesBeforeTheFirstBatchCanBeStoppedWithoutAResult) {
   SolverSettings settings;
   settings.packets = 10'000;
   const RoomBuilder room = sealed_room(0.5);
-  const std::atomic<bool> never{false};
   const std::atomic<bool> already{true};
   EXPECT_THROW(solve(room.scene(), new_solution(room.scene(), room.mesh(), settings),
-                     {.preparing = WorkWatch({}, StopToken(already))}, never),
+                     {.preparing = WorkWatch({}, StopToken(already))}, test::kNever),
                Interrupted);
   std::vector<double> told;
   SolveWatch watch;
   watch.progress = [&](const SolveProgress&) { EXPECT_EQ(told.back(), 1); };
   watch.preparing = WorkWatch([&](double done) { told.push_back(done); });
-  const Solution s = solve(room.scene(), new_solution(room.scene(), room.mesh(), settings), watch, never);
+  const Solution s =
+      solve(room.scene(), new_solution(room.scene(), room.mesh(), settings), watch, test::kNever);
   ASSERT_FALSE(told.empty());
   EXPECT_EQ(told.back(), 1);
 }
@@ -177,8 +177,7 @@ TEST(CutOff, BounceLimitKeepsTheBooksAndIsNoErrorTarget) {
     const MaterialId wall = box.material("wall", 0.999999);
     box.box(Vec3::Zero(), Vec3::Ones(), {wall, wall, wall, wall, wall, wall}, 1);
     box.scene().lights = {PointLight{"lamp", Vec3(0.5, 0.5, 0.5), box.flat(1)}};
-    const std::atomic<bool> never{false};
-    const Solution s = solve(box.scene(), box.mesh(), settings, nullptr, never);
+    const Solution s = solve(box.scene(), box.mesh(), settings, nullptr, test::kNever);
     expect_exact_books(s);
     // A single walk may as well be absorbed early.
     if (method == SolveMethod::kWalk) continue;
@@ -190,8 +189,7 @@ TEST(CutOff, BounceLimitKeepsTheBooksAndIsNoErrorTarget) {
 std::string refusal(const RoomBuilder& room) {
   SolverSettings settings;
   settings.packets = 2'000;
-  const std::atomic<bool> never{false};
-  return test::refusal_of([&] { solve(room.scene(), room.mesh(), settings, nullptr, never); });
+  return test::refusal_of([&] { solve(room.scene(), room.mesh(), settings, nullptr, test::kNever); });
 }
 
 /// A lit grey room around a small cell of `inside`, open towards +z if asked for; surfaces 6.. are the

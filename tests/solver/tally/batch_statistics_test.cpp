@@ -11,6 +11,7 @@
 #include "solver/progressive_solver.h"
 #include "solver/tally/batch_plan.h"
 #include "solver/tally/replicates.h"
+#include "tests/support/never.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
@@ -29,8 +30,7 @@ Solution run(const test::RoomBuilder& room, std::uint64_t packets, std::uint64_t
   settings.packets = packets;
   settings.batch_packets = packets / static_cast<std::uint64_t>(batches);
   settings.seed = seed;
-  const std::atomic<bool> never{false};
-  return solve_zones(room.scene(), room.mesh(), settings, {}, never);
+  return solve_zones(room.scene(), room.mesh(), settings, {}, test::kNever);
 }
 
 TEST(Replicates, independent_ones_have_the_textbook_error) {

@@ -14,6 +14,7 @@
 #include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
+#include "tests/support/never.h"
 #include "viewer_export/vertex/vertex_ring.h"
 
 namespace reemit {
@@ -145,8 +146,7 @@ TEST(GatherVertices, the_inside_of_a_solid_is_left_out_although_its_surface_has_
   room.scene().lights.push_back(PointLight{"bulb", Vec3(-1, -1, 1.5), Spectrum::Constant(1, 10.0)});
   SolverSettings solver;
   solver.packets = 20'000;
-  const std::atomic<bool> never{false};
-  const Solution solution = solve(room.scene(), build_mesh(room.scene(), {}), solver, {}, never);
+  const Solution solution = solve(room.scene(), build_mesh(room.scene(), {}), solver, {}, test::kNever);
   VertexSettings settings;
   settings.average_zones = true;
   const VertexData data = gather(room, solution, settings);
@@ -270,8 +270,7 @@ TEST(GatherVertices, lines_of_contact_take_no_darkness_from_under_a_thing) {
   mesh.zone_area = 0.002;
   SolverSettings solver;
   solver.packets = 400'000;
-  const std::atomic<bool> never{false};
-  const Solution solution = solve(room.scene(), build_mesh(room.scene(), mesh), solver, {}, never);
+  const Solution solution = solve(room.scene(), build_mesh(room.scene(), mesh), solver, {}, test::kNever);
 
   for (const bool average_zones : {false, true}) {
     VertexSettings settings;
