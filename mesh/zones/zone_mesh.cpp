@@ -23,13 +23,10 @@ void ZoneMesh::add_shapes() {
   if (next != base_.triangles.size()) throw std::invalid_argument("patches without a shape");
 }
 
-ZoneMesh::ZoneMesh(BaseMesh base) : base_(std::move(base)) {
+ZoneMesh::ZoneMesh(BaseMesh base, ZoneGroups groups) : base_(std::move(base)), groups_(std::move(groups)) {
   add_shapes();
-  const std::size_t count = base_.triangles.size();
-  triangle_area_.reserve(count);
-  triangle_normal_.reserve(count);
-  sides_.reserve(2 * count);
-  std::size_t zones = 0;
+  triangle_area_.reserve(base_.triangles.size());
+  triangle_normal_.reserve(base_.triangles.size());
   for (const BaseTriangle& t : base_.triangles) {
     for (const std::uint32_t v : t.vertex)
       if (v >= base_.vertices.size()) throw std::invalid_argument("base triangle with a vertex out of range");
@@ -48,28 +45,118 @@ ZoneMesh::ZoneMesh(BaseMesh base) : base_(std::move(base)) {
       triangle_area_.push_back(0.5 * length);
       triangle_normal_.push_back(length > 0 ? Vec3(cross / length) : Vec3(Vec3::UnitZ()));
     }
-    const std::size_t per_side = std::size_t{t.divisions} * t.divisions;
-    sides_.push_back({ZoneId(zones), t.divisions});
-    sides_.push_back({t.two_sided ? ZoneId(zones + per_side) : ZoneId(), t.divisions});
-    zones += (t.two_sided ? 2 : 1) * per_side;
-    if (zones >= std::numeric_limits<std::uint32_t>::max())
-      throw std::invalid_argument("more than 2^32-2 zones");
   }
-  zone_triangle_.reserve(zones);
-  for (std::size_t i = 0; i < count; ++i) {
-    const BaseTriangle& t = base_.triangles[i];
-    zone_triangle_.insert(zone_triangle_.end(),
-                          (t.two_sided ? 2 : 1) * std::size_t{t.divisions} * t.divisions, TriangleId(i));
+  add_cells();
+  add_groups();
+}
+
+void ZoneMesh::add_cells() {
+  const std::size_t count = base_.triangles.size();
+  if (!groups_.of_side.empty() && groups_.of_side.size() != 2 * count)
+    throw std::invalid_argument("groups of another number of sides");
+  const auto group_of = [&](std::size_t side) {
+    return groups_.of_side.empty() ? ZoneGroups::kOwn : groups_.of_side[side];
+  };
+  sides_.reserve(2 * count);
+  std::size_t zones = 0;
+  for (std::size_t s = 0; s < 2 * count; ++s) {
+    const BaseTriangle& t = base_.triangles[s / 2];
+    if (s % 2 == 1 && !t.two_sided) {
+      if (group_of(s) != ZoneGroups::kOwn) throw std::invalid_argument("group with a side without zones");
+      sides_.push_back({ZoneId(), t.divisions});
+    } else if (group_of(s) != ZoneGroups::kOwn) {
+      sides_.push_back({ZoneId(), 1});  // numbered once all cells are
+    } else {
+      sides_.push_back({ZoneId(zones), t.divisions});
+      zones += std::size_t{t.divisions} * t.divisions;
+      if (zones >= std::numeric_limits<std::uint32_t>::max() - groups_.count)
+        throw std::invalid_argument("more than 2^32-2 zones");
+    }
   }
+  zone_side_.reserve(zones + groups_.count);
+  for (std::size_t s = 0; s < 2 * count; ++s)
+    if (sides_[s].first_zone.valid())
+      zone_side_.insert(zone_side_.end(), std::size_t{sides_[s].divisions} * sides_[s].divisions,
+                        static_cast<std::uint32_t>(s));
+}
+
+void ZoneMesh::add_groups() {
+  if (groups_.sealed > groups_.count) throw std::invalid_argument("more sealed groups than groups");
+  if (groups_.of_side.empty() && groups_.count > 0) throw std::invalid_argument("groups without members");
+  if (groups_.of_side.empty()) return;
+  first_member_.assign(groups_.count + 1, 0);
+  for (const std::uint32_t g : groups_.of_side) {
+    if (g == ZoneGroups::kOwn) continue;
+    if (g >= groups_.count) throw std::invalid_argument("side with a group out of range");
+    ++first_member_[g + 1];
+  }
+  for (std::uint32_t g = 0; g < groups_.count; ++g) {
+    if (first_member_[g + 1] == 0) throw std::invalid_argument("group without members");
+    first_member_[g + 1] += first_member_[g];
+  }
+  members_.resize(first_member_.back());
+  members_area_.resize(first_member_.back());
+  member_.resize(groups_.of_side.size());
+  const std::size_t cells = zone_side_.size();
+  std::vector<std::uint32_t> filled(groups_.count, 0);
+  for (std::size_t s = 0; s < groups_.of_side.size(); ++s) {
+    const std::uint32_t g = groups_.of_side[s];
+    if (g == ZoneGroups::kOwn) continue;
+    sides_[s].first_zone = ZoneId(cells + g);
+    member_[s] = filled[g]++;
+    const std::size_t place = first_member_[g] + member_[s];
+    members_[place] = static_cast<std::uint32_t>(s);
+    const bool is_first = member_[s] == 0;
+    members_area_[place] = triangle_area_[s / 2] + (is_first ? 0 : members_area_[place - 1]);
+    const std::uint32_t first = members_[first_member_[g]];
+    if (s % 2 != first % 2 || base_.triangles[s / 2].surface != base_.triangles[first / 2].surface)
+      throw std::invalid_argument("group of several surfaces, or of fronts and backs");
+  }
+  for (std::uint32_t g = 0; g < groups_.count; ++g) zone_side_.push_back(members_[first_member_[g]]);
+}
+
+SidePoint cell_point(const SideCell& cell, float a, float b) {
+  const auto corner = zone_corners(cell.divisions, cell.number);
+  const auto inside = [&](double Barycentric::*k) {
+    return (1 - a - b) * corner[0].*k + a * corner[1].*k + b * corner[2].*k;
+  };
+  return {cell.triangle, {inside(&Barycentric::u), inside(&Barycentric::v)}, cell.front};
+}
+
+SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
+  const std::size_t first = first_member(group);
+  const std::size_t last = first + member_count(group) - 1;
+  const double at = static_cast<double>(u) * members_area_[last];
+  const auto begin = members_area_.begin();
+  const auto found = std::upper_bound(begin + static_cast<std::ptrdiff_t>(first),
+                                      begin + static_cast<std::ptrdiff_t>(last), at);
+  const auto place = static_cast<std::size_t>(found - begin);
+  const double before = place == first ? 0 : members_area_[place - 1];
+  const double share = (at - before) / (members_area_[place] - before);
+  constexpr float kBelowOne = 1 - 0x1p-24F;
+  u = std::min(static_cast<float>(share), kBelowOne);
+  return {TriangleId(members_[place] / 2), members_[place] % 2 == 0, 1, 0};
 }
 
 double ZoneMesh::zone_area(ZoneId z) const {
+  if (is_group(z)) return members_area_[first_member(z) + member_count(z) - 1];
   const TriangleId t = zone_triangle(z);
   const double n = triangle(t).divisions;
   return triangle_area(t) / (n * n);
 }
 
 Vec3 ZoneMesh::zone_normal(ZoneId z) const {
+  if (is_group(z)) {
+    const auto of_side = [&](TriangleId t) {
+      return zone_is_front(z) ? triangle_normal(t) : Vec3(-triangle_normal(t));
+    };
+    Vec3 sum = Vec3::Zero();
+    for (std::uint32_t m = 0; m < member_count(z); ++m) {
+      const TriangleId t = member_triangle(z, m);
+      sum += triangle_area(t) * of_side(t);
+    }
+    return sum.norm() > 1e-9 * zone_area(z) ? Vec3(sum.normalized()) : of_side(zone_triangle(z));
+  }
   const auto c = zone_barycentrics(z);
   const Vec3 n = normal(zone_triangle(z), (c[0].u + c[1].u + c[2].u) / 3, (c[0].v + c[1].v + c[2].v) / 3);
   return zone_is_front(z) ? n : Vec3(-n);
@@ -99,6 +186,14 @@ Barycentric ZoneMesh::barycentric_of(TriangleId t, const Vec3& p) const {
 }
 
 Vec3 ZoneMesh::zone_centroid(ZoneId z) const {
+  if (is_group(z)) {
+    Vec3 sum = Vec3::Zero();
+    for (std::uint32_t m = 0; m < member_count(z); ++m) {
+      const TriangleId t = member_triangle(z, m);
+      sum += triangle_area(t) * point(t, 1.0 / 3, 1.0 / 3);
+    }
+    return sum / zone_area(z);
+  }
   const auto c = zone_barycentrics(z);
   return point(zone_triangle(z), (c[0].u + c[1].u + c[2].u) / 3, (c[0].v + c[1].v + c[2].v) / 3);
 }

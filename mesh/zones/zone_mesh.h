@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/zones/curved_patch.h"
+#include "mesh/zones/zone_groups.h"
 #include "mesh/zones/zone_lookup.h"
 #include "scenes/model/ids.h"
 #include "scenes/model/vec.h"
@@ -43,19 +44,37 @@ struct SidePoint {
   bool front = true;
 };
 
+/// One of the divisions^2 congruent parts of a side of a base triangle (zone_lookup.h).
+struct SideCell {
+  TriangleId triangle;
+  bool front = true;
+  std::uint32_t divisions = 1;
+  std::uint32_t number = 0;
+};
+
+/// The point of a cell that is a and b of its edges away from its first corner: uniform over the cell for
+/// a, b uniform over the triangle a, b >= 0, a + b <= 1.
+SidePoint cell_point(const SideCell& cell, float a, float b);
+
 /// Base triangles and their zones: the one place that knows what a zone is, which zone a point belongs to,
-/// and where the points of a zone are. A zone is one cell of a base triangle seen from one side; the back of
-/// a two-sided triangle has zones of its own, numbered like those of its front. No radiometric value is
-/// stored here.
+/// and where the points of a zone are. A zone is one cell of a base triangle seen from one side, or a group
+/// of whole sides of triangles (ZoneGroups). The back of a two-sided triangle has zones of its own, numbered
+/// like those of its front; groups come after all cells. No radiometric value is stored here.
 class ZoneMesh {
  public:
-  /// Throws std::invalid_argument when an index is out of range, patches are not in order, divisions is 0 or
-  /// the zones exceed 2^32-2.
-  explicit ZoneMesh(BaseMesh base);
+  /// Throws std::invalid_argument when an index is out of range, patches are not in order, divisions is 0,
+  /// the zones exceed 2^32-2, or a group is empty, mixes surfaces or fronts with backs, or has a side that
+  /// has no zones.
+  explicit ZoneMesh(BaseMesh base, ZoneGroups groups = {});
 
   const BaseMesh& base() const { return base_; }
+  const ZoneGroups& groups() const { return groups_; }
   std::size_t triangle_count() const { return base_.triangles.size(); }
-  std::size_t zone_count() const { return zone_triangle_.size(); }
+  std::size_t zone_count() const { return zone_side_.size(); }
+  std::size_t cell_zone_count() const { return zone_count() - groups_.count; }  ///< Of zones that are cells.
+  bool is_group(ZoneId z) const { return z.index() >= cell_zone_count(); }
+  /// A group of sides that no light reaches.
+  bool is_sealed(ZoneId z) const { return is_group(z) && z.index() - cell_zone_count() < groups_.sealed; }
 
   const BaseTriangle& triangle(TriangleId t) const { return base_.triangles[t.index()]; }
   const Vec3& corner(TriangleId t, int k) const {
@@ -86,27 +105,39 @@ class ZoneMesh {
     return s.first_zone.valid() ? ZoneId(s.first_zone.index() + zone_in_triangle(s.divisions, u, v))
                                 : ZoneId();
   }
-  /// The point of a zone that is a and b of its edges away from its first corner: uniform over the zone for
-  /// a, b uniform over the triangle a, b >= 0, a + b <= 1.
-  SidePoint zone_point(ZoneId z, float a, float b) const {
-    const auto corner = zone_barycentrics(z);
-    const auto inside = [&](double Barycentric::*k) {
-      return (1 - a - b) * corner[0].*k + a * corner[1].*k + b * corner[2].*k;
-    };
-    return {zone_triangle(z), {inside(&Barycentric::u), inside(&Barycentric::v)}, zone_is_front(z)};
+  /// A cell of the zone, chosen in proportion to areas by a uniform number, which is uniform again
+  /// afterwards: the zone itself, or a member of the group.
+  SideCell pick_cell(ZoneId z, float& u) const {
+    if (is_group(z)) return member_cell(z, u);
+    const std::uint32_t side = zone_side_[z.index()];
+    return {TriangleId(side / 2), side % 2 == 0, sides_[side].divisions,
+            static_cast<std::uint32_t>(z.index() - sides_[side].first_zone.index())};
+  }
+  /// Number of a side within its group. Pre: it is in one.
+  std::uint32_t member(TriangleId t, bool front) const { return member_[side_number(t, front)]; }
+  /// The triangle of a member of a group.
+  TriangleId member_triangle(ZoneId group, std::uint32_t member) const {
+    return TriangleId(members_[first_member(group) + member] / 2);
+  }
+  std::size_t member_count(ZoneId group) const {
+    return first_member_[group.index() - cell_zone_count() + 1] - first_member(group);
   }
 
-  TriangleId zone_triangle(ZoneId z) const { return zone_triangle_[z.index()]; }  ///< The zone's parent.
-  bool zone_is_front(ZoneId z) const { return z < back_begin(zone_triangle(z)); }
+  /// The zone's parent; of a group, its first member.
+  TriangleId zone_triangle(ZoneId z) const { return TriangleId(zone_side_[z.index()] / 2); }
+  bool zone_is_front(ZoneId z) const { return zone_side_[z.index()] % 2 == 0; }
   SurfaceId zone_surface(ZoneId z) const { return triangle(zone_triangle(z)).surface; }
   double zone_area(ZoneId z) const;  ///< [m2]
-  Vec3 zone_normal(ZoneId z) const;  ///< Unit, points away from the side the zone is on.
+  /// Unit, points away from the side the zone is on; of a group, the direction of the sum of its area
+  /// vectors, or the normal of its first member where that is 0.
+  Vec3 zone_normal(ZoneId z) const;
   /// Barycentric corners within the parent triangle; counter-clockwise seen from the *front* of the triangle.
+  /// Pre: not a group.
   std::array<Barycentric, 3> zone_barycentrics(ZoneId z) const;
   Vec3 point(TriangleId t, double u, double v) const;  ///< [m], on the shape where it is curved.
   /// Barycentric position in t of a point on it [m].
   Barycentric barycentric_of(TriangleId t, const Vec3& point) const;
-  Vec3 zone_centroid(ZoneId z) const;  ///< [m]
+  Vec3 zone_centroid(ZoneId z) const;  ///< [m]; of a group, the mean over its area.
 
  private:
   struct Side {
@@ -114,13 +145,14 @@ class ZoneMesh {
     std::uint32_t divisions;
   };
 
-  const Side& side(TriangleId t, bool front) const { return sides_[2 * t.index() + (front ? 0 : 1)]; }
-  ZoneId back_begin(TriangleId t) const {
-    const BaseTriangle& tri = triangle(t);
-    return ZoneId(first_zone(t, true).index() + std::size_t{tri.divisions} * tri.divisions);
-  }
+  static std::size_t side_number(TriangleId t, bool front) { return 2 * t.index() + (front ? 0 : 1); }
+  const Side& side(TriangleId t, bool front) const { return sides_[side_number(t, front)]; }
+  std::size_t first_member(ZoneId group) const { return first_member_[group.index() - cell_zone_count()]; }
+  SideCell member_cell(ZoneId group, float& u) const;
 
   void add_shapes();
+  void add_cells();
+  void add_groups();
 
   BaseMesh base_;
   std::size_t flat_count_ = 0;
@@ -128,8 +160,13 @@ class ZoneMesh {
   std::vector<TriangleId> first_patch_;
   std::vector<double> triangle_area_;
   std::vector<Vec3> triangle_normal_;
-  std::vector<Side> sides_;  // front, back of each triangle
-  std::vector<TriangleId> zone_triangle_;
+  std::vector<Side> sides_;               // front, back of each triangle; of one in a group: the group, 1
+  std::vector<std::uint32_t> zone_side_;  // side_number of each zone; of a group, of its first member
+  ZoneGroups groups_;
+  std::vector<std::size_t> first_member_;  // of each group, and the end
+  std::vector<std::uint32_t> members_;     // side_number, by group
+  std::vector<double> members_area_;       // of the members of a group up to and with this one [m2]
+  std::vector<std::uint32_t> member_;      // by side_number; empty without groups
 };
 
 }  // namespace reemit

@@ -86,11 +86,13 @@ std::uint32_t TopologyBuilder::add_vertex(const Vec3& position, const Vec3& norm
 
 void TopologyBuilder::reserve() {
   std::size_t vertices = 0;
+  std::size_t cells = 0;
   for (const BaseTriangle& t : mesh_.base().triangles) {
     const std::size_t n = t.divisions;
     vertices += (t.two_sided ? 2 : 1) * (n + 1) * (n + 2) / 2;
+    cells += (t.two_sided ? 2 : 1) * n * n;
   }
-  out_.reserve(vertices, mesh_.zone_count() + vertices, mesh_.zone_count());
+  out_.reserve(vertices, cells + vertices, cells);
 }
 
 void TopologyBuilder::add_corner_vertices() {

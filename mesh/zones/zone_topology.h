@@ -12,11 +12,11 @@ struct ZoneTopologyTraits : OpenMesh::DefaultTraits {
   FaceAttributes(OpenMesh::Attributes::Normal);
 };
 
-/// Half-edge mesh of the zones: face i is zone i, wound counter-clockwise seen from the side the zone is on.
-/// A zone beside finer ones is a polygon with the finer ones' vertices on its straight sides, so neighbours
+/// Half-edge mesh of the cells: face i is cell i of ZoneCells, wound counter-clockwise seen from its side.
+/// A cell beside finer ones is a polygon with the finer ones' vertices on its straight sides, so neighbours
 /// always share edges. Vertices are shared within smooth parts only: split at creases, at borders between
-/// surfaces or materials, between front and back, and where more than two zones meet at an edge. Vertex
-/// normals are the shading normals (towards the side of the zone).
+/// surfaces or materials, between front and back, and where more than two cells meet at an edge. Vertex
+/// normals are the shading normals (towards the side of the cell).
 using ZoneTopology = OpenMesh::PolyMesh_ArrayKernelT<ZoneTopologyTraits>;
 
 ZoneTopology make_zone_topology(const ZoneMesh& mesh, double crease_angle_deg);

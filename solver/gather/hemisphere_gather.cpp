@@ -21,7 +21,7 @@ std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight&
   for (std::size_t z = 0; z < reach.size(); ++z)
     reach[z] = uneven[z] != 0
                    ? std::numeric_limits<float>::infinity()
-                   : static_cast<float>(settings.close_hit) * field.zone_size(mesh.zone_triangle(ZoneId(z)));
+                   : static_cast<float>(settings.close_hit) * field.zone_size(ZoneId(z));
   return reach;
 }
 

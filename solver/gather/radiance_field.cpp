@@ -18,14 +18,16 @@ RadianceField::RadianceField(const Room& room, const Solution& solution, std::si
   if (!(scene.bands == solution.bands) || scene.surfaces.size() != solution.surface_names.size())
     throw InputError(scene.source, "the room is not the one that was solved",
                      "Solve it again: its surfaces or bands have changed since.");
-  const ZoneMesh& mesh = room.mesh();
-  zone_size_.resize(mesh.triangle_count());
-  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
-    const TriangleId t(i);
-    zone_size_[i] = static_cast<float>(std::sqrt(2 * mesh.triangle_area(t)) / mesh.triangle(t).divisions /
-                                       room.rays().metres_per_unit());
-  }
   read_zones(solution);
+}
+
+float RadianceField::zone_size(ZoneId z) const {
+  const ZoneMesh& mesh = room_->mesh();
+  const double metres = mesh.is_group(z)
+                            ? std::sqrt(2 * mesh.zone_area(z))
+                            : std::sqrt(2 * mesh.triangle_area(mesh.zone_triangle(z))) /
+                                  mesh.triangle(mesh.zone_triangle(z)).divisions;
+  return static_cast<float>(metres / room_->rays().metres_per_unit());
 }
 
 void RadianceField::read_zones(const Solution& solution) {

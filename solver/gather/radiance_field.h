@@ -29,8 +29,8 @@ class RadianceField {
   const float* reflected_direct(ZoneId zone) const {
     return zone.valid() ? &reflected_direct_[zone.index() * bands_] : zero_.data();
   }
-  /// Edge length of the square that two zones of this triangle make up [normalised units].
-  float zone_size(TriangleId t) const { return zone_size_[t.index()]; }
+  /// Edge length of the square that two zones such as this make up [normalised units].
+  float zone_size(ZoneId z) const;
 
  private:
   void read_zones(const Solution& solution);
@@ -41,7 +41,6 @@ class RadianceField {
   std::size_t values_ = 0;        // zones * bands
   std::vector<float> reflected_;  // by part, then by zone
   std::vector<float> reflected_direct_;
-  std::vector<float> zone_size_;
   std::vector<float> zero_;
 };
 

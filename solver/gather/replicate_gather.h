@@ -12,8 +12,10 @@ namespace reemit {
 
 /// A point of a zone, uniform over it for uniform u.
 inline SurfacePoint point_in_zone(const Room& room, ZoneId zone, const std::array<float, 2>& u) {
-  const auto [a, b] = sample_triangle(u[0], u[1]);
-  const SidePoint x = room.mesh().zone_point(zone, a, b);
+  float u0 = u[0];
+  const SideCell cell = room.mesh().pick_cell(zone, u0);
+  const auto [a, b] = sample_triangle(u0, u[1]);
+  const SidePoint x = cell_point(cell, a, b);
   return surface_point(room.rays(), x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v),
                        x.front);
 }

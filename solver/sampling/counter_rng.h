@@ -24,6 +24,7 @@ enum class RngPurpose : std::uint32_t {
   kUnevenZone,
   kZoneBias,
   kArrival,
+  kSealedSides,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "scenes/model/ids.h"
+#include "mesh/zones/zone_mesh.h"
 
 namespace reemit {
 
@@ -13,15 +13,25 @@ namespace reemit {
 struct BarycentricPoint {
   float u, v;
 };
+/// The same of a member of a group of sides.
+struct MemberPoint {
+  std::uint32_t member;
+  float u, v;
+};
 
 /// Where the packets of a sweep met the zones: up to a few points of each, chosen by chance with equal odds
 /// for every packet, whichever thread brings it. In the next sweep the zone's packets leave from them, so
 /// that light stays in the part of the zone that it fell on. Points are rounded to 2^-20 of their base
-/// triangle.
+/// triangle, in groups, whose triangles are small, to 2^-10.
 class ArrivalPoints {
  public:
   /// One point per zone, or more where there are few zones and many `packets`.
   ArrivalPoints(std::size_t zones, std::uint32_t packets);
+
+  /// Zones that packets leave from anywhere have none: sides that no light should reach.
+  static bool has_points(const ZoneMesh& mesh, ZoneId zone) {
+    return !mesh.is_group(zone) || (!mesh.is_sealed(zone) && mesh.member_count(zone) <= kFractions);
+  }
 
   /// Points added from here on belong to `sweep`; those of the sweep before can be read. Sweeps count from 0.
   void begin(std::uint32_t sweep);
@@ -32,14 +42,13 @@ class ArrivalPoints {
   }
   /// The packet met the zone at (u,v) of its base triangle. Any thread.
   void add(std::uint64_t* place, std::uint32_t bits, float u, float v) const {
-    const std::atomic_ref<std::uint64_t> slot(*place);
-    // The order of the keys decides, not that of the threads: a sweep's points hide older ones, and among
-    // themselves the largest random number wins.
-    const std::uint64_t key = sweep_key_ | std::uint64_t{bits & 0xffffU} << 40 |
-                              std::uint64_t{fraction(u)} << 20 | std::uint64_t{fraction(v)};
-    std::uint64_t seen = slot.load(std::memory_order_relaxed);
-    while (seen < key && !slot.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-    }
+    put(place, bits, std::uint64_t{fraction(u, kFractions)} << 20 | fraction(v, kFractions));
+  }
+  /// The packet met a member of a group there.
+  void add_in_group(std::uint64_t* place, std::uint32_t bits, std::uint32_t member, float u, float v) const {
+    put(place, bits,
+        std::uint64_t{member} << 20 | std::uint64_t{fraction(u, kMemberFractions)} << 10 |
+            fraction(v, kMemberFractions));
   }
 
   /// The points of the sweep before in one zone, dealt out evenly to the packets that it sends.
@@ -48,18 +57,28 @@ class ArrivalPoints {
     Dealer() = default;
     /// Where packet k leaves; none if nothing arrived in the zone.
     std::optional<BarycentricPoint> point(std::uint32_t k) const {
-      const auto first = static_cast<std::size_t>(k * step_ >> 32);
-      for (std::size_t i = 0; i < count_; ++i) {
-        const std::uint64_t key = own_[first + i < count_ ? first + i : first + i - count_];
-        if (key < oldest_) continue;
-        constexpr float kStep = 1.0F / kFractions;
-        return BarycentricPoint{kStep * static_cast<float>(key >> 20 & (kFractions - 1)),
-                                kStep * static_cast<float>(key & (kFractions - 1))};
-      }
-      return std::nullopt;
+      const std::uint64_t key = this->key(k);
+      if (key == 0) return std::nullopt;
+      return BarycentricPoint{coordinate(key >> 20, kFractions), coordinate(key, kFractions)};
+    }
+    /// The same for a zone that is a group.
+    std::optional<MemberPoint> point_in_group(std::uint32_t k) const {
+      const std::uint64_t key = this->key(k);
+      if (key == 0) return std::nullopt;
+      return MemberPoint{static_cast<std::uint32_t>(key >> 20 & (kFractions - 1)),
+                         coordinate(key >> 10, kMemberFractions), coordinate(key, kMemberFractions)};
     }
 
    private:
+    /// 0 if nothing arrived in the zone.
+    std::uint64_t key(std::uint32_t k) const {
+      const auto first = static_cast<std::size_t>(k * step_ >> 32);
+      for (std::size_t i = 0; i < count_; ++i) {
+        const std::uint64_t key = own_[first + i < count_ ? first + i : first + i - count_];
+        if (key >= oldest_) return key;
+      }
+      return 0;
+    }
     friend class ArrivalPoints;
     Dealer(const std::uint64_t* own, std::size_t count, std::uint64_t oldest, std::uint32_t packets)
         : own_(own), count_(count), oldest_(oldest), step_((std::uint64_t{count} << 32) / packets) {}
@@ -75,8 +94,22 @@ class ArrivalPoints {
 
  private:
   static constexpr std::uint32_t kFractions = 1U << 20;
-  static std::uint32_t fraction(float x) {
-    return static_cast<std::uint32_t>(std::clamp(x * kFractions, 0.0F, kFractions - 1.0F));
+  static constexpr std::uint32_t kMemberFractions = 1U << 10;
+  static std::uint32_t fraction(float x, std::uint32_t parts) {
+    return static_cast<std::uint32_t>(
+        std::clamp(x * static_cast<float>(parts), 0.0F, static_cast<float>(parts - 1)));
+  }
+  static float coordinate(std::uint64_t low_bits, std::uint32_t parts) {
+    return 1.0F / static_cast<float>(parts) * static_cast<float>(low_bits & (parts - 1));
+  }
+  void put(std::uint64_t* place, std::uint32_t bits, std::uint64_t point) const {
+    const std::atomic_ref<std::uint64_t> slot(*place);
+    // The order of the keys decides, not that of the threads: a sweep's points hide older ones, and among
+    // themselves the largest random number wins.
+    const std::uint64_t key = sweep_key_ | std::uint64_t{bits & 0xffffU} << 40 | point;
+    std::uint64_t seen = slot.load(std::memory_order_relaxed);
+    while (seen < key && !slot.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
+    }
   }
 
   std::size_t per_zone_;

@@ -106,12 +106,25 @@ void FlightCursor::enter_source(std::size_t source) {
 }
 
 bool FlightCursor::put_arrivals(ZoneId zone, std::uint32_t packet, int first, int last) {
+  if (!ArrivalPoints::has_points(transport_.mesh(), zone)) return false;
+  if (transport_.mesh().is_group(zone)) return put_arrivals_in_group(zone, packet, first, last);
   const auto triangle = static_cast<std::uint32_t>(transport_.mesh().zone_triangle(zone).index());
   transport_.put_side(triangle, transport_.mesh().zone_is_front(zone), lanes_, first, last);
   for (int lane = first; lane < last; ++lane, ++packet) {
     const auto at = dealer_.point(packet - begin_);
     if (!at) return false;
     transport_.put_point(triangle, at->u, at->v, lanes_, lane);
+  }
+  return true;
+}
+
+bool FlightCursor::put_arrivals_in_group(ZoneId group, std::uint32_t packet, int first, int last) {
+  const bool front = transport_.mesh().zone_is_front(group);
+  for (int lane = first; lane < last; ++lane, ++packet) {
+    const auto at = dealer_.point_in_group(packet - begin_);
+    if (!at) return false;
+    const TriangleId t = transport_.mesh().member_triangle(group, at->member);
+    transport_.put_hit(static_cast<std::uint32_t>(t.index()), at->u, at->v, front, lanes_, lane);
   }
   return true;
 }

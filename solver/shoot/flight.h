@@ -75,6 +75,7 @@ class FlightCursor {
   /// Puts the points from which packets `packet`, ... of a zone leave into lanes first .. last-1. False if
   /// nothing arrived in the zone.
   bool put_arrivals(ZoneId zone, std::uint32_t packet, int first, int last);
+  bool put_arrivals_in_group(ZoneId group, std::uint32_t packet, int first, int last);
 
   const PacketRoom& transport_;
   const Flight& flight_;

@@ -19,13 +19,14 @@ PacketRoom::PacketRoom(const Room& room)
     const Vec3f e2 = rays.corner(t, 2) - p0;
     const auto scale = 1.0F / static_cast<float>(n);
     patches_.push_back({p0, scale * e1, scale * e2, p0 + (e1 + e2) / 3.0F, Frame(rays.normal(t)), n,
-                        rays.is_foot(t), mesh.first_zone(t, true).index()});
+                        rays.is_foot(t)});
   }
 }
 
 void PacketRoom::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const {
+  const SideCell cell = mesh_->pick_cell(z, u0);
   const auto [a, b] = sample_triangle(u0, u1);
-  const SidePoint x = mesh_->zone_point(z, a, b);
+  const SidePoint x = cell_point(cell, a, b);
   start_at(x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v), x.front, local, rays, lane);
 }
 
@@ -37,9 +38,9 @@ void PacketRoom::start_at(TriangleId t, float u, float v, bool front, const Vec3
   rays.set(lane, origin, direction);
 }
 
-void PacketRoom::start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
+void PacketRoom::start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
   for (int lane = 0; lane < 16; ++lane) {
-    if ((lanes.curved >> lane & 1U) == 0) continue;
+    if ((lanes.one_by_one >> lane & 1U) == 0) continue;
     const Vec3f local = sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]);
     if ((lanes.points >> lane & 1U) != 0)
       start_at(TriangleId(lanes.zone[lane]), lanes.corner[0][lane], lanes.corner[1][lane],

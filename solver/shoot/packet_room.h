@@ -33,19 +33,17 @@ class PacketRoom {
   /// Puts the geometry of a zone into lanes first .. last-1.
   void put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {
     const TriangleId t = mesh_->zone_triangle(z);
-    if (t.index() >= mesh_->flat_count()) {
+    if (t.index() >= mesh_->flat_count() || mesh_->is_group(z)) {
       const std::uint32_t bits = lane_bits(first, last);
-      lanes.curved |= bits;
+      lanes.one_by_one |= bits;
       lanes.points &= ~bits;
       lanes.feet &= ~bits;
       std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(z.index()));
       return;
     }
     const TrianglePatch& p = patches_[t.index()];
-    std::size_t in_side = z.index() - p.first_zone;
-    const std::size_t per_side = std::size_t{p.divisions} * p.divisions;
-    const bool front = in_side < per_side;
-    if (!front) in_side -= per_side;
+    const bool front = mesh_->zone_is_front(z);
+    const std::size_t in_side = z.index() - mesh_->first_zone(t, front).index();
     put_flat_side(static_cast<std::uint32_t>(t.index()), front, lanes, first, last);
     const ZoneCell cell = zone_cell(p.divisions, static_cast<std::uint32_t>(in_side));
     // An upper zone is a lower one turned about the middle of their cell.
@@ -64,7 +62,7 @@ class PacketRoom {
   void put_side(std::uint32_t triangle, bool front, ZoneLanes& lanes, int first, int last) const {
     if (triangle >= mesh_->flat_count()) {
       const std::uint32_t bits = lane_bits(first, last);
-      lanes.curved |= bits;
+      lanes.one_by_one |= bits;
       lanes.points |= bits;
       lanes.feet &= ~bits;
       std::fill(lanes.zone + first, lanes.zone + last, triangle);
@@ -95,10 +93,10 @@ class PacketRoom {
     put_point(triangle, u, v, lanes, lane);
   }
 
-  /// start_rays for zones that may be curved.
+  /// start_rays for zones that may be curved or groups.
   void start(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
     start_rays(lanes, numbers, rays);
-    if (lanes.curved != 0) start_curved(lanes, numbers, rays);
+    if (lanes.one_by_one != 0) start_one_by_one(lanes, numbers, rays);
     if (lanes.feet != 0) start_at_feet(lanes, rays);
   }
   /// Starts one ray from a uniform point of a zone with a direction given in the frame of its normal (z up).
@@ -116,7 +114,7 @@ class PacketRoom {
   void put_flat_side(std::uint32_t triangle, bool front, ZoneLanes& lanes, int first, int last) const {
     const std::uint32_t bits = lane_bits(first, last);
     const TrianglePatch& p = patches_[triangle];
-    lanes.curved &= ~bits;
+    lanes.one_by_one &= ~bits;
     lanes.feet &= ~bits;
     if (p.is_foot) {
       lanes.feet |= bits;
@@ -132,7 +130,7 @@ class PacketRoom {
   }
 
   void start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays, int lane) const;
-  void start_curved(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
+  void start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
   void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;
 
   /// A base triangle with the edges of one of its zones (normalised space).
@@ -141,7 +139,6 @@ class PacketRoom {
     Frame frame;  // about the front normal
     std::uint32_t divisions;
     bool is_foot;
-    std::size_t first_zone;
   };
 
   const Room* room_;

@@ -18,19 +18,12 @@ PacketSources collect_packet_sources(const PacketRoom& transport) {
     emission.sources.push_back(source);
     watts.insert(watts.end(), power.begin(), power.end());
   };
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const TriangleId id(t);
-    const BaseTriangle& triangle = mesh.triangle(id);
-    if (!surfaces.emits(triangle.surface)) continue;
-    const std::size_t per_side = std::size_t{triangle.divisions} * triangle.divisions;
-    const Spectrum power =
-        mesh.triangle_area(id) / static_cast<double>(per_side) * surfaces.exitance(triangle.surface);
-    const auto exponent = static_cast<float>(surfaces.emission_exponent(triangle.surface));
-    for (const bool front : {true, false}) {
-      if (!surfaces.emits(id, front)) continue;
-      const std::size_t first = mesh.first_zone(id, front).index();
-      for (std::size_t z = 0; z < per_side; ++z) add({ZoneId(first + z), 0, exponent}, power);
-    }
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    const ZoneId zone(z);
+    if (!surfaces.emits(mesh.zone_triangle(zone), mesh.zone_is_front(zone))) continue;
+    const SurfaceId surface = mesh.zone_surface(zone);
+    add({zone, 0, static_cast<float>(surfaces.emission_exponent(surface))},
+        mesh.zone_area(zone) * surfaces.exitance(surface));
   }
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     add({ZoneId(), static_cast<std::uint32_t>(l), 0},

@@ -27,6 +27,9 @@ struct Account {
   std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room or needs a second look.
   bool shared = false;
   std::uint64_t* place = nullptr;  ///< Among the arrival points of its zone, if they are kept.
+  std::uint32_t member = kNoMember;  ///< Of the zone, if that is a group.
+
+  static constexpr std::uint32_t kNoMember = 0xffffffff;
 };
 
 /// Accounts of 16 packets. Their memory is asked for at once, before the first is needed: with many zones the
@@ -43,15 +46,17 @@ void find_accounts(const PacketRoom& transport, const Hit16& hits, int count,
     if (!second_look && (!zone.valid() || transport.rays().is_at_edge(t, hits.u[lane], hits.v[lane])))
       continue;
     if (zone.valid()) {
-      accounts[lane] = {&incident.quanta[zone.index() * bands], shared, nullptr};
+      accounts[lane] = {&incident.quanta[zone.index() * bands], shared};
       incident.touch(zone.index());
-      if (arrivals != nullptr) {
+      if (arrivals != nullptr && ArrivalPoints::has_points(transport.mesh(), zone)) {
+        if (transport.mesh().is_group(zone))
+          accounts[lane].member = transport.mesh().member(TriangleId(t), hits.front[lane]);
         accounts[lane].place = arrivals->place(zone, bits[lane]);
         __builtin_prefetch(accounts[lane].place, 1);
       }
     } else {
       const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
-      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true, nullptr};
+      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true};
       count_event(books.events.back_hits);
     }
     __builtin_prefetch(accounts[lane].quanta, 1);
@@ -93,8 +98,13 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
           count_event(books.events.second_looks);
           continue;
         }
-        if (account.place != nullptr)
-          arrivals->add(account.place, bits.word[0][lane], hits.u[lane], hits.v[lane]);
+        if (account.place != nullptr) {
+          if (account.member == Account::kNoMember)
+            arrivals->add(account.place, bits.word[0][lane], hits.u[lane], hits.v[lane]);
+          else
+            arrivals->add_in_group(account.place, bits.word[0][lane], account.member, hits.u[lane],
+                                   hits.v[lane]);
+        }
         for (std::size_t b = 0; b < bands; ++b)
           if (account.quanta != nullptr)
             book(account.quanta[b], quanta[b], account.shared);

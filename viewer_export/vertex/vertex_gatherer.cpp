@@ -94,7 +94,7 @@ SurfacePoint VertexGatherer::point_beside(std::size_t v, const std::array<float,
   while (ring + 1 != rings_.end(v) && left >= ring->area) left -= (ring++)->area;
   const auto stretched = static_cast<float>(std::clamp(left / ring->area, 0.0, 1 - 0x1p-24));
   const auto [s, t] = sample_triangle(stretched, u[1]);
-  const SidePoint inside = room_.mesh().zone_point(ring->zone, s, t);
+  const SidePoint inside = cell_point(ring->cell, s, t);
   const auto towards = [&](double Barycentric::*k) {
     return static_cast<float>(ring->vertex.*k + settings_.reach * (inside.at.*k - ring->vertex.*k));
   };

@@ -55,7 +55,11 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
         const Estimate e = solution.irradiance(r->zone, b);
         direct += share * solution.direct_irradiance(r->zone, b).mean;
         all += share * e.mean;
-        variance += share * share * e.stderr_of_mean * e.stderr_of_mean;
+        // Cells of one group share its value and its error.
+        double same = 0;
+        for (const RingZone* q = rings.begin(v); q != rings.end(v); ++q)
+          if (q->zone == r->zone) same += q->area / area;
+        variance += share * same * e.stderr_of_mean * e.stderr_of_mean;
       }
       const ZoneId zone = rings.begin(v)->zone;
       const TriangleId t = mesh.zone_triangle(zone);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer_export/vertex/kept_zones.h"
+#include "mesh/zones/zone_cells.h"
+#include "viewer_export/vertex/kept_cells.h"
 
 namespace reemit {
 namespace {
@@ -101,17 +102,18 @@ std::vector<std::array<std::uint32_t, 3>> cut_into_triangles(const std::vector<V
 VertexRings::VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones) {
   const ZoneMesh& mesh = solution.mesh;
   const ZoneTopology topology = make_zone_topology(mesh, solution.mesh_settings.crease_angle_deg);
-  const std::vector<bool> kept = kept_zones(surfaces, solution, all_zones);
+  const ZoneCells cells(mesh);
+  const std::vector<bool> kept = kept_cells(surfaces, solution, cells, all_zones);
   const double watts = watts_per_packet(solution);
   std::vector<std::uint32_t> number(topology.n_vertices(), kLeftOut);
   first_.push_back(0);
   for (const auto vertex : topology.vertices()) {
     const Vec3 position = to_vec3(topology.point(vertex));
     for (auto face = topology.cvf_iter(vertex); face.is_valid(); ++face) {
-      const auto z = static_cast<std::size_t>(face->idx());
-      if (!kept[z]) continue;
-      const ZoneId zone(z);
-      rings_.push_back({zone, mesh.barycentric_of(mesh.zone_triangle(zone), position), mesh.zone_area(zone)});
+      const auto i = static_cast<std::size_t>(face->idx());
+      if (!kept[i]) continue;
+      const SideCell cell = cells.cell(i);
+      rings_.push_back({cells.zone(i), cell, mesh.barycentric_of(cell.triangle, position), cells.area(i)});
     }
     if (rings_.size() == first_.back()) continue;
     leave_out_covered(solution, watts, first_.back(), rings_);
@@ -123,12 +125,12 @@ VertexRings::VertexRings(const SurfaceModel& surfaces, const Solution& solution,
   add_triangles(topology, kept, number);
 }
 
-void VertexRings::add_triangles(const ZoneTopology& topology, const std::vector<bool>& kept,
+void VertexRings::add_triangles(const ZoneTopology& topology, const std::vector<bool>& kept_cells,
                                 const std::vector<std::uint32_t>& number) {
   std::vector<Vec3> polygon;
   std::vector<std::uint32_t> corners;
   for (const auto face : topology.faces()) {
-    if (!kept[static_cast<std::size_t>(face.idx())]) continue;
+    if (!kept_cells[static_cast<std::size_t>(face.idx())]) continue;
     polygon.clear();
     corners.clear();
     for (auto v = topology.cfv_ccwiter(face); v.is_valid(); ++v) {

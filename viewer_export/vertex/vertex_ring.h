@@ -10,11 +10,12 @@
 
 namespace reemit {
 
-/// One zone beside a vertex.
+/// One cell beside a vertex.
 struct RingZone {
-  ZoneId zone;
-  Barycentric vertex;  ///< Where the vertex lies in the parent triangle of the zone.
-  double area;         ///< [m2]
+  ZoneId zone;         ///< That it is, or belongs to.
+  SideCell cell;       ///< The part of the zone that lies at the vertex.
+  Barycentric vertex;  ///< Where the vertex lies in the triangle of the cell.
+  double area;         ///< Of the cell [m2].
 };
 
 /// The vertices to export and the zones around each: those of one smooth part on one side that no thing
@@ -31,11 +32,11 @@ class VertexRings {
 
   const std::vector<Vec3>& positions() const { return positions_; }  ///< [m]
   const std::vector<Vec3>& normals() const { return normals_; }
-  /// Zones as triangles of these vertices, counter-clockwise seen from their side.
+  /// Cells as triangles of these vertices, counter-clockwise seen from their side.
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
 
  private:
-  void add_triangles(const ZoneTopology& topology, const std::vector<bool>& kept,
+  void add_triangles(const ZoneTopology& topology, const std::vector<bool>& kept_cells,
                      const std::vector<std::uint32_t>& number);
 
   std::vector<std::size_t> first_;

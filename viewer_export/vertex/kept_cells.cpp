@@ -1,4 +1,4 @@
-#include "viewer_export/vertex/kept_zones.h"
+#include "viewer_export/vertex/kept_cells.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -51,24 +51,26 @@ std::vector<std::size_t> sheets(const BaseMesh& base) {
 }
 
 /// By sheet, whether its backs get light.
-std::vector<bool> lit_backs(const Solution& solution, const std::vector<std::size_t>& sheet) {
-  const ZoneMesh& mesh = solution.mesh;
+std::vector<bool> lit_backs(const Solution& solution, const ZoneCells& cells,
+                            const std::vector<std::size_t>& sheet) {
   const std::size_t bands = solution.bands.count();
   const ZoneSums& sums = solution.sums;
   std::vector<double> power(sheet.size());
   std::vector<double> area(sheet.size());
   double total_power = 0;
   double total_area = 0;
-  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
-    const double zone_area = mesh.zone_area(ZoneId(z));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double cell_area = cells.area(i);
+    const std::size_t z = cells.zone(i).index();
     double irradiance = 0;
     for (std::size_t k = z * bands; k < (z + 1) * bands; ++k) irradiance += sums.direct[k] + sums.indirect[k];
-    total_power += zone_area * irradiance;
-    total_area += zone_area;
-    if (mesh.zone_is_front(ZoneId(z))) continue;
-    const std::size_t s = sheet[mesh.zone_triangle(ZoneId(z)).index()];
-    power[s] += zone_area * irradiance;
-    area[s] += zone_area;
+    total_power += cell_area * irradiance;
+    total_area += cell_area;
+    const SideCell cell = cells.cell(i);
+    if (cell.front) continue;
+    const std::size_t s = sheet[cell.triangle.index()];
+    power[s] += cell_area * irradiance;
+    area[s] += cell_area;
   }
   std::vector<bool> lit(sheet.size());
   for (std::size_t s = 0; s < lit.size(); ++s)
@@ -78,16 +80,15 @@ std::vector<bool> lit_backs(const Solution& solution, const std::vector<std::siz
 
 }  // namespace
 
-std::vector<bool> kept_zones(const SurfaceModel& surfaces, const Solution& solution, bool all_zones) {
-  const ZoneMesh& mesh = solution.mesh;
-  if (all_zones) return std::vector<bool>(mesh.zone_count(), true);
-  const std::vector<std::size_t> sheet = sheets(mesh.base());
-  const std::vector<bool> lit = lit_backs(solution, sheet);
-  std::vector<bool> kept(mesh.zone_count());
-  for (std::size_t z = 0; z < kept.size(); ++z) {
-    const ZoneId zone(z);
-    const TriangleId t = mesh.zone_triangle(zone);
-    kept[z] = mesh.zone_is_front(zone) || lit[sheet[t.index()]] || surfaces.emits(t, false);
+std::vector<bool> kept_cells(const SurfaceModel& surfaces, const Solution& solution, const ZoneCells& cells,
+                             bool all_zones) {
+  if (all_zones) return std::vector<bool>(cells.size(), true);
+  const std::vector<std::size_t> sheet = sheets(solution.mesh.base());
+  const std::vector<bool> lit = lit_backs(solution, cells, sheet);
+  std::vector<bool> kept(cells.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const SideCell cell = cells.cell(i);
+    kept[i] = cell.front || lit[sheet[cell.triangle.index()]] || surfaces.emits(cell.triangle, false);
   }
   return kept;
 }

@@ -1,0 +1,28 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/zones/zone_mesh.h"
+
+namespace reemit {
+
+/// All cells of all sides that have zones: by triangle, the front before the back, each side in the order of
+/// zone_lookup.h. Those of sides that are in no group are the first zones of the mesh, in their order.
+class ZoneCells {
+ public:
+  /// The mesh must outlive it.
+  explicit ZoneCells(const ZoneMesh& mesh);
+
+  std::size_t size() const { return side_.size(); }
+  SideCell cell(std::size_t i) const;
+  ZoneId zone(std::size_t i) const;  ///< That the cell is, or belongs to.
+  double area(std::size_t i) const;  ///< [m2]
+
+ private:
+  const ZoneMesh* mesh_;
+  std::vector<std::uint32_t> side_;  // 2 * triangle, + 1 for the back
+  std::vector<std::size_t> first_;   // cell of each side
+};
+
+}  // namespace reemit

@@ -1,0 +1,139 @@
+#include "solver/zoning/sealed_sides.h"
+
+#include <algorithm>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "mesh/geometry/disjoint_sets.h"
+#include "solver/emit/light_places.h"
+#include "solver/emit/punctual_emitter.h"
+#include "solver/reflect/surface_model.h"
+#include "solver/sampling/counter_rng.h"
+#include "solver/sampling/warp.h"
+#include "solver/trace/surface_point.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;  // nothing of a solution should depend on it
+/// Rays from every side at least, and in all in rooms of few sides.
+constexpr std::uint32_t kLeastRounds = 4;
+constexpr std::size_t kManyRays = 400'000;
+/// Further rays from each side that seems sealed.
+constexpr std::uint32_t kSecondThoughts = 28;
+constexpr std::uint32_t kRaysPerLight = 4096;
+/// Points keep this share of a triangle's size away from its edges, where rounding decides what a ray meets.
+constexpr float kMargin = 0.02F;
+
+constexpr std::uint32_t kNothing = 0xffffffff;
+constexpr std::uint32_t kOutside = 0xfffffffe;
+
+std::uint32_t side_number(TriangleId t, bool front) {
+  return static_cast<std::uint32_t>(2 * t.index() + (front ? 0 : 1));
+}
+
+class Reach {
+ public:
+  Reach(const Scene& scene, const ZoneMesh& mesh)
+      : mesh_(mesh),
+        rays_(mesh),
+        rng_(kSeed, RngPurpose::kSealedSides),
+        sides_(2 * mesh.triangle_count()),
+        outside_(sides_),
+        light_(sides_ + 1),
+        sets_(sides_ + 2) {
+    const SurfaceModel surfaces(scene, mesh);
+    for (std::uint32_t s = 0; s < sides_; ++s)
+      if (surfaces.emits(TriangleId(s / 2), s % 2 == 0)) sets_.join(s, light_);
+    join_lights(scene);
+  }
+
+  void join_neighbours(const WorkWatch& watch) {
+    const std::uint32_t rounds = static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(kManyRays / std::max<std::size_t>(1, sides_), kLeastRounds, kManyRays));
+    std::vector<std::uint32_t> asked;
+    for (std::uint32_t s = 0; s < sides_; ++s)
+      if (has_zones(s)) asked.push_back(s);
+    std::uint32_t round = 0;
+    for (; round < rounds; ++round) {
+      watch.at(0.8 * round / rounds);
+      join_seen(asked, round);
+    }
+    for (std::uint32_t more = 0; more < kSecondThoughts; ++more, ++round) {
+      watch.at(0.8 + 0.2 * more / kSecondThoughts);
+      std::erase_if(asked, [&](std::uint32_t s) { return is_lit(s); });
+      if (asked.empty()) break;
+      join_seen(asked, round);
+    }
+  }
+
+  std::vector<std::uint8_t> sealed() {
+    std::vector<std::uint8_t> result(sides_, 0);
+    for (std::uint32_t s = 0; s < sides_; ++s) result[s] = has_zones(s) && !is_lit(s) ? 1 : 0;
+    return result;
+  }
+
+ private:
+  bool has_zones(std::uint32_t s) const { return mesh_.has_zones(TriangleId(s / 2), s % 2 == 0); }
+  bool is_lit(std::uint32_t s) { return sets_.find(s) == sets_.find(light_); }
+
+  void join_lights(const Scene& scene) {
+    for (const PunctualLight& light : lights_before_faces(scene, rays_)) {
+      const PunctualEmitter emitter = make_punctual_emitter(light, rays_);
+      if (is_at_infinity(emitter)) sets_.join(outside_, light_);
+      for (std::uint32_t k = 0; k < kRaysPerLight; ++k) {
+        const std::array<float, 4> u = rng_.uniform4(k, kNothing, 0);
+        const LightRay start = start_light_ray(emitter, u[0], u[1], u[2], u[3]);
+        join(static_cast<std::uint32_t>(light_), seen(start.origin, start.direction));
+      }
+    }
+  }
+
+  /// The side that a ray meets.
+  std::uint32_t seen(const Vec3f& origin, const Vec3f& direction) const {
+    Hit hit;
+    if (!rays_.closest(origin, direction, hit)) return kOutside;
+    if (!mesh_.has_zones(hit.triangle, hit.front)) return kNothing;
+    const auto t = static_cast<std::uint32_t>(hit.triangle.index());
+    return rays_.is_at_edge(t, hit.u, hit.v) ? kNothing : side_number(hit.triangle, hit.front);
+  }
+
+  void join(std::uint32_t from, std::uint32_t to) {
+    if (to != kNothing) sets_.join(from, to == kOutside ? outside_ : to);
+  }
+
+  /// One ray from each of these sides.
+  void join_seen(const std::vector<std::uint32_t>& sides, std::uint32_t round) {
+    std::vector<std::uint32_t> met(sides.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides.size(), 1024), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        const std::uint32_t s = sides[i];
+        const std::array<float, 4> u = rng_.uniform4(s, round, 0);
+        auto [a, b] = sample_triangle(u[0], u[1]);
+        a = kMargin + (1 - 3 * kMargin) * a;
+        b = kMargin + (1 - 3 * kMargin) * b;
+        const SurfacePoint x = surface_point(rays_, TriangleId(s / 2), a, b, s % 2 == 0);
+        const Vec3f direction = Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3]));
+        met[i] = seen(ray_origin(rays_, x), direction);
+      }
+    });
+    for (std::size_t i = 0; i < sides.size(); ++i) join(sides[i], met[i]);
+  }
+
+  const ZoneMesh& mesh_;
+  RayTracer rays_;
+  CounterRng rng_;
+  std::size_t sides_, outside_, light_;  // the last two stand for all that is out there, and all that emits
+  DisjointSets sets_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> sealed_sides(const Scene& scene, const ZoneMesh& mesh, const WorkWatch& watch) {
+  Reach reach(scene, mesh);
+  reach.join_neighbours(watch);
+  return reach.sealed();
+}
+
+}  // namespace reemit
