@@ -5,8 +5,8 @@ namespace reemit {
 
 /// How a room is cut into zones.
 struct MeshSettings {
-  /// Largest zone area [m2], > 0. Unset: such that there are about default_zone_count zones, both sides
-  /// counted.
+  /// Largest area of the zones that large faces are cut into [m2], > 0. Unset: such that there are about
+  /// default_zone_count zones, both sides counted.
   std::optional<double> zone_area;
   int default_zone_count = 8000;  ///< Zones aimed at when zone_area is unset [1, 1e8].
   double smallest_angle_deg =
@@ -16,6 +16,9 @@ struct MeshSettings {
   /// Spheres, disks, cylinders and cones stay what they are. Else they become flat faces, as a method that
   /// needs flat zones asks for.
   bool exact_shapes = true;
+  /// Small sides of triangles share zones, and so do sides that no light reaches (build_zones), so that there
+  /// are about as many as asked for in rooms of many triangles. Else every side of a triangle has its own.
+  bool share_zones = true;
 };
 
 }  // namespace reemit

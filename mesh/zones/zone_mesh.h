@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "mesh/zones/curved_patch.h"
@@ -68,6 +69,7 @@ class ZoneMesh {
   explicit ZoneMesh(BaseMesh base, ZoneGroups groups = {});
 
   const BaseMesh& base() const { return base_; }
+  BaseMesh release_base() && { return std::move(base_); }
   const ZoneGroups& groups() const { return groups_; }
   std::size_t triangle_count() const { return base_.triangles.size(); }
   std::size_t zone_count() const { return zone_side_.size(); }

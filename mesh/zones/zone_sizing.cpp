@@ -9,6 +9,12 @@
 #include "scenes/model/error.h"
 
 namespace reemit {
+namespace {
+
+/// Divisions are rounded up, so zones come out smaller than wanted, by this much in the mean.
+constexpr double kRounding = 1.4;
+
+}  // namespace
 
 double wanted_zone_area(const MeshSettings& settings, double zoned_area) {
   if (settings.zone_area) {
@@ -20,9 +26,11 @@ double wanted_zone_area(const MeshSettings& settings, double zoned_area) {
   if (settings.default_zone_count < 1 || settings.default_zone_count > 100'000'000)
     throw InputError("default zone count", fmt::format("{} is out of range", settings.default_zone_count),
                      "use a number from 1 to 1e8");
-  // Divisions are rounded up, so zones come out smaller than wanted, by this much in the mean.
-  constexpr double kRounding = 1.4;
   return kRounding * zoned_area / settings.default_zone_count;
+}
+
+double wanted_zone_count(const MeshSettings& settings, double zoned_area) {
+  return settings.zone_area ? kRounding * zoned_area / *settings.zone_area : settings.default_zone_count;
 }
 
 std::uint32_t divisions_at_least(double n) {

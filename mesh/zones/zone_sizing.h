@@ -7,6 +7,8 @@ namespace reemit {
 /// The zone area that settings ask for [m2], for a room with the given area of all sides that have zones
 /// [m2]. Throws InputError when a setting is out of its range.
 double wanted_zone_area(const MeshSettings& settings, double zoned_area);
+/// How many zones that is in the mean.
+double wanted_zone_count(const MeshSettings& settings, double zoned_area);
 
 /// The smallest of 1, 2, 3, 4, 6, 8, 12, 16, 24, ... (2^k and 3*2^k) that is at least `n`: of two of them,
 /// the smaller mostly divides the larger, so that zones of neighbouring triangles share vertices.

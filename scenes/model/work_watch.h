@@ -19,6 +19,15 @@ class WorkWatch {
   explicit WorkWatch(Callback progress, std::optional<StopToken> stop = {})
       : progress_(std::move(progress)), stop_(stop) {}
 
+  /// The watch of a part of the work, from one share of the whole to another.
+  WorkWatch part(double from, double to) const {
+    WorkWatch watch;
+    watch.stop_ = stop_;
+    if (progress_)
+      watch.progress_ = [whole = progress_, from, to](double done) { whole(from + (to - from) * done); };
+    return watch;
+  }
+
   /// The work is done to this share. Throws Interrupted if it is to stop.
   void at(double done) const {
     if (stop_ && stop_->requested()) throw Interrupted("interrupted before the room was meshed");

@@ -30,6 +30,7 @@ void transfer_mesh_settings(Archive& archive, Settings& settings) {
   archive.attribute("smallest_angle_deg", settings.smallest_angle_deg);
   archive.attribute("crease_angle_deg", settings.crease_angle_deg);
   archive.attribute("exact_shapes", settings.exact_shapes);
+  archive.attribute("share_zones", settings.share_zones);
 }
 
 template <class Archive, class Settings>

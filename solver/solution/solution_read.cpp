@@ -160,6 +160,20 @@ std::vector<Vec3> read_vectors(const Hdf5Group& group, const char* name) {
   return vectors;
 }
 
+ZoneGroups read_groups(const Hdf5Group& mesh, std::uint64_t triangles) {
+  ZoneGroups groups;
+  const std::uint64_t rows = rows_of(mesh, "side_group");
+  require(rows == 0 || rows == 2 * triangles, "groups of another number of sides");
+  groups.of_side = mesh.read<std::uint32_t>("side_group", {rows});
+  for (const std::uint32_t g : groups.of_side) {
+    if (g == ZoneGroups::kOwn) continue;
+    require(g < rows, "side with a group out of range");
+    groups.count = std::max(groups.count, g + 1);
+  }
+  groups.sealed = mesh.read_attribute<std::uint32_t>("sealed_groups");
+  return groups;
+}
+
 // `zone_count` comes from the size of the sums, which were compared with the size of the file: a damaged
 // number of divisions must not make us allocate zones that are not there.
 ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone_count) {
@@ -179,11 +193,18 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   const auto rows = group.read<double>("shapes", {shapes, kShapeRow});
   require(all_finite(rows), "shapes that are not finite");
   for (std::size_t s = 0; s < shapes; ++s) base.shapes.push_back(shape_of(&rows[s * kShapeRow]));
-  std::uint64_t zones = 0;
+  ZoneGroups groups = read_groups(group, count);
+  const auto has_own = [&](std::size_t side) {
+    return groups.of_side.empty() || groups.of_side[side] == ZoneGroups::kOwn;
+  };
+  std::uint64_t zones = groups.count;
   for (std::size_t t = 0; t < count; ++t) {
     require(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
     require(divisions[t] > 0 && divisions[t] < 65536, "triangle with an impossible number of zones");
-    zones += std::uint64_t{divisions[t]} * divisions[t] * (two_sided[t] != 0 ? 2U : 1U);
+    const bool front_has_own = has_own(2 * t);
+    const bool back_has_own = two_sided[t] != 0 && has_own(2 * t + 1);
+    zones +=
+        std::uint64_t{divisions[t]} * divisions[t] * ((front_has_own ? 1U : 0U) + (back_has_own ? 1U : 0U));
     require(zones <= zone_count, "more zones in the mesh than in the sums");
     BaseTriangle triangle;
     std::copy_n(vertex.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, triangle.vertex.begin());
@@ -201,7 +222,7 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   AttributeReader counts{group};
   transfer_mesh_counts(counts, solution.mesh_report);
   solution.mesh_report.warnings = group.read_texts("warnings");
-  return ZoneMesh(std::move(base));
+  return ZoneMesh(std::move(base), std::move(groups));
 }
 
 /// No sum of sixteen of these overflows.

@@ -182,7 +182,13 @@ void write_mesh(const Hdf5Group& root, const Solution& solution) {
   put(mesh, "triangle_face", column<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::face)), 1, "",
       "polygon of the surface the triangle was cut from");
   put(mesh, "triangle_divisions", column<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::divisions)), 1,
-      "", "n: the triangle has n*n zones on each side that has zones");
+      "", "n: the triangle has n*n zones on each side that has zones of its own");
+  const ZoneGroups& groups = solution.mesh.groups();
+  put(mesh, "side_group", groups.of_side, 1, "",
+      "group of each side, row 2t the front of triangle t, 2t+1 its back, that share one zone, numbered "
+      "after "
+      "all others; 4294967295 = has its own; empty = there are no groups");
+  mesh.write_attribute("sealed_groups", groups.sealed);
   put(mesh, "triangle_two_sided", column<std::uint8_t>(triangles, std::mem_fn(&BaseTriangle::two_sided)), 1,
       "", "1 if the back has zones, numbered after those of the front");
   put(mesh, "shapes", flattened<double>(base.shapes, [](const CurvedShape& s) { return row_of(s); }),

@@ -7,6 +7,7 @@
 
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
+#include "solver/zoning/build_zones.h"
 #include "viewer_export/cli/progress.h"
 
 namespace reemit::cli {
@@ -45,7 +46,7 @@ Scene load_room(const std::vector<fs::path>& files, const ReadOptions& options, 
 
 MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style) {
   Progress progress("meshing", style_of(style), kQuietSeconds);
-  return build_mesh(scene, settings, WorkWatch([&](double done) { progress.update(done); }));
+  return build_zones(scene, settings, WorkWatch([&](double done) { progress.update(done); }));
 }
 
 bool is_meant_as_solution(const fs::path& file) {

@@ -187,7 +187,8 @@ Source load_source(const RenderOptions& options) {
                          fs::path(file.filename()).replace_extension(".h5").string());
   Scene scene = load_room(options.files, options.read, options.style);
   if (!options.style.quiet) print_warnings(scene.warnings);
-  MeshResult meshed = mesh_room(scene, {}, options.style);
+  // Nobody reads zones.
+  MeshResult meshed = mesh_room(scene, MeshSettings{.share_zones = false}, options.style);
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
   Solution solution = new_solution(scene, std::move(meshed), {});
   return {std::move(scene), std::move(solution)};

@@ -43,6 +43,7 @@ struct SolveOptions {
   double checkpoint_s = SolveWatch{}.checkpoint_s;  ///< 0: none.
   ReadOptions read;
   MeshSettings mesh;
+  std::optional<int> zones;  ///< Wanted in all; unset: as the method has it.
   SolverSettings solver;
   std::filesystem::path log;  ///< Empty: none.
   OutputStyle style;
@@ -122,9 +123,11 @@ Start new_run(const SolveOptions& options) {
     for (const std::string& note : start.scene.notes) print_note(note);
   }
   MeshSettings mesh_settings = options.mesh;
+  if (options.zones) mesh_settings.default_zone_count = *options.zones;
   if (matrix) {
-    mesh_settings.default_zone_count = kMatrixZoneCount;
-    mesh_settings.exact_shapes = false;  // form factors are those of flat zones
+    if (!options.zones) mesh_settings.default_zone_count = kMatrixZoneCount;
+    mesh_settings.exact_shapes = false;  // form factors are those of flat zones ...
+    mesh_settings.share_zones = false;   // ... of one piece
   }
   MeshResult meshed = mesh_room(start.scene, mesh_settings, options.style);
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
@@ -324,9 +327,15 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_seed_and_threads(solve, options->solver.seed, options->solver.threads);
 
   solve.option_defaults()->group("Room");
+  const auto zone_count = [](const std::string& text) {
+    return static_cast<int>(parse_integer(text, 1, 100'000'000));
+  };
+  CLI::Option* zones = add_parsed_option(
+      solve, "--zones", options->zones, zone_count, "N",
+      "About how many zones the room is cut into (default: 8000, 2000 for --method matrix)");
   add_parsed_option(solve, "--zone-area", options->mesh.zone_area, parse_positive, "M2",
-                    "Largest zone area [m2] (default: so that there are about 8000 zones, 2000 for\n"
-                    "--method matrix)");
+                    "Cut large faces into zones of at most this area [m2] instead")
+      ->excludes(zones);
   solve.add_flag("--two-sided", options->read.force_two_sided,
                  "Let every face reflect on both sides (rooms with mixed winding)");
   add_gltf_unit_options(solve, options->read);
@@ -339,8 +348,8 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_json_option(solve, options->style);
   add_progress_options(solve, options->style);
   // A run has one of each from its first batch to its last.
-  for (const char* settled : {"--method", "--sampling", "--reemit", "--seed", "--zone-area", "--two-sided",
-                              "--emissive-units", "--gltf-light-efficacy"})
+  for (const char* settled : {"--method", "--sampling", "--reemit", "--seed", "--zones", "--zone-area",
+                              "--two-sided", "--emissive-units", "--gltf-light-efficacy"})
     resume->excludes(solve.get_option(settled));
   solve.callback([options, &action] {
     if (options->resume.empty() && options->room.empty()) throw CLI::RequiredError("ROOM or --resume");

@@ -1,0 +1,229 @@
+#include "mesh/zones/zone_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <queue>
+#include <utility>
+
+#include "mesh/zones/zone_sizing.h"
+
+namespace reemit {
+namespace {
+
+/// Zones over those wanted up to which nothing is put together.
+constexpr double kEnough = 1.5;
+/// Length of a unit normal among places, over the length of a zone: in furnished rooms points then differ
+/// least from their zones.
+constexpr double kNormalWeight = 3;
+/// Cost of a cell over its area: the variance of places in a right triangle with equal legs, over the square
+/// of the length of a zone.
+constexpr double kCellCost = 2.0 / 9;
+
+/// Place over the length of a zone, then the normal: in these, sides that lie close are alike.
+using Features = std::array<float, 6>;
+
+struct Member {
+  std::uint32_t side;
+  float area;
+  Features features;
+};
+
+/// Members first .. last-1 of all.
+struct Cluster {
+  std::size_t first, last;
+  double cost;  // area times the variance of the features
+  int axis;     // of the largest variance
+  double mean;  // along it
+};
+
+struct IsCheaper {
+  bool operator()(const Cluster& a, const Cluster& b) const {
+    return a.cost != b.cost ? a.cost < b.cost : a.first > b.first;
+  }
+};
+
+class Grouping {
+ public:
+  Grouping(const ZoneMesh& mesh, double zone_area) : mesh_(mesh), per_length_(1 / std::sqrt(zone_area)) {}
+
+  void add(std::uint32_t side) {
+    const TriangleId t(side / 2);
+    const Vec3 p = per_length_ * mesh_.point(t, 1.0 / 3, 1.0 / 3);
+    const Vec3 n = kNormalWeight * (side % 2 == 0 ? 1 : -1) * mesh_.triangle_normal(t);
+    Member m{side, static_cast<float>(mesh_.triangle_area(t)), {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      m.features[k] = static_cast<float>(p[static_cast<Eigen::Index>(k)]);
+      m.features[k + 3] = static_cast<float>(n[static_cast<Eigen::Index>(k)]);
+    }
+    members_.push_back(m);
+  }
+
+  /// Cuts until there are `most` groups or all are single sides.
+  void divide(double most) {
+    const auto kind = [&](const Member& m) {
+      return std::pair(mesh_.triangle(TriangleId(m.side / 2)).surface.index(), m.side % 2);
+    };
+    std::stable_sort(members_.begin(), members_.end(),
+                     [&](const Member& a, const Member& b) { return kind(a) < kind(b); });
+    std::priority_queue<Cluster, std::vector<Cluster>, IsCheaper> open;
+    const auto add = [&](const Cluster& cluster) {
+      if (cluster.cost > 0) open.push(cluster);
+    };
+    for (std::size_t first = 0; first < members_.size();) {
+      std::size_t last = first + 1;
+      while (last < members_.size() && kind(members_[last]) == kind(members_[first])) ++last;
+      starts_.push_back(first);
+      add(measured(first, last));
+      first = last;
+    }
+    while (!open.empty() && static_cast<double>(starts_.size() + cuts_.size()) < most) {
+      const Cluster c = open.top();
+      open.pop();
+      const auto axis = static_cast<std::size_t>(c.axis);
+      const auto begin = members_.begin();
+      const auto middle = std::stable_partition(
+          begin + static_cast<std::ptrdiff_t>(c.first), begin + static_cast<std::ptrdiff_t>(c.last),
+          [&](const Member& m) { return static_cast<double>(m.features[axis]) < c.mean; });
+      const auto cut = static_cast<std::size_t>(middle - begin);
+      if (cut == c.first || cut == c.last) continue;  // they differ by less than rounding
+      cuts_.push_back({cut, c.cost});
+      add(measured(c.first, cut));
+      add(measured(cut, c.last));
+    }
+  }
+
+  /// Groups and single sides when only what costs more than `cost` is cut. A part never costs more than the
+  /// whole, so cuts come in the order of costs.
+  std::size_t count(double cost) const { return starts_.size() + cuts_above(cost); }
+
+  /// Numbers the groups of two members or more, from groups.count on.
+  void number(double cost, ZoneGroups& groups) const {
+    std::vector<std::size_t> starts = starts_;
+    for (std::size_t i = 0; i < cuts_above(cost); ++i) starts.push_back(cuts_[i].place);
+    std::sort(starts.begin(), starts.end());
+    starts.push_back(members_.size());
+    // By their first sides, so that neighbours in memory are neighbours in the room.
+    std::vector<std::pair<std::uint32_t, std::size_t>> order;
+    for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
+      if (starts[i + 1] - starts[i] < 2) continue;
+      std::uint32_t least = members_[starts[i]].side;
+      for (std::size_t m = starts[i]; m < starts[i + 1]; ++m) least = std::min(least, members_[m].side);
+      order.emplace_back(least, i);
+    }
+    std::sort(order.begin(), order.end());
+    for (const auto& [side, i] : order) {
+      for (std::size_t m = starts[i]; m < starts[i + 1]; ++m) groups.of_side[members_[m].side] = groups.count;
+      ++groups.count;
+    }
+  }
+
+ private:
+  Cluster measured(std::size_t first, std::size_t last) const {
+    Cluster c{first, last, 0, 0, 0};
+    if (last - first < 2) return c;
+    double area = 0;
+    std::array<double, 6> sum{};
+    for (std::size_t i = first; i < last; ++i) {
+      const auto a = static_cast<double>(members_[i].area);
+      area += a;
+      for (std::size_t k = 0; k < 6; ++k) sum[k] += a * static_cast<double>(members_[i].features[k]);
+    }
+    std::array<double, 6> spread{};  // area times variance
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t k = 0; k < 6; ++k) {
+        const double d = static_cast<double>(members_[i].features[k]) - sum[k] / area;
+        spread[k] += static_cast<double>(members_[i].area) * d * d;
+      }
+    const auto largest =
+        static_cast<std::size_t>(std::max_element(spread.begin(), spread.end()) - spread.begin());
+    for (const double s : spread) c.cost += s;
+    c.axis = static_cast<int>(largest);
+    c.mean = sum[largest] / area;
+    return c;
+  }
+
+  std::size_t cuts_above(double cost) const {
+    const auto end =
+        std::partition_point(cuts_.begin(), cuts_.end(), [&](const Cut& c) { return c.cost > cost; });
+    return static_cast<std::size_t>(end - cuts_.begin());
+  }
+
+  struct Cut {
+    std::size_t place;  // the first member behind it
+    double cost;        // of what was cut
+  };
+
+  const ZoneMesh& mesh_;
+  double per_length_;
+  std::vector<Member> members_;
+  std::vector<std::size_t> starts_;  // of the members of each surface and side
+  std::vector<Cut> cuts_;
+};
+
+/// One group for the sealed sides of each surface, fronts and backs apart.
+void group_sealed(const ZoneMesh& mesh, const std::vector<std::uint8_t>& sealed, ZoneGroups& groups) {
+  std::vector<std::uint32_t> of_kind;
+  for (std::size_t s = 0; s < sealed.size(); ++s) {
+    if (sealed[s] == 0) continue;
+    const std::size_t kind = 2 * mesh.triangle(TriangleId(s / 2)).surface.index() + s % 2;
+    if (kind >= of_kind.size()) of_kind.resize(kind + 1, ZoneGroups::kOwn);
+    if (of_kind[kind] == ZoneGroups::kOwn) of_kind[kind] = groups.count++;
+    groups.of_side[s] = of_kind[kind];
+  }
+  groups.sealed = groups.count;
+}
+
+/// Cells of sides of these areas [m2] when zones have `zone_area`.
+double cells_of(const std::vector<double>& areas, double zone_area) {
+  double cells = 0;
+  for (const double area : areas) {
+    const double n = divisions_at_least(std::sqrt(area / zone_area));
+    cells += n * n;
+  }
+  return cells;
+}
+
+}  // namespace
+
+ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<std::uint8_t>& sealed, double wanted,
+                    double zone_area) {
+  ZonePlan plan{zone_area, {}};
+  plan.groups.of_side.assign(2 * mesh.triangle_count(), ZoneGroups::kOwn);
+  group_sealed(mesh, sealed, plan.groups);
+  Grouping grouping(mesh, zone_area);
+  std::vector<double> large;  // areas of sides of several cells
+  double zones_now = 0;
+  for (std::size_t s = 0; s < sealed.size(); ++s) {
+    const TriangleId t(s / 2);
+    if (sealed[s] != 0 || !mesh.has_zones(t, s % 2 == 0)) continue;
+    const double n = mesh.triangle(t).divisions;
+    zones_now += n * n;
+    if (n > 1)
+      large.push_back(mesh.triangle_area(t));
+    else
+      grouping.add(static_cast<std::uint32_t>(s));
+  }
+  if (zones_now > kEnough * wanted) {
+    grouping.divide(wanted);
+    const auto zones = [&](double area) {
+      return cells_of(large, area) + static_cast<double>(grouping.count(kCellCost * area));
+    };
+    // By bisection of the logarithm, as counts fall with the area.
+    constexpr double kMostLarger = 1e4;
+    constexpr int kSteps = 30;
+    double low = zone_area;
+    double high = kMostLarger * zone_area;
+    for (int i = 0; i < kSteps && zones(low) > wanted; ++i) {
+      const double middle = std::sqrt(low * high);
+      (zones(middle) > wanted ? low : high) = middle;
+    }
+    plan.zone_area = zones(low) > wanted ? high : low;
+    grouping.number(kCellCost * plan.zone_area, plan.groups);
+  }
+  if (plan.groups.count == 0) plan.groups.of_side.clear();
+  return plan;
+}
+
+}  // namespace reemit

@@ -1,0 +1,42 @@
+#include "solver/zoning/build_zones.h"
+
+#include <utility>
+
+#include "mesh/zones/zone_plan.h"
+#include "mesh/zones/zone_sizing.h"
+#include "solver/zoning/sealed_sides.h"
+
+namespace reemit {
+namespace {
+
+/// Of all sides that have zones and are not sealed [m2].
+double open_area(const ZoneMesh& mesh, const std::vector<std::uint8_t>& sealed) {
+  double area = 0;
+  for (std::size_t s = 0; s < sealed.size(); ++s) {
+    const TriangleId t(s / 2);
+    if (sealed[s] == 0 && mesh.has_zones(t, s % 2 == 0)) area += mesh.triangle_area(t);
+  }
+  return area;
+}
+
+}  // namespace
+
+MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const WorkWatch& watch) {
+  if (!settings.share_zones) return build_mesh(scene, settings, watch);
+  constexpr double kMeshing = 0.6;  // of the work
+  MeshResult result = build_mesh(scene, settings, watch.part(0, kMeshing));
+  const std::vector<std::uint8_t> sealed = sealed_sides(scene, result.mesh, watch.part(kMeshing, 1));
+  const double area = open_area(result.mesh, sealed);
+  if (!(area > 0)) return result;  // there is no light
+  const double zone_area = wanted_zone_area(settings, area);
+  BaseMesh base = std::move(result.mesh).release_base();
+  size_zones(base, zone_area);
+  result.mesh = ZoneMesh(std::move(base));
+  ZonePlan plan = plan_zones(result.mesh, sealed, wanted_zone_count(settings, area), zone_area);
+  base = std::move(result.mesh).release_base();
+  if (plan.zone_area > zone_area) size_zones(base, plan.zone_area);
+  result.mesh = ZoneMesh(std::move(base), std::move(plan.groups));
+  return result;
+}
+
+}  // namespace reemit

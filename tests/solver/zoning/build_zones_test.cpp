@@ -1,0 +1,231 @@
+#include "solver/zoning/build_zones.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "solver/progressive_solver.h"
+#include "solver/zoning/sealed_sides.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/never.h"
+
+namespace reemit {
+namespace {
+
+/// A box of 3 x 2 x 2 m whose walls reflect a half, a lamp under its ceiling, and crates on its floor that
+/// are one surface: of `parts` x `parts` quads on each of their sides.
+class CrateRoom {
+ public:
+  CrateRoom(int crates, int parts) {
+    scene_.source = "crate room";
+    walls_ = surface("walls", material(0.5, 0, true));
+    box(walls_, {0, 0, 0}, {3, 2, 2}, 4);
+    const SurfaceId lamp = surface("lamp", material(0, 20, false));
+    quad(lamp, {1, 0.5, 1.9}, {0, 1, 0}, {1, 0, 0}, 2);
+    crates_ = surface("crates", material(0.7, 0, true));
+    for (int i = 0; i < crates; ++i) {
+      const Vec3 low(0.2 + 0.5 * i, 0.4 + 0.2 * (i % 2), 0.3);
+      box(crates_, low, low + Vec3(0.3, 0.3, 0.3), parts);
+    }
+  }
+
+  const Scene& scene() const { return scene_; }
+  Scene& scene() { return scene_; }
+  SurfaceId walls() const { return walls_; }
+  SurfaceId crates() const { return crates_; }
+
+  MaterialId material(double reflectance, double radiance, bool two_sided) {
+    Material m;
+    m.name = "material" + std::to_string(scene_.materials.size());
+    m.reflectance = Spectrum::Constant(1, reflectance);
+    m.emitted_radiance = Spectrum::Constant(1, radiance);
+    m.two_sided = two_sided;
+    scene_.materials.push_back(m);
+    return MaterialId(scene_.materials.size() - 1);
+  }
+  SurfaceId surface(const std::string& name, MaterialId m) {
+    Surface s;
+    s.name = name;
+    s.material = m;
+    scene_.surfaces.push_back(s);
+    return SurfaceId(scene_.surfaces.size() - 1);
+  }
+  void quad(SurfaceId id, const Vec3& corner, const Vec3& u, const Vec3& v, int parts) {
+    Surface& s = scene_.surfaces[id.index()];
+    for (int i = 0; i < parts; ++i)
+      for (int j = 0; j < parts; ++j) {
+        const auto at = [&](int a, int b) { return Vec3(corner + a * u / parts + b * v / parts); };
+        const auto first = static_cast<std::uint32_t>(s.positions.size());
+        s.positions.insert(s.positions.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        s.faces.emplace_back().outer = {first, first + 1, first + 2, first + 3};
+      }
+  }
+  void box(SurfaceId id, const Vec3& low, const Vec3& high, int parts) {
+    const Vec3 d = high - low;
+    const Vec3 x(d.x(), 0, 0);
+    const Vec3 y(0, d.y(), 0);
+    const Vec3 z(0, 0, d.z());
+    for (const auto& [u, v, w] : {std::array{x, y, z}, std::array{y, z, x}, std::array{z, x, y}}) {
+      quad(id, low, v, u, parts);
+      quad(id, low + w, u, v, parts);
+    }
+  }
+
+ private:
+  Scene scene_;
+  SurfaceId walls_, crates_;
+};
+
+bool is_inside_crate(const ZoneMesh& mesh, TriangleId t, bool front, SurfaceId crates) {
+  if (mesh.triangle(t).surface != crates) return false;
+  // Crates stand clear of each other, so what points to the middle of its crate is inside.
+  const Vec3 p = mesh.point(t, 1.0 / 3, 1.0 / 3);
+  const auto i = std::floor((p.x() - 0.2 + 1e-9) / 0.5);
+  const Vec3 middle(0.35 + 0.5 * i, 0.55 + 0.2 * (static_cast<int>(i) % 2), 0.45);
+  const Vec3 n = front ? mesh.triangle_normal(t) : Vec3(-mesh.triangle_normal(t));
+  return n.dot(middle - p) > 0;
+}
+
+TEST(SealedSides, InsidesOfClosedSolidsAndOutsidesOfTheRoomAre) {
+  const CrateRoom room(3, 3);
+  const ZoneMesh mesh = build_mesh(room.scene()).mesh;
+  const std::vector<std::uint8_t> sealed = sealed_sides(room.scene(), mesh);
+  std::size_t inside = 0;
+  for (std::size_t s = 0; s < sealed.size(); ++s) {
+    const TriangleId t(s / 2);
+    const bool front = s % 2 == 0;
+    const Vec3 p = mesh.point(t, 1.0 / 3, 1.0 / 3);
+    const Vec3 n = front ? mesh.triangle_normal(t) : Vec3(-mesh.triangle_normal(t));
+    const bool outside = mesh.triangle(t).surface == room.walls() && n.dot(Vec3(1.5, 1, 1) - p) < 0;
+    const bool expected =
+        mesh.has_zones(t, front) && (outside || is_inside_crate(mesh, t, front, room.crates()));
+    inside += expected ? 1 : 0;
+    EXPECT_EQ(sealed[s] != 0, expected) << "side " << s;
+  }
+  EXPECT_EQ(inside, (6U * 16U + 3U * 6U * 9U) * 2U);
+}
+
+TEST(SealedSides, ALampOrAHoleInsideOpensThem) {
+  CrateRoom lamp_inside(1, 1);
+  lamp_inside.quad(lamp_inside.surface("inner lamp", lamp_inside.material(0, 1, false)), {0.3, 0.5, 0.5},
+                   {0.05, 0, 0}, {0, 0.05, 0}, 1);
+  CrateRoom open(1, 4);
+  open.scene().surfaces[open.crates().index()].faces.erase(
+      open.scene().surfaces[open.crates().index()].faces.begin());
+  CrateRoom point_inside(1, 1);
+  point_inside.scene().lights.push_back(
+      PointLight{"inside", Vec3(0.35, 0.55, 0.45), Spectrum::Constant(1, 1)});
+  for (const CrateRoom* room : {&lamp_inside, &open, &point_inside}) {
+    const ZoneMesh mesh = build_mesh(room->scene()).mesh;
+    const std::vector<std::uint8_t> sealed = sealed_sides(room->scene(), mesh);
+    for (std::size_t s = 0; s < sealed.size(); ++s)
+      if (is_inside_crate(mesh, TriangleId(s / 2), s % 2 == 0, room->crates())) {
+        EXPECT_EQ(sealed[s], 0) << "side " << s;
+      }
+  }
+}
+
+TEST(SealedSides, LightFromInfinitelyFarComesToTheOutside) {
+  CrateRoom room(0, 1);
+  room.scene().lights.push_back(DirectionalLight{"sun", Vec3(0, 0, -1), Spectrum::Constant(1, 1)});
+  const ZoneMesh mesh = build_mesh(room.scene()).mesh;
+  for (const std::uint8_t s : sealed_sides(room.scene(), mesh)) EXPECT_EQ(s, 0);
+}
+
+TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
+  const CrateRoom room(5, 40);  // 48,000 quads on crates
+  for (const int wanted : {300, 1000, 4000}) {
+    MeshSettings settings;
+    settings.default_zone_count = wanted;
+    const MeshResult result = build_zones(room.scene(), settings);
+    const ZoneMesh& mesh = result.mesh;
+    EXPECT_GT(static_cast<double>(mesh.zone_count()), 0.5 * wanted);
+    EXPECT_LT(static_cast<double>(mesh.zone_count()), 1.5 * wanted);
+    double area = 0;
+    double sides = 0;
+    for (std::size_t z = 0; z < mesh.zone_count(); ++z) area += mesh.zone_area(ZoneId(z));
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+      sides += (mesh.triangle(TriangleId(t)).two_sided ? 2 : 1) * mesh.triangle_area(TriangleId(t));
+    EXPECT_NEAR(area / sides, 1, 1e-12);
+  }
+}
+
+TEST(BuildZones, PutsTogetherWhatIsAlike) {
+  const CrateRoom room(5, 40);
+  MeshSettings settings;
+  settings.default_zone_count = 2000;
+  const ZoneMesh mesh = build_zones(room.scene(), settings).mesh;
+  // There are enough zones to have few that bend round the edge of a crate.
+  double bent = 0;
+  double all = 0;
+  for (std::size_t z = mesh.cell_zone_count(); z < mesh.zone_count(); ++z) {
+    const ZoneId group(z);
+    if (mesh.is_sealed(group)) continue;
+    all += mesh.zone_area(group);
+    double straightest = 1;
+    for (std::uint32_t m = 0; m < mesh.member_count(group); ++m)
+      straightest = std::min(
+          straightest,
+          std::abs(mesh.triangle_normal(mesh.member_triangle(group, m)).dot(mesh.zone_normal(group))));
+    if (straightest < 0.95) bent += mesh.zone_area(group);
+  }
+  EXPECT_NEAR(all, 5 * 6 * 0.09, 1e-9);
+  EXPECT_LT(bent, 0.1 * all);
+}
+
+/// The light of every group against the mean over its members in a mesh where each has zones of its own.
+class GroupedLight : public ::testing::TestWithParam<SolveMethod> {};
+
+TEST_P(GroupedLight, IsTheMeanOfItsMembers) {
+  const CrateRoom room(3, 6);
+  MeshSettings mesh_settings;
+  mesh_settings.default_zone_count = 150;
+  const ZoneMesh grouped = build_zones(room.scene(), mesh_settings).mesh;
+  ASSERT_GT(grouped.groups().count, grouped.groups().sealed);
+  const ZoneMesh own(grouped.base());
+  SolverSettings settings;
+  settings.method = GetParam();
+  settings.packets = 2'000'000;
+  settings.smallest_batch_count = 64;
+  settings.gather_small_zones = false;
+  const Solution a = solve(room.scene(), MeshResult{grouped, {}}, settings, {}, test::kNever);
+  settings.seed = 2;
+  const Solution b = solve(room.scene(), MeshResult{own, {}}, settings, {}, test::kNever);
+  EXPECT_EQ(a.audit.bands[0].balance(), 0);
+
+  std::vector<test::Measured> of_group;
+  std::vector<test::Measured> of_members;
+  for (std::size_t z = grouped.cell_zone_count(); z < grouped.zone_count(); ++z) {
+    const ZoneId group(z);
+    const Estimate e = a.irradiance(group, 0);
+    if (grouped.is_sealed(group)) {
+      EXPECT_EQ(e.mean, 0);
+      continue;
+    }
+    double mean = 0;
+    double variance = 0;
+    for (std::uint32_t m = 0; m < grouped.member_count(group); ++m) {
+      const TriangleId t = grouped.member_triangle(group, m);
+      const Estimate part = b.irradiance(own.first_zone(t, grouped.zone_is_front(group)), 0);
+      const double share = own.triangle_area(t) / grouped.zone_area(group);
+      mean += share * part.mean;
+      variance += share * share * part.stderr_of_mean * part.stderr_of_mean;
+    }
+    of_group.push_back({e.mean, e.stderr_of_mean});
+    of_members.push_back({mean, std::sqrt(variance)});
+  }
+  ASSERT_GT(of_group.size(), 30U);
+  EXPECT_GT(test::agreement(of_group, of_members, 64), test::kFalseAlarm);
+  // Two per cent more light would be noticed.
+  for (test::Measured& m : of_group) m.mean *= 1.02;
+  EXPECT_LT(test::agreement(of_group, of_members, 64), test::kFalseAlarm);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, GroupedLight,
+                         ::testing::Values(SolveMethod::kShooting, SolveMethod::kWalk));
+
+}  // namespace
+}  // namespace reemit
