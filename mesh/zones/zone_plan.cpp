@@ -163,10 +163,10 @@ class Grouping {
 };
 
 /// One group for the sealed sides of each surface, fronts and backs apart.
-void group_sealed(const ZoneMesh& mesh, const std::vector<std::uint8_t>& sealed, ZoneGroups& groups) {
+void group_sealed(const ZoneMesh& mesh, const std::vector<SideUse>& uses, ZoneGroups& groups) {
   std::vector<std::uint32_t> of_kind;
-  for (std::size_t s = 0; s < sealed.size(); ++s) {
-    if (sealed[s] == 0) continue;
+  for (std::size_t s = 0; s < uses.size(); ++s) {
+    if (uses[s] != SideUse::kSealed) continue;
     const std::size_t kind = 2 * mesh.triangle(TriangleId(s / 2)).surface.index() + s % 2;
     if (kind >= of_kind.size()) of_kind.resize(kind + 1, ZoneGroups::kOwn);
     if (of_kind[kind] == ZoneGroups::kOwn) of_kind[kind] = groups.count++;
@@ -187,20 +187,19 @@ double cells_of(const std::vector<double>& areas, double zone_area) {
 
 }  // namespace
 
-ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<std::uint8_t>& sealed, double wanted,
-                    double zone_area) {
+ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses, double wanted, double zone_area) {
   ZonePlan plan{zone_area, {}};
   plan.groups.of_side.assign(2 * mesh.triangle_count(), ZoneGroups::kOwn);
-  group_sealed(mesh, sealed, plan.groups);
+  group_sealed(mesh, uses, plan.groups);
   Grouping grouping(mesh, zone_area);
-  std::vector<double> large;  // areas of sides of several cells
+  std::vector<double> large;  // areas of sides that share nothing
   double zones_now = 0;
-  for (std::size_t s = 0; s < sealed.size(); ++s) {
+  for (std::size_t s = 0; s < uses.size(); ++s) {
     const TriangleId t(s / 2);
-    if (sealed[s] != 0 || !mesh.has_zones(t, s % 2 == 0)) continue;
+    if (uses[s] == SideUse::kSealed || !mesh.has_zones(t, s % 2 == 0)) continue;
     const double n = mesh.triangle(t).divisions;
     zones_now += n * n;
-    if (n > 1)
+    if (n > 1 || uses[s] == SideUse::kOwn)
       large.push_back(mesh.triangle_area(t));
     else
       grouping.add(static_cast<std::uint32_t>(s));

@@ -13,14 +13,19 @@ struct ZonePlan {
   ZoneGroups groups;
 };
 
-/// `mesh` as size_zones made it with `zone_area` [m2]. `sealed`, by side as in ZoneGroups, 1: no light
-/// reaches it; all such sides of one surface become one group, fronts and backs apart, and do not count. If
-/// the others have up to half as many zones again as wanted, they stay as they are. Else sides of one cell
-/// are put together within their surface: starting with one group for each surface and side, the group in
-/// which light is likely to differ most, by area, extent and directions of normals, is cut in two, until it
-/// is as uneven as a cell of a large face; and cells become larger, until there are about as many of both as
-/// wanted. Deterministic.
-ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<std::uint8_t>& sealed, double wanted,
-                    double zone_area);
+/// What is to become of a side of a base triangle.
+enum class SideUse : std::uint8_t {
+  kShared,  ///< May share a zone with others, if there are too many.
+  kOwn,     ///< Has zones of its own.
+  kSealed,  ///< No light reaches it.
+};
+
+/// `mesh` as size_zones made it with `zone_area` [m2]; `uses` by side as in ZoneGroups. All sealed sides of
+/// one surface become one group, fronts and backs apart, and do not count. If the others have up to half as
+/// many zones again as wanted, they stay as they are. Else sides of one cell are put together within their
+/// surface: starting with one group for each surface and side, the group in which light is likely to differ
+/// most, by area, extent and directions of normals, is cut in two, until it is as uneven as a cell of a large
+/// face; and cells become larger, until there are about as many of both as wanted. Deterministic.
+ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses, double wanted, double zone_area);
 
 }  // namespace reemit
