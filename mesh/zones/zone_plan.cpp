@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "mesh/zones/zone_cost.h"
 #include "mesh/zones/zone_sizing.h"
 
 namespace reemit {
@@ -14,15 +15,9 @@ namespace {
 
 /// Zones over those wanted up to which nothing is put together.
 constexpr double kEnough = 1.5;
-/// Length of a unit normal among places, over the length of a zone: in furnished rooms points then differ
-/// least from their zones.
-constexpr double kNormalWeight = 3;
-/// Cost of a cell over its area: the variance of places in a right triangle with equal legs, over the square
-/// of the length of a zone.
-constexpr double kCellCost = 2.0 / 9;
-
-/// Place over the length of a zone, then the normal: in these, sides that lie close are alike.
-using Features = std::array<float, 6>;
+/// Place over the length of a zone, then normal and light: in these, sides that lie close are alike.
+constexpr std::size_t kFeatures = 7;
+using Features = std::array<float, kFeatures>;
 
 struct Member {
   std::uint32_t side;
@@ -48,7 +43,7 @@ class Grouping {
  public:
   Grouping(const ZoneMesh& mesh, double zone_area) : mesh_(mesh), per_length_(1 / std::sqrt(zone_area)) {}
 
-  void add(std::uint32_t side) {
+  void add(std::uint32_t side, float light) {
     const TriangleId t(side / 2);
     const Vec3 p = per_length_ * mesh_.point(t, 1.0 / 3, 1.0 / 3);
     const Vec3 n = kNormalWeight * (side % 2 == 0 ? 1 : -1) * mesh_.triangle_normal(t);
@@ -57,6 +52,7 @@ class Grouping {
       m.features[k] = static_cast<float>(p[static_cast<Eigen::Index>(k)]);
       m.features[k + 3] = static_cast<float>(n[static_cast<Eigen::Index>(k)]);
     }
+    m.features[6] = static_cast<float>(kLightWeight) * light;
     members_.push_back(m);
   }
 
@@ -124,15 +120,15 @@ class Grouping {
     Cluster c{first, last, 0, 0, 0};
     if (last - first < 2) return c;
     double area = 0;
-    std::array<double, 6> sum{};
+    std::array<double, kFeatures> sum{};
     for (std::size_t i = first; i < last; ++i) {
       const auto a = static_cast<double>(members_[i].area);
       area += a;
-      for (std::size_t k = 0; k < 6; ++k) sum[k] += a * static_cast<double>(members_[i].features[k]);
+      for (std::size_t k = 0; k < kFeatures; ++k) sum[k] += a * static_cast<double>(members_[i].features[k]);
     }
-    std::array<double, 6> spread{};  // area times variance
+    std::array<double, kFeatures> spread{};  // area times variance
     for (std::size_t i = first; i < last; ++i)
-      for (std::size_t k = 0; k < 6; ++k) {
+      for (std::size_t k = 0; k < kFeatures; ++k) {
         const double d = static_cast<double>(members_[i].features[k]) - sum[k] / area;
         spread[k] += static_cast<double>(members_[i].area) * d * d;
       }
@@ -175,11 +171,17 @@ void group_sealed(const ZoneMesh& mesh, const std::vector<SideUse>& uses, ZoneGr
   groups.sealed = groups.count;
 }
 
-/// Cells of sides of these areas [m2] when zones have `zone_area`.
-double cells_of(const std::vector<double>& areas, double zone_area) {
+/// A side that shares nothing.
+struct LoneSide {
+  double area;    // [m2]
+  double spread;  // SideLightness
+};
+
+/// Cells of these when zones have `zone_area`.
+double cells_of(const std::vector<LoneSide>& sides, double zone_area) {
   double cells = 0;
-  for (const double area : areas) {
-    const double n = divisions_at_least(std::sqrt(area / zone_area));
+  for (const LoneSide& side : sides) {
+    const double n = divisions_at_least(wanted_divisions(side.area, side.spread, zone_area));
     cells += n * n;
   }
   return cells;
@@ -187,12 +189,13 @@ double cells_of(const std::vector<double>& areas, double zone_area) {
 
 }  // namespace
 
-ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses, double wanted, double zone_area) {
+ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
+                    const std::vector<SideLightness>& light, double wanted, double zone_area) {
   ZonePlan plan{zone_area, {}};
   plan.groups.of_side.assign(2 * mesh.triangle_count(), ZoneGroups::kOwn);
   group_sealed(mesh, uses, plan.groups);
   Grouping grouping(mesh, zone_area);
-  std::vector<double> large;  // areas of sides that share nothing
+  std::vector<LoneSide> large;
   double zones_now = 0;
   for (std::size_t s = 0; s < uses.size(); ++s) {
     const TriangleId t(s / 2);
@@ -200,9 +203,9 @@ ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses, doub
     const double n = mesh.triangle(t).divisions;
     zones_now += n * n;
     if (n > 1 || uses[s] == SideUse::kOwn)
-      large.push_back(mesh.triangle_area(t));
+      large.push_back({mesh.triangle_area(t), static_cast<double>(light[s].spread)});
     else
-      grouping.add(static_cast<std::uint32_t>(s));
+      grouping.add(static_cast<std::uint32_t>(s), light[s].level);
   }
   if (zones_now > kEnough * wanted) {
     grouping.divide(wanted);

@@ -20,12 +20,20 @@ enum class SideUse : std::uint8_t {
   kSealed,  ///< No light reaches it.
 };
 
-/// `mesh` as size_zones made it with `zone_area` [m2]; `uses` by side as in ZoneGroups. All sealed sides of
-/// one surface become one group, fronts and backs apart, and do not count. If the others have up to half as
-/// many zones again as wanted, they stay as they are. Else sides of one cell are put together within their
-/// surface: starting with one group for each surface and side, the group in which light is likely to differ
-/// most, by area, extent and directions of normals, is cut in two, until it is as uneven as a cell of a large
-/// face; and cells become larger, until there are about as many of both as wanted. Deterministic.
-ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses, double wanted, double zone_area);
+/// Direct light that a side reflects, as a guess.
+struct SideLightness {
+  float level = 0;   ///< log(1 + B/m), B its mean and m that of the room.
+  float spread = 0;  ///< Variance over the side / (m + B)^2.
+};
+
+/// `mesh` as size_zones made it with `zone_area` [m2]; `uses` and `light` by side as in ZoneGroups. All
+/// sealed sides of one surface become one group, fronts and backs apart, and do not count. If the others have
+/// up to half as many zones again as wanted, they stay as they are. Else sides of one cell are put together
+/// within their surface: starting with one group for each surface and side, the group in which light is
+/// likely to differ most, by area, extent, directions of normals and light, is cut in two, until it is as
+/// uneven as a cell of a large face; and cells become larger, until there are about as many of both as
+/// wanted. Deterministic.
+ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
+                    const std::vector<SideLightness>& light, double wanted, double zone_area);
 
 }  // namespace reemit

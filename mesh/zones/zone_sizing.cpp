@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "mesh/zones/zone_cost.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -13,6 +14,8 @@ namespace {
 
 /// Divisions are rounded up, so zones come out smaller than wanted, by this much in the mean.
 constexpr double kRounding = 1.4;
+/// Cost of light that differs over the cost of place.
+constexpr double kSpreadCost = kLightWeight * kLightWeight / kCellCost;
 
 }  // namespace
 
@@ -42,7 +45,14 @@ std::uint32_t divisions_at_least(double n) {
   return static_cast<std::uint32_t>(power);
 }
 
-void size_zones(BaseMesh& mesh, double zone_area) {
+double wanted_divisions(double area, double spread, double zone_area) {
+  // What a cell costs (zone_cost.h) falls with the fourth power of the divisions, as the variances of place
+  // and light in it fall with their square.
+  const double cost = area * (area + kSpreadCost * spread * zone_area);
+  return std::sqrt(std::sqrt(cost)) / std::sqrt(zone_area);
+}
+
+void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spread) {
   constexpr double kMostZones = 2147483648.0;
   std::vector<CurvedPatches> curved;
   for (const CurvedShape& shape : mesh.shapes) curved.emplace_back(shape);
@@ -58,7 +68,11 @@ void size_zones(BaseMesh& mesh, double zone_area) {
     const double area =
         t.is_curved() ? curved[t.shape].patch_area()
                       : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
-    const double n = std::sqrt(area / zone_area) * (1 - 1e-12);  // a zone of just the wanted area is fine
+    const std::size_t side = 2 * static_cast<std::size_t>(&t - mesh.triangles.data());
+    const auto variance =
+        static_cast<double>(spread.empty() ? 0.0F : std::max(spread[side], spread[side + 1]));
+    // A zone of just the wanted area is fine.
+    const double n = wanted_divisions(area, variance, zone_area) * (1 - 1e-12);
     if (n < 65536) t.divisions = divisions_at_least(t.is_curved() ? std::max<double>(n, least) : n);
     zones += n < 65536 ? (t.two_sided ? 2.0 : 1.0) * t.divisions * t.divisions : kMostZones;
     if (zones >= kMostZones)

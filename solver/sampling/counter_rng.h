@@ -25,6 +25,7 @@ enum class RngPurpose : std::uint32_t {
   kZoneBias,
   kArrival,
   kSealedSides,
+  kLightOnSides,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

@@ -5,7 +5,8 @@
 
 #include "mesh/zones/zone_plan.h"
 #include "mesh/zones/zone_sizing.h"
-#include "solver/reflect/surface_model.h"
+#include "solver/room/room.h"
+#include "solver/zoning/light_on_sides.h"
 #include "solver/zoning/sealed_sides.h"
 
 namespace reemit {
@@ -14,10 +15,9 @@ namespace {
 /// Sides of luminaires up to which they share no zones: packets leave zones of one piece faster.
 constexpr std::size_t kFewLuminaires = 2000;
 
-std::vector<SideUse> uses_of_sides(const Scene& scene, const ZoneMesh& mesh, const WorkWatch& watch) {
-  const std::vector<std::uint8_t> sealed = sealed_sides(scene, mesh, watch);
-  const SurfaceModel surfaces(scene, mesh);
-  const auto emits = [&](std::size_t s) { return surfaces.emits(TriangleId(s / 2), s % 2 == 0); };
+std::vector<SideUse> uses_of_sides(const Room& room, const WorkWatch& watch) {
+  const std::vector<std::uint8_t> sealed = sealed_sides(room, watch);
+  const auto emits = [&](std::size_t s) { return room.surfaces().emits(TriangleId(s / 2), s % 2 == 0); };
   std::size_t luminaires = 0;
   for (std::size_t s = 0; s < sealed.size(); ++s) luminaires += emits(s) ? 1 : 0;
   std::vector<SideUse> uses(sealed.size(), SideUse::kShared);
@@ -40,22 +40,44 @@ double open_area(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
   return area;
 }
 
+/// What shadow rays and others find out about the sides of a mesh.
+struct Survey {
+  std::vector<SideUse> uses;
+  std::vector<SideLightness> light;
+  double open_area = 0;  // [m2]
+  double zone_area = 0;  // such that there are as many as wanted [m2]
+};
+
+Survey survey(const Scene& scene, const ZoneMesh& mesh, const MeshSettings& settings,
+              const WorkWatch& watch) {
+  constexpr double kSealing = 0.5;  // of the work
+  const Room room(scene, mesh);
+  Survey result;
+  result.uses = uses_of_sides(room, watch.part(0, kSealing));
+  result.open_area = open_area(mesh, result.uses);
+  if (!(result.open_area > 0)) return result;
+  result.zone_area = wanted_zone_area(settings, result.open_area);
+  result.light = light_on_sides(room, result.uses, result.zone_area, watch.part(kSealing, 1));
+  return result;
+}
+
 }  // namespace
 
 MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const WorkWatch& watch) {
   if (!settings.share_zones) return build_mesh(scene, settings, watch);
-  constexpr double kMeshing = 0.6;  // of the work
+  constexpr double kMeshing = 0.5;  // of the work
   MeshResult result = build_mesh(scene, settings, watch.part(0, kMeshing));
-  const std::vector<SideUse> uses = uses_of_sides(scene, result.mesh, watch.part(kMeshing, 1));
-  const double area = open_area(result.mesh, uses);
-  if (!(area > 0)) return result;  // there is no light
-  const double zone_area = wanted_zone_area(settings, area);
+  const Survey found = survey(scene, result.mesh, settings, watch.part(kMeshing, 1));
+  if (!(found.open_area > 0)) return result;  // there is no light
+  std::vector<float> spread(found.light.size());
+  for (std::size_t s = 0; s < spread.size(); ++s) spread[s] = found.light[s].spread;
   BaseMesh base = std::move(result.mesh).release_base();
-  size_zones(base, zone_area);
+  size_zones(base, found.zone_area, spread);
   result.mesh = ZoneMesh(std::move(base));
-  ZonePlan plan = plan_zones(result.mesh, uses, wanted_zone_count(settings, area), zone_area);
+  ZonePlan plan = plan_zones(result.mesh, found.uses, found.light,
+                             wanted_zone_count(settings, found.open_area), found.zone_area);
   base = std::move(result.mesh).release_base();
-  if (plan.zone_area > zone_area) size_zones(base, plan.zone_area);
+  if (plan.zone_area > found.zone_area) size_zones(base, plan.zone_area, spread);
   result.mesh = ZoneMesh(std::move(base), std::move(plan.groups));
   return result;
 }

@@ -8,7 +8,6 @@
 #include "mesh/geometry/disjoint_sets.h"
 #include "solver/emit/light_places.h"
 #include "solver/emit/punctual_emitter.h"
-#include "solver/reflect/surface_model.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/warp.h"
 #include "solver/trace/surface_point.h"
@@ -16,7 +15,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::uint64_t kSeed = 1;  // nothing of a solution should depend on it
+constexpr std::uint64_t kRaySeed = 1;  // nothing of a solution should depend on it
 /// Rays from every side at least, and in all in rooms of few sides.
 constexpr std::uint32_t kLeastRounds = 4;
 constexpr std::size_t kManyRays = 400'000;
@@ -35,18 +34,17 @@ std::uint32_t side_number(TriangleId t, bool front) {
 
 class Reach {
  public:
-  Reach(const Scene& scene, const ZoneMesh& mesh)
-      : mesh_(mesh),
-        rays_(mesh),
-        rng_(kSeed, RngPurpose::kSealedSides),
-        sides_(2 * mesh.triangle_count()),
+  explicit Reach(const Room& room)
+      : mesh_(room.mesh()),
+        rays_(room.rays()),
+        rng_(kRaySeed, RngPurpose::kSealedSides),
+        sides_(2 * mesh_.triangle_count()),
         outside_(sides_),
         light_(sides_ + 1),
         sets_(sides_ + 2) {
-    const SurfaceModel surfaces(scene, mesh);
     for (std::uint32_t s = 0; s < sides_; ++s)
-      if (surfaces.emits(TriangleId(s / 2), s % 2 == 0)) sets_.join(s, light_);
-    join_lights(scene);
+      if (room.surfaces().emits(TriangleId(s / 2), s % 2 == 0)) sets_.join(s, light_);
+    join_lights(room.scene());
   }
 
   void join_neighbours(const WorkWatch& watch) {
@@ -122,7 +120,7 @@ class Reach {
   }
 
   const ZoneMesh& mesh_;
-  RayTracer rays_;
+  const RayTracer& rays_;
   CounterRng rng_;
   std::size_t sides_, outside_, light_;  // the last two stand for all that is out there, and all that emits
   DisjointSets sets_;
@@ -130,8 +128,8 @@ class Reach {
 
 }  // namespace
 
-std::vector<std::uint8_t> sealed_sides(const Scene& scene, const ZoneMesh& mesh, const WorkWatch& watch) {
-  Reach reach(scene, mesh);
+std::vector<std::uint8_t> sealed_sides(const Room& room, const WorkWatch& watch) {
+  Reach reach(room);
   reach.join_neighbours(watch);
   return reach.sealed();
 }

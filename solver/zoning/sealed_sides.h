@@ -2,9 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/zones/zone_mesh.h"
-#include "scenes/model/scene.h"
 #include "scenes/model/work_watch.h"
+#include "solver/room/room.h"
 
 namespace reemit {
 
@@ -13,6 +12,6 @@ namespace reemit {
 /// join each side with what it sees; what no chain of such rays joins with a luminaire, or with the outside
 /// if light comes from there, is sealed. Sides without zones are 0. The same for any number of threads.
 /// Throws Interrupted when `watch` ends it.
-std::vector<std::uint8_t> sealed_sides(const Scene& scene, const ZoneMesh& mesh, const WorkWatch& watch = {});
+std::vector<std::uint8_t> sealed_sides(const Room& room, const WorkWatch& watch = {});
 
 }  // namespace reemit

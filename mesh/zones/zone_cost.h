@@ -1,0 +1,15 @@
+#pragma once
+
+namespace reemit {
+
+// What a zone costs: its area times the variances, over it, of what makes light differ. Lengths are in units
+// of the length of a zone, the square root of its area.
+
+/// Of place alone, in a right triangle with equal legs and that area.
+inline constexpr double kCellCost = 2.0 / 9;
+/// Unit normals count as lengths times this: in furnished rooms points then differ least from their zones.
+inline constexpr double kNormalWeight = 3;
+/// Light (SideLightness) counts as lengths times this.
+inline constexpr double kLightWeight = 3;
+
+}  // namespace reemit
