@@ -10,6 +10,6 @@ inline constexpr double kCellCost = 2.0 / 9;
 /// Unit normals count as lengths times this: in furnished rooms points then differ least from their zones.
 inline constexpr double kNormalWeight = 3;
 /// Light (SideLightness) counts as lengths times this.
-inline constexpr double kLightWeight = 3;
+inline constexpr double kLightWeight = 5;
 
 }  // namespace reemit

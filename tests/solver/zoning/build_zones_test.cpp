@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/progressive_solver.h"
+#include "solver/zoning/light_on_sides.h"
 #include "solver/zoning/sealed_sides.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/never.h"
@@ -92,7 +93,7 @@ bool is_inside_crate(const ZoneMesh& mesh, TriangleId t, bool front, SurfaceId c
 TEST(SealedSides, InsidesOfClosedSolidsAndOutsidesOfTheRoomAre) {
   const CrateRoom room(3, 3);
   const ZoneMesh mesh = build_mesh(room.scene()).mesh;
-  const std::vector<std::uint8_t> sealed = sealed_sides(room.scene(), mesh);
+  const std::vector<std::uint8_t> sealed = sealed_sides(Room(room.scene(), mesh));
   std::size_t inside = 0;
   for (std::size_t s = 0; s < sealed.size(); ++s) {
     const TriangleId t(s / 2);
@@ -120,7 +121,7 @@ TEST(SealedSides, ALampOrAHoleInsideOpensThem) {
       PointLight{"inside", Vec3(0.35, 0.55, 0.45), Spectrum::Constant(1, 1)});
   for (const CrateRoom* room : {&lamp_inside, &open, &point_inside}) {
     const ZoneMesh mesh = build_mesh(room->scene()).mesh;
-    const std::vector<std::uint8_t> sealed = sealed_sides(room->scene(), mesh);
+    const std::vector<std::uint8_t> sealed = sealed_sides(Room(room->scene(), mesh));
     for (std::size_t s = 0; s < sealed.size(); ++s)
       if (is_inside_crate(mesh, TriangleId(s / 2), s % 2 == 0, room->crates())) {
         EXPECT_EQ(sealed[s], 0) << "side " << s;
@@ -132,7 +133,72 @@ TEST(SealedSides, LightFromInfinitelyFarComesToTheOutside) {
   CrateRoom room(0, 1);
   room.scene().lights.push_back(DirectionalLight{"sun", Vec3(0, 0, -1), Spectrum::Constant(1, 1)});
   const ZoneMesh mesh = build_mesh(room.scene()).mesh;
-  for (const std::uint8_t s : sealed_sides(room.scene(), mesh)) EXPECT_EQ(s, 0);
+  for (const std::uint8_t s : sealed_sides(Room(room.scene(), mesh))) EXPECT_EQ(s, 0);
+}
+
+/// A point light 1 m over the floor of a black hall; two tiles lie on the floor.
+TEST(LightOnSides, IsThatOfThePointLight) {
+  CrateRoom room(0, 1);
+  room.scene().surfaces.clear();
+  const MaterialId tile = room.material(0.5, 0, false);
+  // Below the light, small; beside it, large: x from 1 to 3.
+  room.quad(room.surface("near", tile), {-0.05, -0.05, 0}, {0.1, 0, 0}, {0, 0.1, 0}, 1);
+  room.quad(room.surface("far", tile), {1, -0.05, 0}, {2, 0, 0}, {0, 0.1, 0}, 1);
+  room.scene().lights.push_back(PointLight{"lamp", Vec3(0, 0, 1), Spectrum::Constant(1, 1)});
+  const ZoneMesh mesh = build_mesh(room.scene(), {.zone_area = 100}).mesh;
+  const Room walls(room.scene(), mesh);
+  constexpr double kZoneArea = 0.001;  // so that there are 64 points on each
+  const std::vector<SideLightness> light =
+      light_on_sides(walls, std::vector<SideUse>(2 * mesh.triangle_count()), kZoneArea, {});
+
+  // Irradiance 1/(1 + x^2 + y^2)^(3/2) by quadrature over each triangle.
+  std::vector<double> mean(mesh.triangle_count(), 0.0);
+  std::vector<double> square(mesh.triangle_count(), 0.0);
+  double power = 0;
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    constexpr int kSteps = 200;
+    double count = 0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; i + j < kSteps; ++j) {
+        const Vec3 p = mesh.point(TriangleId(t), (i + 1.0 / 3) / kSteps, (j + 1.0 / 3) / kSteps);
+        const double e = std::pow(1 + p.squaredNorm(), -1.5);
+        mean[t] += e;
+        square[t] += e * e;
+        ++count;
+      }
+    mean[t] /= count;
+    square[t] /= count;
+    area += mesh.triangle_area(TriangleId(t));
+    power += mesh.triangle_area(TriangleId(t)) * mean[t];
+  }
+  const double all = power / area;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const double level = mean[t] + all;
+    EXPECT_NEAR(static_cast<double>(light[2 * t].level), std::log(level / all), 0.02) << "triangle " << t;
+    const double spread = (square[t] - mean[t] * mean[t]) / (level * level);
+    EXPECT_NEAR(static_cast<double>(light[2 * t].spread), spread, 0.15 * spread + 1e-4) << "triangle " << t;
+    EXPECT_EQ(light[2 * t + 1].level, 0);  // backs
+  }
+}
+
+TEST(BuildZones, CutsFinerWhereLightDiffers) {
+  // The same two tiles; what lies below the lamp is lit evenly.
+  CrateRoom room(0, 1);
+  room.scene().surfaces.clear();
+  const MaterialId tile = room.material(0.5, 0, false);
+  room.quad(room.surface("even", tile), {-0.2, -0.2, -3}, {0.4, 0, 0}, {0, 0.4, 0}, 1);
+  room.quad(room.surface("uneven", tile), {0.1, -0.2, 0.4}, {0.4, 0, 0}, {0, 0.4, 0}, 1);
+  room.scene().lights.push_back(PointLight{"lamp", Vec3(0, 0, 0.5), Spectrum::Constant(1, 1)});
+  // Just less than 8 x 8 on each half of a tile, where light is even.
+  const ZoneMesh mesh = build_zones(room.scene(), {.zone_area = 0.08 / 63}).mesh;
+  const auto divisions = [&](std::size_t surface) {
+    for (const BaseTriangle& t : mesh.base().triangles)
+      if (t.surface == SurfaceId(surface)) return t.divisions;
+    return 0U;
+  };
+  EXPECT_EQ(divisions(0), 8U);
+  EXPECT_EQ(divisions(1), 12U);
 }
 
 TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
