@@ -30,7 +30,7 @@ std::string missed_by_zones(const std::string& what, double target, const std::o
   if (!(target > 0) || !zones || !zones->certain() || zones->rms <= target) return "";
   return fmt::format(
       "the zones keep {} from an error of {}: they are too large and put it off by about {}, whatever its "
-      "noise; solve with a smaller --zone-area",
+      "noise; solve with more --zones",
       what, percent_text(target), rough_percent(zones->rms));
 }
 

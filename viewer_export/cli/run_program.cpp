@@ -93,7 +93,7 @@ ExitCode parse_and_run(CLI::App& program, const Action& action, int argc, const 
 
 ExitCode run_program(int argc, const char* const* argv) {
   constexpr const char* kMemoryAdvice =
-      "out of memory\n  use larger zones (solve --zone-area) or a smaller picture (render --size)";
+      "out of memory\n  use fewer zones (solve --zones) or a smaller picture (render --size)";
   try {
     Action action;
     const std::unique_ptr<CLI::App> program = make_program(action);

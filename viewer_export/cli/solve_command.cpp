@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDefaultErrorTarget = 0.02;
-/// Zones aimed at without --zone-area: the time of the matrix grows with their square.
+/// Zones aimed at without --zones: the time of the matrix grows with their square.
 constexpr int kMatrixZoneCount = 2000;
 
 struct SolveOptions {

@@ -31,7 +31,7 @@ TEST(ErrorText, says_when_the_zones_alone_miss_a_target) {
   EXPECT_THAT(text, HasSubstr("the picture"));
   EXPECT_THAT(text, HasSubstr("1 %"));
   EXPECT_THAT(text, HasSubstr("3.1 %"));
-  EXPECT_THAT(text, HasSubstr("--zone-area"));
+  EXPECT_THAT(text, HasSubstr("--zones"));
   EXPECT_EQ(missed_by_zones("the picture", 0.05, ZoneBias{0.0312, 0.035}), "");
   EXPECT_EQ(missed_by_zones("the picture", 0, ZoneBias{0.0312, 0.035}), "") << "no target";
   EXPECT_EQ(missed_by_zones("the picture", 0.01, ZoneBias{0.02, 0.05}), "") << "noise may be all of it";
