@@ -9,6 +9,8 @@ namespace reemit {
 inline constexpr double kCellCost = 2.0 / 9;
 /// Unit normals count as lengths times this: in furnished rooms points then differ least from their zones.
 inline constexpr double kNormalWeight = 3;
+/// Variance of the normals of a patch of a round shape that spans a right angle, about.
+inline constexpr double kPatchNormals = 1.0 / 3;
 /// Light (SideLightness) counts as lengths times this.
 inline constexpr double kLightWeight = 5;
 

@@ -94,7 +94,7 @@ class Grouping {
   /// whole, so cuts come in the order of costs.
   std::size_t count(double cost) const { return starts_.size() + cuts_above(cost); }
 
-  /// Numbers the groups of two members or more, from groups.count on.
+  /// Numbers the groups, from groups.count on. A single side needs none unless it has several cells.
   void number(double cost, ZoneGroups& groups) const {
     std::vector<std::size_t> starts = starts_;
     for (std::size_t i = 0; i < cuts_above(cost); ++i) starts.push_back(cuts_[i].place);
@@ -103,8 +103,8 @@ class Grouping {
     // By their first sides, so that neighbours in memory are neighbours in the room.
     std::vector<std::pair<std::uint32_t, std::size_t>> order;
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
-      if (starts[i + 1] - starts[i] < 2) continue;
       std::uint32_t least = members_[starts[i]].side;
+      if (starts[i + 1] - starts[i] == 1 && mesh_.triangle(TriangleId(least / 2)).divisions == 1) continue;
       for (std::size_t m = starts[i]; m < starts[i + 1]; ++m) least = std::min(least, members_[m].side);
       order.emplace_back(least, i);
     }
@@ -171,6 +171,14 @@ void group_sealed(const ZoneMesh& mesh, const std::vector<SideUse>& uses, ZoneGr
   groups.sealed = groups.count;
 }
 
+/// Whether a side may be in one zone whole: it is one cell, or a patch of several cells, for the sake of its
+/// vertices, that costs no more than one.
+bool may_share(const ZoneMesh& mesh, TriangleId t, double zone_area) {
+  if (mesh.triangle(t).divisions == 1) return true;
+  constexpr double kLargestPatch = kCellCost / (kNormalWeight * kNormalWeight * kPatchNormals);
+  return mesh.triangle(t).is_curved() && mesh.triangle_area(t) <= kLargestPatch * zone_area;
+}
+
 /// A side that shares nothing.
 struct LoneSide {
   double area;    // [m2]
@@ -202,7 +210,7 @@ ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
     if (uses[s] == SideUse::kSealed || !mesh.has_zones(t, s % 2 == 0)) continue;
     const double n = mesh.triangle(t).divisions;
     zones_now += n * n;
-    if (n > 1 || uses[s] == SideUse::kOwn)
+    if (uses[s] == SideUse::kOwn || !may_share(mesh, t, zone_area))
       large.push_back({mesh.triangle_area(t), static_cast<double>(light[s].spread)});
     else
       grouping.add(static_cast<std::uint32_t>(s), light[s].level);

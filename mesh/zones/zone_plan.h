@@ -22,7 +22,7 @@ enum class SideUse : std::uint8_t {
 
 /// Direct light that a side reflects, as a guess.
 struct SideLightness {
-  float level = 0;   ///< log(1 + B/m), B its mean and m that of the room.
+  float level = 0;   ///< log(1 + B/m), B its mean and m what counts as dim in the room.
   float spread = 0;  ///< Variance over the side / (m + B)^2.
 };
 

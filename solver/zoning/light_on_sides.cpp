@@ -21,6 +21,8 @@ constexpr std::uint64_t kLookSeed = 1;  // nothing of a solution should depend o
 constexpr double kPointsPerZone = 4;
 constexpr int kLeastPoints = 2;
 constexpr int kMostPoints = 64;
+/// Radiance over the mean of the room below which differences no longer matter relative to it.
+constexpr double kDim = 0.3;
 /// Shadow rays from each point, in halves whose noise is independent.
 constexpr std::size_t kHalves = 2;
 
@@ -93,10 +95,10 @@ std::vector<SideLightness> light_on_sides(const Room& room, const std::vector<Si
     power += a * radiance[s].mean;
   }
   if (!(power > 0)) return result;
-  const double mean = power / area;
+  const double dim = kDim * power / area;
   for (std::size_t s = 0; s < uses.size(); ++s) {
-    const double level = mean + radiance[s].mean;
-    result[s] = {static_cast<float>(std::log(level / mean)),
+    const double level = dim + radiance[s].mean;
+    result[s] = {static_cast<float>(std::log(level / dim)),
                  static_cast<float>(std::max(0.0, radiance[s].variance) / (level * level))};
   }
   return result;

@@ -39,9 +39,8 @@ class Reach {
         rays_(room.rays()),
         rng_(kRaySeed, RngPurpose::kSealedSides),
         sides_(2 * mesh_.triangle_count()),
-        outside_(sides_),
-        light_(sides_ + 1),
-        sets_(sides_ + 2) {
+        light_(sides_),
+        sets_(sides_ + 1) {
     for (std::uint32_t s = 0; s < sides_; ++s)
       if (room.surfaces().emits(TriangleId(s / 2), s % 2 == 0)) sets_.join(s, light_);
     join_lights(room.scene());
@@ -79,7 +78,7 @@ class Reach {
   void join_lights(const Scene& scene) {
     for (const PunctualLight& light : lights_before_faces(scene, rays_)) {
       const PunctualEmitter emitter = make_punctual_emitter(light, rays_);
-      if (is_at_infinity(emitter)) sets_.join(outside_, light_);
+      if (is_at_infinity(emitter)) is_outside_lit_ = true;
       for (std::uint32_t k = 0; k < kRaysPerLight; ++k) {
         const std::array<float, 4> u = rng_.uniform4(k, kNothing, 0);
         const LightRay start = start_light_ray(emitter, u[0], u[1], u[2], u[3]);
@@ -98,7 +97,13 @@ class Reach {
   }
 
   void join(std::uint32_t from, std::uint32_t to) {
-    if (to != kNothing) sets_.join(from, to == kOutside ? outside_ : to);
+    // What leaves an open room does not come back, so the outside joins nothing unless light comes from
+    // there.
+    if (to == kOutside) {
+      if (is_outside_lit_) sets_.join(from, light_);
+    } else if (to != kNothing) {
+      sets_.join(from, to);
+    }
   }
 
   /// One ray from each of these sides.
@@ -122,7 +127,9 @@ class Reach {
   const ZoneMesh& mesh_;
   const RayTracer& rays_;
   CounterRng rng_;
-  std::size_t sides_, outside_, light_;  // the last two stand for all that is out there, and all that emits
+  std::size_t sides_;
+  std::size_t light_;  // stands for all that emits
+  bool is_outside_lit_ = false;
   DisjointSets sets_;
 };
 
