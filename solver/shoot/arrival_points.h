@@ -28,9 +28,9 @@ class ArrivalPoints {
   /// One point per zone, or more where there are few zones and many `packets`.
   ArrivalPoints(std::size_t zones, std::uint32_t packets);
 
-  /// Zones that packets leave from anywhere have none: sides that no light should reach.
+  /// Groups of very many sides have none: packets leave them from anywhere.
   static bool has_points(const ZoneMesh& mesh, ZoneId zone) {
-    return !mesh.is_group(zone) || (!mesh.is_sealed(zone) && mesh.member_count(zone) <= kFractions);
+    return !mesh.is_group(zone) || mesh.member_count(zone) <= kFractions;
   }
 
   /// Points added from here on belong to `sweep`; those of the sweep before can be read. Sweeps count from 0.
