@@ -56,8 +56,8 @@ class Grouping {
     members_.push_back(m);
   }
 
-  /// Cuts until there are `most` groups or all are single sides.
-  void divide(double most) {
+  /// Cuts until there are `most` groups and none costs more than `cost`, or all are single sides.
+  void divide(double most, double cost) {
     const auto kind = [&](const Member& m) {
       return std::pair(mesh_.triangle(TriangleId(m.side / 2)).surface.index(), m.side % 2);
     };
@@ -74,7 +74,8 @@ class Grouping {
       add(measured(first, last));
       first = last;
     }
-    while (!open.empty() && static_cast<double>(starts_.size() + cuts_.size()) < most) {
+    while (!open.empty() &&
+           (static_cast<double>(starts_.size() + cuts_.size()) < most || open.top().cost > cost)) {
       const Cluster c = open.top();
       open.pop();
       const auto axis = static_cast<std::size_t>(c.axis);
@@ -179,6 +180,10 @@ bool may_share(const ZoneMesh& mesh, TriangleId t, double zone_area) {
   return mesh.triangle(t).is_curved() && mesh.triangle_area(t) <= kLargestPatch * zone_area;
 }
 
+/// Zones grow no further than this for the sake of their number: a room of very many surfaces has at least
+/// one for each side of each, and its walls must not become coarse for that.
+constexpr double kMostLarger = 4;
+
 /// A side that shares nothing.
 struct LoneSide {
   double area;    // [m2]
@@ -216,12 +221,11 @@ ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
       grouping.add(static_cast<std::uint32_t>(s), light[s].level);
   }
   if (zones_now > kEnough * wanted) {
-    grouping.divide(wanted);
+    grouping.divide(wanted, kCellCost * kMostLarger * zone_area);
     const auto zones = [&](double area) {
       return cells_of(large, area) + static_cast<double>(grouping.count(kCellCost * area));
     };
     // By bisection of the logarithm, as counts fall with the area.
-    constexpr double kMostLarger = 1e4;
     constexpr int kSteps = 30;
     double low = zone_area;
     double high = kMostLarger * zone_area;

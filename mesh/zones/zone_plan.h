@@ -31,8 +31,8 @@ struct SideLightness {
 /// up to half as many zones again as wanted, they stay as they are. Else sides of one cell are put together
 /// within their surface: starting with one group for each surface and side, the group in which light is
 /// likely to differ most, by area, extent, directions of normals and light, is cut in two, until it is as
-/// uneven as a cell of a large face; and cells become larger, until there are about as many of both as
-/// wanted. Deterministic.
+/// uneven as a cell of a large face; and cells become larger, but no more than four times, until there are
+/// about as many of both as wanted. Deterministic.
 ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
                     const std::vector<SideLightness>& light, double wanted, double zone_area);
 
