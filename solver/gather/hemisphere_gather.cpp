@@ -19,9 +19,8 @@ std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight&
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
   if (settings.continue_uneven) uneven = uneven_zones(field, direct, settings.seed, stop);
   for (std::size_t z = 0; z < reach.size(); ++z)
-    reach[z] = uneven[z] != 0
-                   ? std::numeric_limits<float>::infinity()
-                   : static_cast<float>(settings.close_hit) * field.zone_size(ZoneId(z));
+    reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
+                              : static_cast<float>(settings.close_hit) * field.zone_size(ZoneId(z));
   return reach;
 }
 

@@ -23,10 +23,9 @@ RadianceField::RadianceField(const Room& room, const Solution& solution, std::si
 
 float RadianceField::zone_size(ZoneId z) const {
   const ZoneMesh& mesh = room_->mesh();
-  const double metres = mesh.is_group(z)
-                            ? std::sqrt(2 * mesh.zone_area(z))
-                            : std::sqrt(2 * mesh.triangle_area(mesh.zone_triangle(z))) /
-                                  mesh.triangle(mesh.zone_triangle(z)).divisions;
+  const double metres = mesh.is_group(z) ? std::sqrt(2 * mesh.zone_area(z))
+                                         : std::sqrt(2 * mesh.triangle_area(mesh.zone_triangle(z))) /
+                                               mesh.triangle(mesh.zone_triangle(z)).divisions;
   return static_cast<float>(metres / room_->rays().metres_per_unit());
 }
 

@@ -12,8 +12,9 @@ struct alignas(64) ZoneLanes {
   float corner[3][16], edge1[3][16], edge2[3][16];
   float middle[3][16];  ///< Of the parent triangle: rays are drawn towards it.
   float tangent[3][16], bitangent[3][16], normal[3][16];
-  std::uint32_t zone[16];    ///< Of lanes one by one; else, at feet, the triangle that it is in.
-  std::uint32_t one_by_one = 0;  ///< Lanes of curved zones and groups as bits; the geometry above is not theirs.
+  std::uint32_t zone[16];  ///< Of lanes one by one; else, at feet, the triangle that it is in.
+  std::uint32_t one_by_one =
+      0;                     ///< Lanes of curved zones and groups as bits; the geometry above is not theirs.
   std::uint32_t points = 0;  ///< Of these, lanes of given points: zone is the triangle, corner u, v and side.
   std::uint32_t feet = 0;    ///< Lanes of flat zones that rays leave clear of shapes (RayTracer::is_foot).
 };

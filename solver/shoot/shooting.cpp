@@ -26,7 +26,7 @@ constexpr std::uint32_t kMostSweeps = 200'000;
 struct Account {
   std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room or needs a second look.
   bool shared = false;
-  std::uint64_t* place = nullptr;  ///< Among the arrival points of its zone, if they are kept.
+  std::uint64_t* place = nullptr;    ///< Among the arrival points of its zone, if they are kept.
   std::uint32_t member = kNoMember;  ///< Of the zone, if that is a group.
 
   static constexpr std::uint32_t kNoMember = 0xffffffff;
