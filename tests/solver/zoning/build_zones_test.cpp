@@ -8,77 +8,18 @@
 #include <gtest/gtest.h>
 
 #include "solver/progressive_solver.h"
+#include "solver/solution/solution_file.h"
 #include "solver/zoning/light_on_sides.h"
 #include "solver/zoning/sealed_sides.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/crate_room.h"
 #include "tests/support/never.h"
+#include "tests/support/temp_folder.h"
 
 namespace reemit {
 namespace {
 
-/// A box of 3 x 2 x 2 m whose walls reflect a half, a lamp under its ceiling, and crates on its floor that
-/// are one surface: of `parts` x `parts` quads on each of their sides.
-class CrateRoom {
- public:
-  CrateRoom(int crates, int parts) {
-    scene_.source = "crate room";
-    walls_ = surface("walls", material(0.5, 0, true));
-    box(walls_, {0, 0, 0}, {3, 2, 2}, 4);
-    const SurfaceId lamp = surface("lamp", material(0, 20, false));
-    quad(lamp, {1, 0.5, 1.9}, {0, 1, 0}, {1, 0, 0}, 2);
-    crates_ = surface("crates", material(0.7, 0, true));
-    for (int i = 0; i < crates; ++i) {
-      const Vec3 low(0.2 + 0.5 * i, 0.4 + 0.2 * (i % 2), 0.3);
-      box(crates_, low, low + Vec3(0.3, 0.3, 0.3), parts);
-    }
-  }
-
-  const Scene& scene() const { return scene_; }
-  Scene& scene() { return scene_; }
-  SurfaceId walls() const { return walls_; }
-  SurfaceId crates() const { return crates_; }
-
-  MaterialId material(double reflectance, double radiance, bool two_sided) {
-    Material m;
-    m.name = "material" + std::to_string(scene_.materials.size());
-    m.reflectance = Spectrum::Constant(1, reflectance);
-    m.emitted_radiance = Spectrum::Constant(1, radiance);
-    m.two_sided = two_sided;
-    scene_.materials.push_back(m);
-    return MaterialId(scene_.materials.size() - 1);
-  }
-  SurfaceId surface(const std::string& name, MaterialId m) {
-    Surface s;
-    s.name = name;
-    s.material = m;
-    scene_.surfaces.push_back(s);
-    return SurfaceId(scene_.surfaces.size() - 1);
-  }
-  void quad(SurfaceId id, const Vec3& corner, const Vec3& u, const Vec3& v, int parts) {
-    Surface& s = scene_.surfaces[id.index()];
-    for (int i = 0; i < parts; ++i)
-      for (int j = 0; j < parts; ++j) {
-        const auto at = [&](int a, int b) { return Vec3(corner + a * u / parts + b * v / parts); };
-        const auto first = static_cast<std::uint32_t>(s.positions.size());
-        s.positions.insert(s.positions.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-        s.faces.emplace_back().outer = {first, first + 1, first + 2, first + 3};
-      }
-  }
-  void box(SurfaceId id, const Vec3& low, const Vec3& high, int parts) {
-    const Vec3 d = high - low;
-    const Vec3 x(d.x(), 0, 0);
-    const Vec3 y(0, d.y(), 0);
-    const Vec3 z(0, 0, d.z());
-    for (const auto& [u, v, w] : {std::array{x, y, z}, std::array{y, z, x}, std::array{z, x, y}}) {
-      quad(id, low, v, u, parts);
-      quad(id, low + w, u, v, parts);
-    }
-  }
-
- private:
-  Scene scene_;
-  SurfaceId walls_, crates_;
-};
+using test::CrateRoom;
 
 bool is_inside_crate(const ZoneMesh& mesh, TriangleId t, bool front, SurfaceId crates) {
   if (mesh.triangle(t).surface != crates) return false;
@@ -227,7 +168,7 @@ TEST(BuildZones, CutsFinerWhereLightDiffers) {
 }
 
 TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
-  const CrateRoom room(5, 40);  // 48,000 quads on crates
+  const CrateRoom room(5, 20);  // 12,000 quads on crates
   for (const int wanted : {300, 1000, 4000}) {
     MeshSettings settings;
     settings.default_zone_count = wanted;
@@ -244,8 +185,50 @@ TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
   }
 }
 
+TEST(BuildZones, ManySurfacesDoNotMakeWallsCoarse) {
+  CrateRoom room(0, 1);
+  constexpr int kTags = 400;  // with two sides each, more than the zones that are wanted
+  for (int i = 0; i < kTags; ++i)
+    room.quad(room.surface("tag " + std::to_string(i), room.material(0.5, 0, true)),
+              {0.1 + 0.14 * (i % 20), 0.1 + 0.09 * (i / 20), 0.5}, {0.05, 0, 0}, {0, 0.05, 0}, 1);
+  MeshSettings settings;
+  settings.default_zone_count = 200;
+  const ZoneMesh mesh = build_zones(room.scene(), settings).mesh;
+  double open_area = 0;
+  double largest = 0;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    if (mesh.is_sealed(ZoneId(z))) continue;
+    open_area += mesh.zone_area(ZoneId(z));
+    largest = std::max(largest, mesh.zone_area(ZoneId(z)));
+  }
+  EXPECT_LT(largest, 4 * 1.4 * open_area / 200 * (1 + 1e-9));
+  EXPECT_GT(mesh.zone_count(), 2U * kTags);
+}
+
+TEST(BuildZones, AreKeptByTheSolutionFile) {
+  const CrateRoom room(3, 6);
+  MeshSettings mesh_settings;
+  mesh_settings.default_zone_count = 150;
+  SolverSettings settings;
+  settings.packets = 100'000;
+  const Solution saved =
+      solve(room.scene(), build_zones(room.scene(), mesh_settings), settings, {}, test::kNever);
+  ASSERT_GT(saved.mesh.groups().count, saved.mesh.groups().sealed);
+  const test::TempFolder folder;
+  save_solution(saved, folder / "groups.h5");
+  const Solution read = load_solution(folder / "groups.h5");
+  EXPECT_EQ(read.mesh.groups().of_side, saved.mesh.groups().of_side);
+  EXPECT_EQ(read.mesh.groups().count, saved.mesh.groups().count);
+  EXPECT_EQ(read.mesh.groups().sealed, saved.mesh.groups().sealed);
+  ASSERT_EQ(read.mesh.zone_count(), saved.mesh.zone_count());
+  for (std::size_t z = 0; z < read.mesh.zone_count(); ++z) {
+    EXPECT_EQ(read.mesh.zone_area(ZoneId(z)), saved.mesh.zone_area(ZoneId(z)));
+    EXPECT_EQ(read.irradiance(ZoneId(z), 0).mean, saved.irradiance(ZoneId(z), 0).mean);
+  }
+}
+
 TEST(BuildZones, PutsTogetherWhatIsAlike) {
-  const CrateRoom room(5, 40);
+  const CrateRoom room(5, 20);
   MeshSettings settings;
   settings.default_zone_count = 2000;
   const ZoneMesh mesh = build_zones(room.scene(), settings).mesh;

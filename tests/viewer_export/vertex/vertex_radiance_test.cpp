@@ -12,6 +12,8 @@
 #include "solver/gather/direct_light.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "solver/zoning/build_zones.h"
+#include "tests/support/crate_room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
 #include "tests/support/never.h"
@@ -158,6 +160,40 @@ TEST(GatherVertices, the_inside_of_a_solid_is_left_out_although_its_surface_has_
     ++undersides;
   }
   EXPECT_GE(undersides, 4);
+}
+
+TEST(GatherVertices, groups_of_sides_keep_every_vertex) {
+  const test::CrateRoom room(3, 6);
+  MeshSettings mesh_settings;
+  mesh_settings.default_zone_count = 400;
+  MeshResult grouped = build_zones(room.scene(), mesh_settings);
+  MeshResult cells{ZoneMesh(grouped.mesh.base()), grouped.report};
+  ASSERT_LT(2 * grouped.mesh.zone_count(), cells.mesh.zone_count());
+  VertexSettings settings;
+  settings.all_zones = true;
+  settings.gather_rays = 64;
+  settings.light_samples = 64;
+  const auto vertices_of = [&](MeshResult mesh) {
+    SolverSettings solver;
+    solver.packets = 400'000;
+    const Solution solution = solve(room.scene(), std::move(mesh), solver, {}, test::kNever);
+    const Room walls(room.scene(), solution.mesh);
+    return gather_vertices(walls, solution, settings, {}, test::kNever);
+  };
+  const VertexData a = vertices_of(std::move(grouped));
+  const VertexData b = vertices_of(std::move(cells));
+  ASSERT_EQ(a.vertex_count(), b.vertex_count());
+  EXPECT_EQ(a.triangles, b.triangles);
+  // Light is gathered at the vertex, so means of groups blur only what was reflected twice.
+  double difference = 0;
+  double square = 0;
+  for (std::size_t v = 0; v < a.vertex_count(); ++v) {
+    EXPECT_EQ(a.positions[v], b.positions[v]);
+    const double d = static_cast<double>(a.irradiance[v]) - static_cast<double>(b.irradiance[v]);
+    difference += d * d;
+    square += static_cast<double>(b.irradiance[v]) * static_cast<double>(b.irradiance[v]);
+  }
+  EXPECT_LT(std::sqrt(difference / square), 0.03);
 }
 
 TEST(GatherVertices, zone_averages_are_area_weighted_means) {
