@@ -180,10 +180,6 @@ bool may_share(const ZoneMesh& mesh, TriangleId t, double zone_area) {
   return mesh.triangle(t).is_curved() && mesh.triangle_area(t) <= kLargestPatch * zone_area;
 }
 
-/// Zones grow no further than this for the sake of their number: a room of very many surfaces has at least
-/// one for each side of each, and its walls must not become coarse for that.
-constexpr double kMostLarger = 4;
-
 /// A side that shares nothing.
 struct LoneSide {
   double area;    // [m2]
@@ -203,7 +199,8 @@ double cells_of(const std::vector<LoneSide>& sides, double zone_area) {
 }  // namespace
 
 ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
-                    const std::vector<SideLightness>& light, double wanted, double zone_area) {
+                    const std::vector<SideLightness>& light, double wanted, double zone_area,
+                    double largest_zone_area) {
   ZonePlan plan{zone_area, {}};
   plan.groups.of_side.assign(2 * mesh.triangle_count(), ZoneGroups::kOwn);
   group_sealed(mesh, uses, plan.groups);
@@ -221,14 +218,14 @@ ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
       grouping.add(static_cast<std::uint32_t>(s), light[s].level);
   }
   if (zones_now > kEnough * wanted) {
-    grouping.divide(wanted, kCellCost * kMostLarger * zone_area);
+    grouping.divide(wanted, kCellCost * largest_zone_area);
     const auto zones = [&](double area) {
       return cells_of(large, area) + static_cast<double>(grouping.count(kCellCost * area));
     };
     // By bisection of the logarithm, as counts fall with the area.
     constexpr int kSteps = 30;
     double low = zone_area;
-    double high = kMostLarger * zone_area;
+    double high = largest_zone_area;
     for (int i = 0; i < kSteps && zones(low) > wanted; ++i) {
       const double middle = std::sqrt(low * high);
       (zones(middle) > wanted ? low : high) = middle;

@@ -14,6 +14,9 @@ namespace {
 
 /// Sides of luminaires up to which they share no zones: packets leave zones of one piece faster.
 constexpr std::size_t kFewLuminaires = 2000;
+/// Zones whose area nobody asked for grow up to this many times for the sake of their number: a room of very
+/// many surfaces has at least one for each side of each, and its walls must not become coarse for that.
+constexpr double kMostLarger = 4;
 
 std::vector<SideUse> uses_of_sides(const Room& room, const WorkWatch& watch) {
   const std::vector<std::uint8_t> sealed = sealed_sides(room, watch);
@@ -74,8 +77,9 @@ MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const W
   BaseMesh base = std::move(result.mesh).release_base();
   size_zones(base, found.zone_area, spread);
   result.mesh = ZoneMesh(std::move(base));
+  const double largest = settings.zone_area ? found.zone_area : kMostLarger * found.zone_area;
   ZonePlan plan = plan_zones(result.mesh, found.uses, found.light,
-                             wanted_zone_count(settings, found.open_area), found.zone_area);
+                             wanted_zone_count(settings, found.open_area), found.zone_area, largest);
   base = std::move(result.mesh).release_base();
   if (plan.zone_area > found.zone_area) size_zones(base, plan.zone_area, spread);
   result.mesh = ZoneMesh(std::move(base), std::move(plan.groups));

@@ -185,6 +185,15 @@ TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
   }
 }
 
+TEST(BuildZones, CellsAreNoLargerThanAskedFor) {
+  const CrateRoom room(5, 20);
+  constexpr double kZoneArea = 0.1;
+  const ZoneMesh mesh = build_zones(room.scene(), {.zone_area = kZoneArea}).mesh;
+  EXPECT_GT(mesh.groups().count, mesh.groups().sealed);
+  for (std::size_t z = 0; z < mesh.cell_zone_count(); ++z)
+    EXPECT_LE(mesh.zone_area(ZoneId(z)), kZoneArea * (1 + 1e-9));
+}
+
 TEST(BuildZones, ManySurfacesDoNotMakeWallsCoarse) {
   CrateRoom room(0, 1);
   constexpr int kTags = 400;  // with two sides each, more than the zones that are wanted
