@@ -49,8 +49,8 @@ Vec3 single_precision_origin(const VertexData& data) {
   const double size = (high - low).norm();
   const double reach = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
   // Half a unit in the last place of a float is 6e-8 of the value.
-  constexpr double kFarthest = 16;
-  if (reach <= kFarthest * size || size == 0) return Vec3::Zero();
+  constexpr double kMostSizesAway = 16;
+  if (reach <= kMostSizesAway * size || size == 0) return Vec3::Zero();
   return 0.5 * (low + high);
 }
 
