@@ -7,7 +7,7 @@ namespace reemit {
 struct MeshSettings {
   /// Largest area of the zones that large faces are cut into [m2], > 0. Unset: such that there are about
   /// default_zone_count zones, both sides counted.
-  std::optional<double> zone_area;
+  std::optional<double> zone_area = std::nullopt;
   int default_zone_count = 8000;  ///< Zones aimed at when zone_area is unset [1, 1e8].
   double smallest_angle_deg =
       20.0;  ///< Quality bound of the base triangulation where the input allows it [0, 30].
