@@ -48,7 +48,8 @@ ExitCode export_form_factors(const FormFactorExport& options) {
   form_factor_format_of(options.output);  // refuses an unknown one before the work
   check_output_file(options.output, options.solution);
   const Solution solution = reemit::load_solution(options.solution);
-  const RayTracer rays(solution.mesh);
+  const ZoneMesh cells(solution.mesh.base());  // factors are those of zones of one piece
+  const RayTracer rays(cells);
 
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;
@@ -57,15 +58,14 @@ ExitCode export_form_factors(const FormFactorExport& options) {
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   const FormFactors factors = arena.execute([&] {
     return compute_form_factors(
-        solution.mesh, rays, {.seed = options.seed, .enforce_closure = true},
+        cells, rays, {.seed = options.seed, .enforce_closure = true},
         [&progress](double done) { progress.update(done); }, interrupt.requested());
   });
   progress.finish();
   const FormFactorReport& report = factors.report();
   write_output([&] {
-    write_form_factors(
-        {factors, solution.mesh, solution.surface_names, notes_of(solution, report, options.seed)},
-        options.output);
+    write_form_factors({factors, cells, solution.surface_names, notes_of(solution, report, options.seed)},
+                       options.output);
   });
 
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
