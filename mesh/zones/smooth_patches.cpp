@@ -114,8 +114,8 @@ void SmoothPatches::join_edges(const ZoneMesh& mesh, double crease_angle_deg) {
       if (!a_front && !mesh.triangle(TriangleId(a.triangle)).two_sided) continue;
       if (!b_front && !mesh.triangle(TriangleId(b.triangle)).two_sided) continue;
       if (!joint.is_smooth(a_front, b_front)) continue;
-      const std::size_t slot_a = slot(patch_of(TriangleId(a.triangle), a_front), a.edge);
-      const std::size_t slot_b = slot(patch_of(TriangleId(b.triangle), b_front), b.edge);
+      const std::size_t slot_a = slot(side_of(TriangleId(a.triangle), a_front), a.edge);
+      const std::size_t slot_b = slot(side_of(TriangleId(b.triangle), b_front), b.edge);
       neighbour_[slot_a] = static_cast<std::uint32_t>(slot_b);
       neighbour_[slot_b] = static_cast<std::uint32_t>(slot_a);
     }

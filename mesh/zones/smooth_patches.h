@@ -7,14 +7,8 @@
 
 namespace reemit {
 
-/// One side of a base triangle; only sides that have zones are patches in use.
-using PatchId = std::uint32_t;
-inline PatchId patch_of(TriangleId t, bool front) {
-  return static_cast<PatchId>(2 * t.index() + (front ? 0 : 1));
-}
-
-/// Which patches continue each other smoothly, and the vertices that follow from it at their corners.
-/// Edge k of a patch runs between corners k and k+1 of its triangle.
+/// Which patches, as sides that have zones are called here, continue each other smoothly, and the vertices
+/// that follow from it at their corners. Edge k of a patch runs between corners k and k+1 of its triangle.
 class SmoothPatches {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -25,15 +19,15 @@ class SmoothPatches {
   SmoothPatches(const ZoneMesh& mesh, double crease_angle_deg);
 
   /// Patch and edge on the other side of edge k as 3*patch+edge; kNone at a border.
-  std::uint32_t neighbour(PatchId p, int k) const { return neighbour_[slot(p, k)]; }
+  std::uint32_t neighbour(SideId p, int k) const { return neighbour_[slot(p, k)]; }
   /// Number of the vertex at corner k; patches joined around it have the same.
-  std::uint32_t corner_vertex(PatchId p, int k) const { return corner_vertex_[slot(p, k)]; }
+  std::uint32_t corner_vertex(SideId p, int k) const { return corner_vertex_[slot(p, k)]; }
   std::size_t corner_vertex_count() const { return corner_normal_.size(); }
   /// Unit normal at such a vertex: of the shading normals, else of the faces around it, weighted by angle.
   const Vec3& corner_normal(std::uint32_t vertex) const { return corner_normal_[vertex]; }
 
  private:
-  static std::size_t slot(PatchId p, int k) { return 3 * std::size_t{p} + static_cast<std::size_t>(k); }
+  static std::size_t slot(SideId p, int k) { return 3 * p.index() + static_cast<std::size_t>(k); }
   void join_edges(const ZoneMesh& mesh, double crease_angle_deg);
   void number_corners(const ZoneMesh& mesh);
 

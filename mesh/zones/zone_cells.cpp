@@ -3,20 +3,20 @@
 namespace reemit {
 
 ZoneCells::ZoneCells(const ZoneMesh& mesh) : mesh_(&mesh) {
-  first_.reserve(2 * mesh.triangle_count());
-  for (std::size_t s = 0; s < 2 * mesh.triangle_count(); ++s) {
+  first_.reserve(mesh.side_count());
+  for (std::size_t s = 0; s < mesh.side_count(); ++s) {
     first_.push_back(side_.size());
-    const TriangleId t(s / 2);
-    if (!mesh.has_zones(t, s % 2 == 0)) continue;
-    const std::size_t n = mesh.triangle(t).divisions;
-    side_.insert(side_.end(), n * n, static_cast<std::uint32_t>(s));
+    const SideId side(s);
+    if (!mesh.has_zones(side)) continue;
+    const std::size_t n = mesh.triangle(triangle_of(side)).divisions;
+    side_.insert(side_.end(), n * n, side);
   }
 }
 
 SideCell ZoneCells::cell(std::size_t i) const {
-  const std::uint32_t s = side_[i];
-  const TriangleId t(s / 2);
-  return {t, s % 2 == 0, mesh_->triangle(t).divisions, static_cast<std::uint32_t>(i - first_[s])};
+  const SideId s = side_[i];
+  const TriangleId t = triangle_of(s);
+  return {t, is_front(s), mesh_->triangle(t).divisions, static_cast<std::uint32_t>(i - first_[s.index()])};
 }
 
 ZoneId ZoneCells::zone(std::size_t i) const {

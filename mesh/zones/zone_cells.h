@@ -21,8 +21,8 @@ class ZoneCells {
 
  private:
   const ZoneMesh* mesh_;
-  std::vector<std::uint32_t> side_;  // 2 * triangle, + 1 for the back
-  std::vector<std::size_t> first_;   // cell of each side
+  std::vector<SideId> side_;        // of each cell
+  std::vector<std::size_t> first_;  // cell of each side
 };
 
 }  // namespace reemit

@@ -9,7 +9,7 @@ namespace reemit {
 /// and are fronts, or are backs.
 struct ZoneGroups {
   static constexpr std::uint32_t kOwn = 0xffffffff;
-  /// By side (2 * triangle, + 1 for its back), the number of its group; kOwn: it has zones of its own. Empty:
+  /// By side (side.h), the number of its group; kOwn: it has zones of its own. Empty:
   /// there are no groups.
   std::vector<std::uint32_t> of_side;
   std::uint32_t count = 0;   ///< Of groups; each has a member.

@@ -51,17 +51,16 @@ ZoneMesh::ZoneMesh(BaseMesh base, ZoneGroups groups) : base_(std::move(base)), g
 }
 
 void ZoneMesh::add_cells() {
-  const std::size_t count = base_.triangles.size();
-  if (!groups_.of_side.empty() && groups_.of_side.size() != 2 * count)
+  if (!groups_.of_side.empty() && groups_.of_side.size() != side_count())
     throw std::invalid_argument("groups of another number of sides");
   const auto group_of = [&](std::size_t side) {
     return groups_.of_side.empty() ? ZoneGroups::kOwn : groups_.of_side[side];
   };
-  sides_.reserve(2 * count);
+  sides_.reserve(side_count());
   std::size_t zones = 0;
-  for (std::size_t s = 0; s < 2 * count; ++s) {
-    const BaseTriangle& t = base_.triangles[s / 2];
-    if (s % 2 == 1 && !t.two_sided) {
+  for (std::size_t s = 0; s < side_count(); ++s) {
+    const BaseTriangle& t = triangle(triangle_of(SideId(s)));
+    if (!is_front(SideId(s)) && !t.two_sided) {
       if (group_of(s) != ZoneGroups::kOwn) throw std::invalid_argument("group with a side without zones");
       sides_.push_back({ZoneId(), t.divisions});
     } else if (group_of(s) != ZoneGroups::kOwn) {
@@ -74,10 +73,9 @@ void ZoneMesh::add_cells() {
     }
   }
   zone_side_.reserve(zones + groups_.count);
-  for (std::size_t s = 0; s < 2 * count; ++s)
+  for (std::size_t s = 0; s < side_count(); ++s)
     if (sides_[s].first_zone.valid())
-      zone_side_.insert(zone_side_.end(), std::size_t{sides_[s].divisions} * sides_[s].divisions,
-                        static_cast<std::uint32_t>(s));
+      zone_side_.insert(zone_side_.end(), std::size_t{sides_[s].divisions} * sides_[s].divisions, SideId(s));
 }
 
 void ZoneMesh::add_groups() {
@@ -105,11 +103,13 @@ void ZoneMesh::add_groups() {
     sides_[s].first_zone = ZoneId(cells + g);
     member_[s] = filled[g]++;
     const std::size_t place = first_member_[g] + member_[s];
-    members_[place] = static_cast<std::uint32_t>(s);
+    const SideId side(s);
+    members_[place] = side;
     const bool is_first = member_[s] == 0;
-    members_area_[place] = triangle_area_[s / 2] + (is_first ? 0 : members_area_[place - 1]);
-    const std::uint32_t first = members_[first_member_[g]];
-    if (s % 2 != first % 2 || base_.triangles[s / 2].surface != base_.triangles[first / 2].surface)
+    members_area_[place] = triangle_area(triangle_of(side)) + (is_first ? 0 : members_area_[place - 1]);
+    const SideId first = members_[first_member_[g]];
+    if (is_front(side) != is_front(first) ||
+        triangle(triangle_of(side)).surface != triangle(triangle_of(first)).surface)
       throw std::invalid_argument("group of several surfaces, or of fronts and backs");
   }
   for (std::uint32_t g = 0; g < groups_.count; ++g) zone_side_.push_back(members_[first_member_[g]]);
@@ -135,7 +135,7 @@ SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
   const double share = (at - before) / (members_area_[place] - before);
   constexpr float kBelowOne = 1 - 0x1p-24F;
   u = std::min(static_cast<float>(share), kBelowOne);
-  return {TriangleId(members_[place] / 2), members_[place] % 2 == 0, 1, 0};
+  return {triangle_of(members_[place]), is_front(members_[place]), 1, 0};
 }
 
 double ZoneMesh::zone_area(ZoneId z) const {
@@ -147,15 +147,12 @@ double ZoneMesh::zone_area(ZoneId z) const {
 
 Vec3 ZoneMesh::zone_normal(ZoneId z) const {
   if (is_group(z)) {
-    const auto of_side = [&](TriangleId t) {
-      return zone_is_front(z) ? triangle_normal(t) : Vec3(-triangle_normal(t));
-    };
     Vec3 sum = Vec3::Zero();
     for (std::uint32_t m = 0; m < member_count(z); ++m) {
       const TriangleId t = member_triangle(z, m);
-      sum += triangle_area(t) * of_side(t);
+      sum += triangle_area(t) * side_normal(side_of(t, zone_is_front(z)));
     }
-    return sum.norm() > 1e-9 * zone_area(z) ? Vec3(sum.normalized()) : of_side(zone_triangle(z));
+    return sum.norm() > 1e-9 * zone_area(z) ? Vec3(sum.normalized()) : side_normal(zone_side_[z.index()]);
   }
   const auto c = zone_barycentrics(z);
   const Vec3 n = normal(zone_triangle(z), (c[0].u + c[1].u + c[2].u) / 3, (c[0].v + c[1].v + c[2].v) / 3);

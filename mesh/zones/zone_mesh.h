@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/zones/curved_patch.h"
+#include "mesh/zones/side.h"
 #include "mesh/zones/zone_groups.h"
 #include "mesh/zones/zone_lookup.h"
 #include "scenes/model/ids.h"
@@ -72,6 +73,7 @@ class ZoneMesh {
   BaseMesh release_base() && { return std::move(base_); }
   const ZoneGroups& groups() const { return groups_; }
   std::size_t triangle_count() const { return base_.triangles.size(); }
+  std::size_t side_count() const { return reemit::side_count(triangle_count()); }  ///< With zones or without.
   std::size_t zone_count() const { return zone_side_.size(); }
   std::size_t cell_zone_count() const { return zone_count() - groups_.count; }  ///< Of zones that are cells.
   bool is_group(ZoneId z) const { return z.index() >= cell_zone_count(); }
@@ -85,6 +87,11 @@ class ZoneMesh {
   double triangle_area(TriangleId t) const { return triangle_area_[t.index()]; }  ///< One side [m2].
   /// Unit, of the front; of a curved patch, in its middle.
   const Vec3& triangle_normal(TriangleId t) const { return triangle_normal_[t.index()]; }
+  /// Unit, points away from that side.
+  Vec3 side_normal(SideId side) const {
+    const Vec3& normal = triangle_normal(triangle_of(side));
+    return is_front(side) ? normal : Vec3(-normal);
+  }
   /// Unit normal of the front at (u,v).
   Vec3 normal(TriangleId t, double u, double v) const {
     const BaseTriangle& tri = triangle(t);
@@ -100,6 +107,7 @@ class ZoneMesh {
   ZoneId first_zone(TriangleId t, bool front) const { return side(t, front).first_zone; }
   /// The back of a one-sided triangle has none.
   bool has_zones(TriangleId t, bool front) const { return first_zone(t, front).valid(); }
+  bool has_zones(SideId side) const { return sides_[side.index()].first_zone.valid(); }
   /// Zone that holds barycentric point (u,v) of the given side, in constant time; not valid if that side has
   /// none.
   ZoneId zone_at(TriangleId t, float u, float v, bool front) const {
@@ -111,23 +119,24 @@ class ZoneMesh {
   /// afterwards: the zone itself, or a member of the group.
   SideCell pick_cell(ZoneId z, float& u) const {
     if (is_group(z)) return member_cell(z, u);
-    const std::uint32_t side = zone_side_[z.index()];
-    return {TriangleId(side / 2), side % 2 == 0, sides_[side].divisions,
-            static_cast<std::uint32_t>(z.index() - sides_[side].first_zone.index())};
+    const SideId s = zone_side_[z.index()];
+    const Side& side = sides_[s.index()];
+    return {triangle_of(s), is_front(s), side.divisions,
+            static_cast<std::uint32_t>(z.index() - side.first_zone.index())};
   }
   /// Number of a side within its group. Pre: it is in one.
-  std::uint32_t member(TriangleId t, bool front) const { return member_[side_number(t, front)]; }
+  std::uint32_t member(TriangleId t, bool front) const { return member_[side_of(t, front).index()]; }
   /// The triangle of a member of a group.
   TriangleId member_triangle(ZoneId group, std::uint32_t member) const {
-    return TriangleId(members_[first_member(group) + member] / 2);
+    return triangle_of(members_[first_member(group) + member]);
   }
   std::size_t member_count(ZoneId group) const {
     return first_member_[group.index() - cell_zone_count() + 1] - first_member(group);
   }
 
   /// The zone's parent; of a group, its first member.
-  TriangleId zone_triangle(ZoneId z) const { return TriangleId(zone_side_[z.index()] / 2); }
-  bool zone_is_front(ZoneId z) const { return zone_side_[z.index()] % 2 == 0; }
+  TriangleId zone_triangle(ZoneId z) const { return triangle_of(zone_side_[z.index()]); }
+  bool zone_is_front(ZoneId z) const { return is_front(zone_side_[z.index()]); }
   SurfaceId zone_surface(ZoneId z) const { return triangle(zone_triangle(z)).surface; }
   double zone_area(ZoneId z) const;  ///< [m2]
   /// Unit, points away from the side the zone is on; of a group, the direction of the sum of its area
@@ -147,8 +156,7 @@ class ZoneMesh {
     std::uint32_t divisions;
   };
 
-  static std::size_t side_number(TriangleId t, bool front) { return 2 * t.index() + (front ? 0 : 1); }
-  const Side& side(TriangleId t, bool front) const { return sides_[side_number(t, front)]; }
+  const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   std::size_t first_member(ZoneId group) const { return first_member_[group.index() - cell_zone_count()]; }
   SideCell member_cell(ZoneId group, float& u) const;
 
@@ -162,13 +170,13 @@ class ZoneMesh {
   std::vector<TriangleId> first_patch_;
   std::vector<double> triangle_area_;
   std::vector<Vec3> triangle_normal_;
-  std::vector<Side> sides_;               // front, back of each triangle; of one in a group: the group, 1
-  std::vector<std::uint32_t> zone_side_;  // side_number of each zone; of a group, of its first member
+  std::vector<Side> sides_;        // of one in a group: the group, 1
+  std::vector<SideId> zone_side_;  // of each zone; of a group, its first member
   ZoneGroups groups_;
   std::vector<std::size_t> first_member_;  // of each group, and the end
-  std::vector<std::uint32_t> members_;     // side_number, by group
+  std::vector<SideId> members_;            // by group
   std::vector<double> members_area_;       // of the members of a group up to and with this one [m2]
-  std::vector<std::uint32_t> member_;      // by side_number; empty without groups
+  std::vector<std::uint32_t> member_;      // by side; empty without groups
 };
 
 }  // namespace reemit

@@ -20,7 +20,7 @@ constexpr std::size_t kFeatures = 7;
 using Features = std::array<float, kFeatures>;
 
 struct Member {
-  std::uint32_t side;
+  SideId side;
   float area;
   Features features;
 };
@@ -43,10 +43,10 @@ class Grouping {
  public:
   Grouping(const ZoneMesh& mesh, double zone_area) : mesh_(mesh), per_length_(1 / std::sqrt(zone_area)) {}
 
-  void add(std::uint32_t side, float light) {
-    const TriangleId t(side / 2);
+  void add(SideId side, float light) {
+    const TriangleId t = triangle_of(side);
     const Vec3 p = per_length_ * mesh_.point(t, 1.0 / 3, 1.0 / 3);
-    const Vec3 n = kNormalWeight * (side % 2 == 0 ? 1 : -1) * mesh_.triangle_normal(t);
+    const Vec3 n = kNormalWeight * mesh_.side_normal(side);
     Member m{side, static_cast<float>(mesh_.triangle_area(t)), {}};
     for (std::size_t k = 0; k < 3; ++k) {
       m.features[k] = static_cast<float>(p[static_cast<Eigen::Index>(k)]);
@@ -59,7 +59,7 @@ class Grouping {
   /// Cuts until there are `most` groups and none costs more than `cost`, or all are single sides.
   void divide(double most, double cost) {
     const auto kind = [&](const Member& m) {
-      return std::pair(mesh_.triangle(TriangleId(m.side / 2)).surface.index(), m.side % 2);
+      return std::pair(mesh_.triangle(triangle_of(m.side)).surface, !is_front(m.side));
     };
     std::stable_sort(members_.begin(), members_.end(),
                      [&](const Member& a, const Member& b) { return kind(a) < kind(b); });
@@ -102,16 +102,17 @@ class Grouping {
     std::sort(starts.begin(), starts.end());
     starts.push_back(members_.size());
     // By their first sides, so that neighbours in memory are neighbours in the room.
-    std::vector<std::pair<std::uint32_t, std::size_t>> order;
+    std::vector<std::pair<SideId, std::size_t>> order;
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
-      std::uint32_t least = members_[starts[i]].side;
-      if (starts[i + 1] - starts[i] == 1 && mesh_.triangle(TriangleId(least / 2)).divisions == 1) continue;
+      SideId least = members_[starts[i]].side;
+      if (starts[i + 1] - starts[i] == 1 && mesh_.triangle(triangle_of(least)).divisions == 1) continue;
       for (std::size_t m = starts[i]; m < starts[i + 1]; ++m) least = std::min(least, members_[m].side);
       order.emplace_back(least, i);
     }
     std::sort(order.begin(), order.end());
     for (const auto& [side, i] : order) {
-      for (std::size_t m = starts[i]; m < starts[i + 1]; ++m) groups.of_side[members_[m].side] = groups.count;
+      for (std::size_t m = starts[i]; m < starts[i + 1]; ++m)
+        groups.of_side[members_[m].side.index()] = groups.count;
       ++groups.count;
     }
   }
@@ -161,13 +162,15 @@ class Grouping {
 
 /// One group for the sealed sides of each surface, fronts and backs apart.
 void group_sealed(const ZoneMesh& mesh, const std::vector<SideUse>& uses, ZoneGroups& groups) {
-  std::vector<std::uint32_t> of_kind;
+  std::vector<std::array<std::uint32_t, 2>> of_surface;  // front, back
   for (std::size_t s = 0; s < uses.size(); ++s) {
     if (uses[s] != SideUse::kSealed) continue;
-    const std::size_t kind = 2 * mesh.triangle(TriangleId(s / 2)).surface.index() + s % 2;
-    if (kind >= of_kind.size()) of_kind.resize(kind + 1, ZoneGroups::kOwn);
-    if (of_kind[kind] == ZoneGroups::kOwn) of_kind[kind] = groups.count++;
-    groups.of_side[s] = of_kind[kind];
+    const SideId side(s);
+    const std::size_t surface = mesh.triangle(triangle_of(side)).surface.index();
+    if (surface >= of_surface.size()) of_surface.resize(surface + 1, {ZoneGroups::kOwn, ZoneGroups::kOwn});
+    std::uint32_t& group = of_surface[surface][is_front(side) ? 0 : 1];
+    if (group == ZoneGroups::kOwn) group = groups.count++;
+    groups.of_side[s] = group;
   }
   groups.sealed = groups.count;
 }
@@ -202,20 +205,21 @@ ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
                     const std::vector<SideLightness>& light, double wanted, double zone_area,
                     double largest_zone_area) {
   ZonePlan plan{zone_area, {}};
-  plan.groups.of_side.assign(2 * mesh.triangle_count(), ZoneGroups::kOwn);
+  plan.groups.of_side.assign(mesh.side_count(), ZoneGroups::kOwn);
   group_sealed(mesh, uses, plan.groups);
   Grouping grouping(mesh, zone_area);
   std::vector<LoneSide> large;
   double zones_now = 0;
   for (std::size_t s = 0; s < uses.size(); ++s) {
-    const TriangleId t(s / 2);
-    if (uses[s] == SideUse::kSealed || !mesh.has_zones(t, s % 2 == 0)) continue;
+    const SideId side(s);
+    if (uses[s] == SideUse::kSealed || !mesh.has_zones(side)) continue;
+    const TriangleId t = triangle_of(side);
     const double n = mesh.triangle(t).divisions;
     zones_now += n * n;
     if (uses[s] == SideUse::kOwn || !may_share(mesh, t, zone_area))
       large.push_back({mesh.triangle_area(t), static_cast<double>(light[s].spread)});
     else
-      grouping.add(static_cast<std::uint32_t>(s), light[s].level);
+      grouping.add(side, light[s].level);
   }
   if (zones_now > kEnough * wanted) {
     grouping.divide(wanted, kCellCost * largest_zone_area);

@@ -68,9 +68,10 @@ void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spre
     const double area =
         t.is_curved() ? curved[t.shape].patch_area()
                       : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
-    const std::size_t side = 2 * static_cast<std::size_t>(&t - mesh.triangles.data());
-    const auto variance =
-        static_cast<double>(spread.empty() ? 0.0F : std::max(spread[side], spread[side + 1]));
+    const TriangleId id(static_cast<std::size_t>(&t - mesh.triangles.data()));
+    const auto variance = static_cast<double>(
+        spread.empty() ? 0.0F
+                       : std::max(spread[side_of(id, true).index()], spread[side_of(id, false).index()]));
     // A zone of just the wanted area is fine.
     const double n = wanted_divisions(area, variance, zone_area) * (1 - 1e-12);
     if (n < 65536) t.divisions = divisions_at_least(t.is_curved() ? std::max<double>(n, least) : n);

@@ -47,7 +47,7 @@ class TopologyBuilder {
   void reserve();
   void add_corner_vertices();
   void add_edge_vertices();
-  void add_edge(std::size_t slot, PatchId p, int k);
+  void add_edge(std::size_t slot, SideId p, int k);
   void add_patch(TriangleId t, bool front);
   void add_interior_vertices();
   void add_zone(const std::array<GridPoint, 3>& corners, bool lower);
@@ -61,7 +61,7 @@ class TopologyBuilder {
     const auto& v = mesh_.triangle(t).vertex;
     return v[static_cast<std::size_t>(k)] > v[static_cast<std::size_t>((k + 1) % 3)];
   }
-  Vec3 corner_normal(PatchId p, int k) const { return patches_.corner_normal(patches_.corner_vertex(p, k)); }
+  Vec3 corner_normal(SideId p, int k) const { return patches_.corner_normal(patches_.corner_vertex(p, k)); }
 
   const ZoneMesh& mesh_;
   SmoothPatches patches_;
@@ -70,7 +70,7 @@ class TopologyBuilder {
 
   // The patch at work.
   TriangleId triangle_;
-  PatchId patch_ = 0;
+  SideId patch_;
   bool front_ = true;
   std::uint32_t n_ = 1;
   std::uint32_t first_interior_ = 0;
@@ -102,7 +102,7 @@ void TopologyBuilder::add_corner_vertices() {
     const TriangleId t(i);
     for (const bool front : {true, false}) {
       if (!front && !mesh_.triangle(t).two_sided) continue;
-      const PatchId p = patch_of(t, front);
+      const SideId p = side_of(t, front);
       for (int k = 0; k < 3; ++k)
         if (patches_.corner_vertex(p, k) == out_.n_vertices())
           add_vertex(mesh_.corner(t, k), corner_normal(p, k));
@@ -112,16 +112,16 @@ void TopologyBuilder::add_corner_vertices() {
 
 void TopologyBuilder::add_edge_vertices() {
   for (std::size_t slot = 0; slot < edges_.size(); ++slot) {
-    const auto p = static_cast<PatchId>(slot / 3);
-    if (p % 2 == 1 && !mesh_.triangle(TriangleId(p / 2)).two_sided) continue;
+    const SideId p(slot / 3);
+    if (!is_front(p) && !mesh_.triangle(triangle_of(p)).two_sided) continue;
     add_edge(slot, p, static_cast<int>(slot % 3));
   }
 }
 
-void TopologyBuilder::add_edge(std::size_t slot, PatchId p, int k) {
+void TopologyBuilder::add_edge(std::size_t slot, SideId p, int k) {
   const std::uint32_t other = patches_.neighbour(p, k);
   if (other != SmoothPatches::kNone && other < slot) return;
-  const TriangleId t(p / 2);
+  const TriangleId t = triangle_of(p);
   const std::uint32_t n = mesh_.triangle(t).divisions;
   const std::uint32_t m = other == SmoothPatches::kNone ? 1 : mesh_.triangle(TriangleId(other / 6)).divisions;
   EdgeVertices& edge = edges_[slot];
@@ -137,7 +137,7 @@ void TopologyBuilder::add_edge(std::size_t slot, PatchId p, int k) {
   const int from = down ? (k + 1) % 3 : k;
   const int to = down ? k : (k + 1) % 3;
   const bool curved = mesh_.triangle(t).is_curved();
-  const double side = p % 2 == 0 ? 1 : -1;
+  const double side = is_front(p) ? 1 : -1;
   for (const std::uint32_t q : edge.position) {
     const double s = static_cast<double>(q) / edge.scale;
     const double u = (from == 1 ? 1 - s : 0) + (to == 1 ? s : 0);
@@ -151,7 +151,7 @@ void TopologyBuilder::add_edge(std::size_t slot, PatchId p, int k) {
 }
 
 const EdgeVertices& TopologyBuilder::edge_vertices(int k) const {
-  const std::size_t slot = 3 * std::size_t{patch_} + static_cast<std::size_t>(k);
+  const std::size_t slot = 3 * patch_.index() + static_cast<std::size_t>(k);
   const std::uint32_t other = patches_.neighbour(patch_, k);
   return edges_[other != SmoothPatches::kNone && other < slot ? other : slot];
 }
@@ -245,7 +245,7 @@ void TopologyBuilder::add_zone(const std::array<GridPoint, 3>& corners, bool low
 void TopologyBuilder::add_patch(TriangleId t, bool front) {
   triangle_ = t;
   front_ = front;
-  patch_ = patch_of(t, front);
+  patch_ = side_of(t, front);
   n_ = mesh_.triangle(t).divisions;
   add_interior_vertices();
   // The order of zone_lookup.h.

@@ -7,6 +7,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/gather/light_spread.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/gather/replicate_gather.h"
 #include "solver/reflect/lambert.h"
@@ -102,21 +103,12 @@ class Looker {
             std::countr_zero(static_cast<unsigned>(effort.points))};
   }
 
-  /// The halves' noise is independent, so that their covariance over the points is the variance of the light
-  /// alone.
   static Spread spread_of(const float* values, std::size_t points, std::size_t bands, double scale) {
-    double first = 0;
-    double second = 0;
-    double product = 0;
-    for (std::size_t i = 0; i < points; ++i) {
-      const double a = scale * static_cast<double>(values[i * bands]);
-      const double b = scale * static_cast<double>(values[(points + i) * bands]);
-      first += a;
-      second += b;
-      product += a * b;
-    }
-    const auto n = static_cast<double>(points);
-    return {0.5 * (first + second) / n, (product - first * second / n) / (n - 1)};
+    LightSpread light;
+    for (std::size_t i = 0; i < points; ++i)
+      light.add(scale * static_cast<double>(values[i * bands]),
+                scale * static_cast<double>(values[(points + i) * bands]));
+    return {light.mean(), light.variance()};
   }
 
   const Room& room_;

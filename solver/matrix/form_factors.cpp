@@ -200,6 +200,10 @@ FormFactors compute_form_factors(const ZoneMesh& mesh, const RayTracer& rays,
   if (mesh.flat_count() != mesh.triangle_count())
     throw InputError("form factors", "the room has round zones, and form factors are those of flat ones",
                      "Solve it with --method matrix, which puts flat faces in place of round shapes.");
+  if (mesh.groups().count > 0)
+    throw InputError("form factors",
+                     "the room has zones of several triangles, and form factors are those of one",
+                     "Mesh it with MeshSettings::share_zones = false, as --method matrix does.");
   return FormFactorBuilder(mesh, rays, settings).build(progress, interrupt);
 }
 

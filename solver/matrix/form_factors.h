@@ -55,8 +55,8 @@ struct FormFactorSettings {
 /// factor times a visible share found by shadow rays (docs/matrix_method.md). In closed rooms the sampled
 /// pairs are then corrected such that rows sum to 1. The same bits on any number of threads; runs in the task
 /// arena of the caller. `progress`, if any, gets the share done [0,1], from one thread at a time.
-/// Throws InputError for more zones than kMostZones and for curved zones, ResourceError when the table does
-/// not fit into memory, Interrupted when `interrupt` becomes true.
+/// Throws InputError for more zones than kMostZones, for curved zones and for groups of sides, ResourceError
+/// when the table does not fit into memory, Interrupted when `interrupt` becomes true.
 FormFactors compute_form_factors(const ZoneMesh& mesh, const RayTracer& rays,
                                  const FormFactorSettings& settings,
                                  const std::function<void(double)>& progress,

@@ -71,7 +71,7 @@ class SurfaceModel {
     bool emits;
   };
 
-  const Side& side(TriangleId t, bool front) const { return sides_[2 * t.index() + (front ? 0 : 1)]; }
+  const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   std::size_t surface_of(TriangleId t) const { return surface_[t.index()]; }
   Lobe lobe_at(const SurfacePoint& x) const { return LambertLobe{reflectance(x.triangle, x.front)}; }
 
@@ -81,7 +81,7 @@ class SurfaceModel {
   std::vector<float> side_reflectance_;  // by surface, as reflectance_
   std::vector<float> emitted_;           // by surface
   std::vector<std::uint32_t> surface_;   // of each triangle
-  std::vector<Side> sides_;              // front, back of each triangle
+  std::vector<Side> sides_;              // by side (mesh/zones/side.h)
   std::vector<float> zero_;
 };
 

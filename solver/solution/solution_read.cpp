@@ -194,15 +194,15 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   require(all_finite(rows), "shapes that are not finite");
   for (std::size_t s = 0; s < shapes; ++s) base.shapes.push_back(shape_of(&rows[s * kShapeRow]));
   ZoneGroups groups = read_groups(group, count);
-  const auto has_own = [&](std::size_t side) {
-    return groups.of_side.empty() || groups.of_side[side] == ZoneGroups::kOwn;
+  const auto has_own = [&](SideId side) {
+    return groups.of_side.empty() || groups.of_side[side.index()] == ZoneGroups::kOwn;
   };
   std::uint64_t zones = groups.count;
   for (std::size_t t = 0; t < count; ++t) {
     require(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
     require(divisions[t] > 0 && divisions[t] < 65536, "triangle with an impossible number of zones");
-    const bool front_has_own = has_own(2 * t);
-    const bool back_has_own = two_sided[t] != 0 && has_own(2 * t + 1);
+    const bool front_has_own = has_own(side_of(TriangleId(t), true));
+    const bool back_has_own = two_sided[t] != 0 && has_own(side_of(TriangleId(t), false));
     zones +=
         std::uint64_t{divisions[t]} * divisions[t] * ((front_has_own ? 1U : 0U) + (back_has_own ? 1U : 0U));
     require(zones <= zone_count, "more zones in the mesh than in the sums");

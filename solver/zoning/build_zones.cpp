@@ -20,7 +20,9 @@ constexpr double kMostLarger = 4;
 
 std::vector<SideUse> uses_of_sides(const Room& room, const WorkWatch& watch) {
   const std::vector<std::uint8_t> sealed = sealed_sides(room, watch);
-  const auto emits = [&](std::size_t s) { return room.surfaces().emits(TriangleId(s / 2), s % 2 == 0); };
+  const auto emits = [&](std::size_t s) {
+    return room.surfaces().emits(triangle_of(SideId(s)), is_front(SideId(s)));
+  };
   std::size_t luminaires = 0;
   for (std::size_t s = 0; s < sealed.size(); ++s) luminaires += emits(s) ? 1 : 0;
   std::vector<SideUse> uses(sealed.size(), SideUse::kShared);
@@ -37,8 +39,8 @@ std::vector<SideUse> uses_of_sides(const Room& room, const WorkWatch& watch) {
 double open_area(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
   double area = 0;
   for (std::size_t s = 0; s < uses.size(); ++s) {
-    const TriangleId t(s / 2);
-    if (uses[s] != SideUse::kSealed && mesh.has_zones(t, s % 2 == 0)) area += mesh.triangle_area(t);
+    const SideId side(s);
+    if (uses[s] != SideUse::kSealed && mesh.has_zones(side)) area += mesh.triangle_area(triangle_of(side));
   }
   return area;
 }

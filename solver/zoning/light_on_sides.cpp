@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "solver/gather/direct_light.h"
+#include "solver/gather/light_spread.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/sampling/warp.h"
 
@@ -32,33 +33,26 @@ struct Radiance {
   double variance = 0;  // over the side; an estimate, may be below 0
 };
 
-Radiance look(const Room& room, const DirectLight& direct, std::uint32_t side, int points) {
-  const TriangleId t(side / 2);
-  const bool front = side % 2 == 0;
-  const float* reflectance = room.surfaces().reflectance(t, front);
-  const std::vector<float> weight(reflectance, reflectance + room.band_count());
-  const PointSampler place(kLookSeed, RngPurpose::kLightOnSides, side, kHalves,
+/// `found` holds a value for each band and is overwritten.
+Radiance look(const Room& room, const DirectLight& direct, SideId side, int points,
+              std::vector<float>& found) {
+  const float* reflectance = room.surfaces().reflectance(triangle_of(side), is_front(side));
+  const PointSampler place(kLookSeed, RngPurpose::kLightOnSides, side.index(), kHalves,
                            std::countr_zero(std::bit_ceil(static_cast<unsigned>(points))));
-  std::vector<float> found(room.band_count());
-  double first = 0;
-  double second = 0;
-  double product = 0;
+  LightSpread light;
   for (int i = 0; i < points; ++i) {
     const std::array<float, 2> u = place.place(i);
     const auto [a, b] = sample_triangle(u[0], u[1]);
-    const SurfacePoint x = surface_point(room.rays(), t, a, b, front);
+    const SurfacePoint x = surface_point(room.rays(), triangle_of(side), a, b, is_front(side));
     std::array<double, kHalves> sum{};
     for (std::size_t half = 0; half < kHalves; ++half) {
       std::fill(found.begin(), found.end(), 0.0F);
-      direct.add_sample(x, place.light(i, static_cast<int>(half), kHalves), weight.data(), found.data());
+      direct.add_sample(x, place.light(i, static_cast<int>(half), kHalves), reflectance, found.data());
       for (const float f : found) sum[half] += static_cast<double>(f);
     }
-    first += sum[0];
-    second += sum[1];
-    product += sum[0] * sum[1];
+    light.add(sum[0], sum[1]);
   }
-  const double n = points;
-  return {0.5 * (first + second) / n, (product - first * second / n) / (n - 1)};
+  return {light.mean(), light.variance()};
 }
 
 }  // namespace
@@ -69,20 +63,19 @@ std::vector<SideLightness> light_on_sides(const Room& room, const std::vector<Si
   std::vector<SideLightness> result(uses.size());
   const DirectLight direct(room);
   if (direct.empty()) return result;
-  const auto counts = [&](std::size_t s) {
-    return uses[s] != SideUse::kSealed && mesh.has_zones(TriangleId(s / 2), s % 2 == 0);
-  };
+  const auto counts = [&](std::size_t s) { return uses[s] != SideUse::kSealed && mesh.has_zones(SideId(s)); };
   std::vector<Radiance> radiance(uses.size());
   constexpr std::size_t kSidesPerStep = 1 << 16;
   for (std::size_t begin = 0; begin < uses.size(); begin += kSidesPerStep) {
     watch.at(static_cast<double>(begin) / static_cast<double>(uses.size()));
     const std::size_t end = std::min(begin + kSidesPerStep, uses.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 256), [&](const auto& range) {
+      std::vector<float> found(room.band_count());
       for (std::size_t s = range.begin(); s != range.end(); ++s) {
         if (!counts(s)) continue;
-        const double wanted = kPointsPerZone * mesh.triangle_area(TriangleId(s / 2)) / zone_area;
+        const double wanted = kPointsPerZone * mesh.triangle_area(triangle_of(SideId(s))) / zone_area;
         const int points = static_cast<int>(std::clamp<double>(wanted, kLeastPoints, kMostPoints));
-        radiance[s] = look(room, direct, static_cast<std::uint32_t>(s), points);
+        radiance[s] = look(room, direct, SideId(s), points, found);
       }
     });
   }
@@ -90,7 +83,7 @@ std::vector<SideLightness> light_on_sides(const Room& room, const std::vector<Si
   double power = 0;
   for (std::size_t s = 0; s < uses.size(); ++s) {
     if (!counts(s)) continue;
-    const double a = mesh.triangle_area(TriangleId(s / 2));
+    const double a = mesh.triangle_area(triangle_of(SideId(s)));
     area += a;
     power += a * radiance[s].mean;
   }

@@ -28,27 +28,23 @@ constexpr float kMargin = 0.02F;
 constexpr std::uint32_t kNothing = 0xffffffff;
 constexpr std::uint32_t kOutside = 0xfffffffe;
 
-std::uint32_t side_number(TriangleId t, bool front) {
-  return static_cast<std::uint32_t>(2 * t.index() + (front ? 0 : 1));
-}
-
 class Reach {
  public:
   explicit Reach(const Room& room)
       : mesh_(room.mesh()),
         rays_(room.rays()),
         rng_(kRaySeed, RngPurpose::kSealedSides),
-        sides_(2 * mesh_.triangle_count()),
+        sides_(mesh_.side_count()),
         light_(sides_),
         sets_(sides_ + 1) {
     for (std::uint32_t s = 0; s < sides_; ++s)
-      if (room.surfaces().emits(TriangleId(s / 2), s % 2 == 0)) sets_.join(s, light_);
+      if (room.surfaces().emits(triangle_of(SideId(s)), is_front(SideId(s)))) sets_.join(s, light_);
     join_lights(room.scene());
   }
 
   void join_neighbours(const WorkWatch& watch) {
     const std::uint32_t rounds = static_cast<std::uint32_t>(
-        std::clamp<std::size_t>(kManyRays / std::max<std::size_t>(1, sides_), kLeastRounds, kManyRays));
+        std::max<std::size_t>(kManyRays / std::max<std::size_t>(1, sides_), kLeastRounds));
     std::vector<std::uint32_t> asked;
     for (std::uint32_t s = 0; s < sides_; ++s)
       if (has_zones(s)) asked.push_back(s);
@@ -72,7 +68,7 @@ class Reach {
   }
 
  private:
-  bool has_zones(std::uint32_t s) const { return mesh_.has_zones(TriangleId(s / 2), s % 2 == 0); }
+  bool has_zones(std::uint32_t s) const { return mesh_.has_zones(SideId(s)); }
   bool is_lit(std::uint32_t s) { return sets_.find(s) == sets_.find(light_); }
 
   void join_lights(const Scene& scene) {
@@ -93,7 +89,8 @@ class Reach {
     if (!rays_.closest(origin, direction, hit)) return kOutside;
     if (!mesh_.has_zones(hit.triangle, hit.front)) return kNothing;
     const auto t = static_cast<std::uint32_t>(hit.triangle.index());
-    return rays_.is_at_edge(t, hit.u, hit.v) ? kNothing : side_number(hit.triangle, hit.front);
+    if (rays_.is_at_edge(t, hit.u, hit.v)) return kNothing;
+    return static_cast<std::uint32_t>(side_of(hit.triangle, hit.front).index());
   }
 
   void join(std::uint32_t from, std::uint32_t to) {
@@ -116,7 +113,7 @@ class Reach {
         auto [a, b] = sample_triangle(u[0], u[1]);
         a = kMargin + (1 - 3 * kMargin) * a;
         b = kMargin + (1 - 3 * kMargin) * b;
-        const SurfacePoint x = surface_point(rays_, TriangleId(s / 2), a, b, s % 2 == 0);
+        const SurfacePoint x = surface_point(rays_, triangle_of(SideId(s)), a, b, is_front(SideId(s)));
         const Vec3f direction = Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3]));
         met[i] = seen(ray_origin(rays_, x), direction);
       }

@@ -2,7 +2,7 @@
 #include <array>
 #include <string>
 
-#include "scenes/model/scene.h"
+#include "tests/mesh/test_room.h"
 
 namespace reemit::test {
 
@@ -11,7 +11,6 @@ namespace reemit::test {
 class CrateRoom {
  public:
   CrateRoom(int crates, int parts) {
-    scene_.source = "crate room";
     walls_ = surface("walls", material(0.5, 0, true));
     box(walls_, {0, 0, 0}, {3, 2, 2}, 4);
     const SurfaceId lamp = surface("lamp", material(0, 20, false));
@@ -23,29 +22,18 @@ class CrateRoom {
     }
   }
 
-  const Scene& scene() const { return scene_; }
-  Scene& scene() { return scene_; }
+  Scene& scene() { return room_.scene(); }
   SurfaceId walls() const { return walls_; }
   SurfaceId crates() const { return crates_; }
 
   MaterialId material(double reflectance, double radiance, bool two_sided) {
-    Material m;
-    m.name = "material" + std::to_string(scene_.materials.size());
-    m.reflectance = Spectrum::Constant(1, reflectance);
-    m.emitted_radiance = Spectrum::Constant(1, radiance);
-    m.two_sided = two_sided;
-    scene_.materials.push_back(m);
-    return MaterialId(scene_.materials.size() - 1);
+    const MaterialId m = room_.material(two_sided, radiance);
+    scene().materials[m.index()].reflectance = Spectrum::Constant(1, reflectance);
+    return m;
   }
-  SurfaceId surface(const std::string& name, MaterialId m) {
-    Surface s;
-    s.name = name;
-    s.material = m;
-    scene_.surfaces.push_back(s);
-    return SurfaceId(scene_.surfaces.size() - 1);
-  }
+  SurfaceId surface(const std::string& name, MaterialId m) { return room_.surface(name, m); }
   void quad(SurfaceId id, const Vec3& corner, const Vec3& u, const Vec3& v, int parts) {
-    Surface& s = scene_.surfaces[id.index()];
+    Surface& s = scene().surfaces[id.index()];
     for (int i = 0; i < parts; ++i)
       for (int j = 0; j < parts; ++j) {
         const auto at = [&](int a, int b) { return Vec3(corner + a * u / parts + b * v / parts); };
@@ -66,7 +54,7 @@ class CrateRoom {
   }
 
  private:
-  Scene scene_;
+  TestRoom room_;
   SurfaceId walls_, crates_;
 };
 

@@ -10,14 +10,16 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "solver/solution/zone_summary.h"
 #include "viewer_export/cli/luminaire_list.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/cli/zone_lines.h"
 
 namespace reemit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr int kHeadWidth = 14;  // of the first column
 
 std::string format_name(const Scene& scene) {
   std::string extension = std::filesystem::path(scene.source).extension().string();
@@ -142,13 +144,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
                       face_count(scene), input_area(meshed.report));
   text += fmt::format("mesh          {} base triangles, {} zones with default settings\n",
                       meshed.mesh.triangle_count(), meshed.mesh.zone_count());
-  const ZoneSummary zones = summarise_zones(meshed.mesh);
-  if (zones.shared > 0)
-    text += fmt::format("shared        {} small sides of triangles have {} of the zones\n",
-                        zones.shared_sides, zones.shared);
-  if (zones.sealed > 0)
-    text += fmt::format("sealed        {:.4g} m2 that no light should reach have {} of the zones\n",
-                        zones.sealed_area, zones.sealed);
+  text += shared_zones_text(meshed.mesh, kHeadWidth);
   text += fmt::format("repairs       {}\n", counts_text(repairs(meshed.report)));
   text += fmt::format("refused       {}\n", counts_text(scene.refused));
   text += fmt::format("not modelled  {}\n", counts_text(scene.not_modelled));
@@ -186,11 +182,7 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
             {"area_m2", input_area(meshed.report)},
             {"base_triangles", meshed.mesh.triangle_count()},
             {"zones_by_default", meshed.mesh.zone_count()}};
-  const ZoneSummary zones = summarise_zones(meshed.mesh);
-  json["shared_zones"] = zones.shared;
-  json["sides_in_shared_zones"] = zones.shared_sides;
-  json["sealed_zones"] = zones.sealed;
-  json["sealed_area_m2"] = zones.sealed_area;
+  add_shared_zones(json, meshed.mesh);
   for (const auto& [name, count] : repairs(meshed.report)) json["repairs"][name] = count;
   json["materials"] = Json::array();
   for (const Material& material : scene.materials) {

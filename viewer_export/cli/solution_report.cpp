@@ -7,11 +7,14 @@
 #include "solver/solution/zone_summary.h"
 #include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/cli/zone_lines.h"
 
 namespace reemit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr int kHeadWidth = 10;  // of the first column
 
 /// By band, in the order of "bands".
 Json unshot_shares(const EnergyAudit& audit) {
@@ -155,14 +158,7 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
     text += fmt::format("gathered  {} zones too small for packets\n", record.gathered_zones);
   text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",
                       solution.mesh.triangle_count(), solution.mesh.zone_count(), record.unreached_zones);
-  const ZoneSummary zones = summarise_zones(solution.mesh);
-  if (zones.shared > 0)
-    text += fmt::format("shared    {} small sides of triangles have {} of the zones\n", zones.shared_sides,
-                        zones.shared);
-  if (zones.sealed > 0)
-    text += fmt::format(
-        "sealed    {:.4g} m2 that no light should reach have {} of the zones; they got {} of it\n",
-        zones.sealed_area, zones.sealed, percent_text(sealed_light_share(solution)));
+  text += shared_zones_text(solution.mesh, kHeadWidth, sealed_light_share(solution));
   if (lacks_unshot_power(solution))
     text += fmt::format("unshot    {} of the emitted power; radiosities are too low by about that\n",
                         percent_text(solution.audit.worst_unshot_share()));
@@ -178,12 +174,7 @@ Json solution_json(const Solution& solution, const std::filesystem::path& file,
             {"room_status", room_status}};
   json.update(record_json(solution));
   json["base_triangles"] = solution.mesh.triangle_count();
-  const ZoneSummary zones = summarise_zones(solution.mesh);
-  json["shared_zones"] = zones.shared;
-  json["sides_in_shared_zones"] = zones.shared_sides;
-  json["sealed_zones"] = zones.sealed;
-  json["sealed_area_m2"] = zones.sealed_area;
-  json["sealed_light_share"] = sealed_light_share(solution);
+  add_shared_zones(json, solution.mesh, sealed_light_share(solution));
   json["warnings"] = solution.mesh_report.warnings;
   for (const std::string& warning : solution.light_warnings) json["warnings"].push_back(warning);
   return json;

@@ -90,7 +90,7 @@ std::optional<ZoneBias> VertexGatherer::zone_bias(const VertexData& data, double
 SurfacePoint VertexGatherer::point_beside(std::size_t v, const std::array<float, 2>& u) const {
   const double total = 3 * rings_.area(v);
   double left = static_cast<double>(u[0]) * total;
-  const RingZone* ring = rings_.begin(v);
+  const RingCell* ring = rings_.begin(v);
   while (ring + 1 != rings_.end(v) && left >= ring->area) left -= (ring++)->area;
   const auto stretched = static_cast<float>(std::clamp(left / ring->area, 0.0, 1 - 0x1p-24));
   const auto [s, t] = sample_triangle(stretched, u[1]);

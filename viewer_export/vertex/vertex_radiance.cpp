@@ -50,14 +50,14 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       double direct = 0;
       double all = 0;
       double variance = 0;
-      for (const RingZone* r = rings.begin(v); r != rings.end(v); ++r) {
+      for (const RingCell* r = rings.begin(v); r != rings.end(v); ++r) {
         const double share = r->area / area;
         const Estimate e = solution.irradiance(r->zone, b);
         direct += share * solution.direct_irradiance(r->zone, b).mean;
         all += share * e.mean;
         // Cells of one group share its value and its error.
         double same = 0;
-        for (const RingZone* q = rings.begin(v); q != rings.end(v); ++q)
+        for (const RingCell* q = rings.begin(v); q != rings.end(v); ++q)
           if (q->zone == r->zone) same += q->area / area;
         variance += share * same * e.stderr_of_mean * e.stderr_of_mean;
       }
@@ -69,7 +69,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       if (field.parts() > 1) {
         const auto radiance_of = [&](std::size_t part) {
           double radiance = 0;
-          for (const RingZone* r = rings.begin(v); r != rings.end(v); ++r)
+          for (const RingCell* r = rings.begin(v); r != rings.end(v); ++r)
             radiance += r->area / area * static_cast<double>(field.reflected(r->zone, part)[b]);
           return radiance;
         };

@@ -31,14 +31,14 @@ double watts_per_packet(const Solution& solution) {
 /// their mean would draw a dark border around every thing. Zones that are dark only because packets happened
 /// to miss them stay in. A ring that is dark all around is left as it is.
 void leave_out_covered(const Solution& solution, double watts, std::size_t first,
-                       std::vector<RingZone>& rings) {
+                       std::vector<RingCell>& rings) {
   /// Irradiance over the mean of the ring below which a zone is covered. Shadows on zones in sight may be as
   /// dark; nothing is lost there, as light is gathered beside the vertex and not all over the zones.
   constexpr double kCovered = 0.1;
   /// Packets that the mean of the ring stands for on a zone: odds of 1 in 10,000,000 to get a tenth of that.
   constexpr double kSureOf = 20;
   const std::size_t bands = solution.bands.count();
-  const auto irradiance = [&](const RingZone& ring) {
+  const auto irradiance = [&](const RingCell& ring) {
     double sum = 0;
     for (std::size_t b = 0; b < bands; ++b) sum += solution.irradiance(ring.zone, b).mean;
     return sum;
@@ -51,7 +51,7 @@ void leave_out_covered(const Solution& solution, double watts, std::size_t first
   }
   if (!(power > 0)) return;
   const double mean = power / area;
-  const auto covered = [&](const RingZone& ring) {
+  const auto covered = [&](const RingCell& ring) {
     return ring.area * mean > kSureOf * watts && irradiance(ring) < kCovered * mean;
   };
   rings.erase(std::remove_if(rings.begin() + static_cast<std::ptrdiff_t>(first), rings.end(), covered),
@@ -144,7 +144,7 @@ void VertexRings::add_triangles(const ZoneTopology& topology, const std::vector<
 
 double VertexRings::area(std::size_t vertex) const {
   double sum = 0;
-  for (const RingZone* r = begin(vertex); r != end(vertex); ++r) sum += r->area;
+  for (const RingCell* r = begin(vertex); r != end(vertex); ++r) sum += r->area;
   return sum / 3;
 }
 

@@ -11,7 +11,7 @@
 namespace reemit {
 
 /// One cell beside a vertex.
-struct RingZone {
+struct RingCell {
   ZoneId zone;         ///< That it is, or belongs to.
   SideCell cell;       ///< The part of the zone that lies at the vertex.
   Barycentric vertex;  ///< Where the vertex lies in the triangle of the cell.
@@ -26,8 +26,8 @@ class VertexRings {
   VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones);
 
   std::size_t size() const { return first_.size() - 1; }
-  const RingZone* begin(std::size_t vertex) const { return &rings_[first_[vertex]]; }
-  const RingZone* end(std::size_t vertex) const { return rings_.data() + first_[vertex + 1]; }
+  const RingCell* begin(std::size_t vertex) const { return &rings_[first_[vertex]]; }
+  const RingCell* end(std::size_t vertex) const { return rings_.data() + first_[vertex + 1]; }
   double area(std::size_t vertex) const;  ///< A third of the zones around [m2].
 
   const std::vector<Vec3>& positions() const { return positions_; }  ///< [m]
@@ -40,7 +40,7 @@ class VertexRings {
                      const std::vector<std::uint32_t>& number);
 
   std::vector<std::size_t> first_;
-  std::vector<RingZone> rings_;
+  std::vector<RingCell> rings_;
   std::vector<Vec3> positions_;
   std::vector<Vec3> normals_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;

@@ -195,6 +195,21 @@ TEST(FormFactors, TooManyZonesAreRefusedWithAdvice) {
       << "19200 zones";
 }
 
+TEST(FormFactors, ZonesOfSeveralTrianglesAreRefusedWithAdvice) {
+  BaseMesh base = cube(2).mesh().mesh.base();
+  for (BaseTriangle& t : base.triangles) t.divisions = 1;
+  ZoneGroups groups;
+  groups.of_side.assign(side_count(base.triangles.size()), ZoneGroups::kOwn);
+  ASSERT_EQ(base.triangles[0].surface, base.triangles[1].surface);
+  for (const std::size_t t : {0U, 1U}) groups.of_side[side_of(TriangleId(t), true).index()] = 0;
+  groups.count = 1;
+  const ZoneMesh mesh(std::move(base), std::move(groups));
+  const RayTracer rays(mesh);
+  const std::atomic<bool> interrupt = false;
+  EXPECT_THAT(test::refusal_of([&] { compute_form_factors(mesh, rays, {}, nullptr, interrupt); }),
+              testing::HasSubstr("share_zones"));
+}
+
 TEST(FormFactors, InterruptLeavesNothing) {
   const MeshResult meshed = cube(4).mesh();
   const RayTracer rays(meshed.mesh);

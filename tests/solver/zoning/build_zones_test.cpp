@@ -21,29 +21,28 @@ namespace {
 
 using test::CrateRoom;
 
-bool is_inside_crate(const ZoneMesh& mesh, TriangleId t, bool front, SurfaceId crates) {
+bool is_inside_crate(const ZoneMesh& mesh, SideId side, SurfaceId crates) {
+  const TriangleId t = triangle_of(side);
   if (mesh.triangle(t).surface != crates) return false;
   // Crates stand clear of each other, so what points to the middle of its crate is inside.
   const Vec3 p = mesh.point(t, 1.0 / 3, 1.0 / 3);
   const auto i = std::floor((p.x() - 0.2 + 1e-9) / 0.5);
   const Vec3 middle(0.35 + 0.5 * i, 0.55 + 0.2 * (static_cast<int>(i) % 2), 0.45);
-  const Vec3 n = front ? mesh.triangle_normal(t) : Vec3(-mesh.triangle_normal(t));
-  return n.dot(middle - p) > 0;
+  return mesh.side_normal(side).dot(middle - p) > 0;
 }
 
 TEST(SealedSides, InsidesOfClosedSolidsAndOutsidesOfTheRoomAre) {
-  const CrateRoom room(3, 3);
+  CrateRoom room(3, 3);
   const ZoneMesh mesh = build_mesh(room.scene()).mesh;
   const std::vector<std::uint8_t> sealed = sealed_sides(Room(room.scene(), mesh));
   std::size_t inside = 0;
   for (std::size_t s = 0; s < sealed.size(); ++s) {
-    const TriangleId t(s / 2);
-    const bool front = s % 2 == 0;
+    const SideId side(s);
+    const TriangleId t = triangle_of(side);
     const Vec3 p = mesh.point(t, 1.0 / 3, 1.0 / 3);
-    const Vec3 n = front ? mesh.triangle_normal(t) : Vec3(-mesh.triangle_normal(t));
-    const bool outside = mesh.triangle(t).surface == room.walls() && n.dot(Vec3(1.5, 1, 1) - p) < 0;
-    const bool expected =
-        mesh.has_zones(t, front) && (outside || is_inside_crate(mesh, t, front, room.crates()));
+    const bool outside =
+        mesh.triangle(t).surface == room.walls() && mesh.side_normal(side).dot(Vec3(1.5, 1, 1) - p) < 0;
+    const bool expected = mesh.has_zones(side) && (outside || is_inside_crate(mesh, side, room.crates()));
     inside += expected ? 1 : 0;
     EXPECT_EQ(sealed[s] != 0, expected) << "side " << s;
   }
@@ -60,10 +59,10 @@ TEST(SealedSides, TheOutsideOfAnOpenRoomIsUnlessSomethingOutThereSeesIt) {
     const std::vector<std::uint8_t> sealed = sealed_sides(Room(scene, mesh));
     std::size_t count = 0;
     for (std::size_t s = 0; s < sealed.size(); ++s) {
-      const TriangleId t(s / 2);
+      const SideId side(s);
+      const TriangleId t = triangle_of(side);
       if (mesh.triangle(t).surface != open.walls()) continue;
-      const Vec3 n = s % 2 == 0 ? mesh.triangle_normal(t) : Vec3(-mesh.triangle_normal(t));
-      const bool outside = n.dot(Vec3(1.5, 1, 1) - mesh.point(t, 1.0 / 3, 1.0 / 3)) < 0;
+      const bool outside = mesh.side_normal(side).dot(Vec3(1.5, 1, 1) - mesh.point(t, 1.0 / 3, 1.0 / 3)) < 0;
       EXPECT_FALSE(sealed[s] != 0 && !outside) << "side " << s;
       count += sealed[s];
     }
@@ -85,11 +84,11 @@ TEST(SealedSides, ALampOrAHoleInsideOpensThem) {
   CrateRoom point_inside(1, 1);
   point_inside.scene().lights.push_back(
       PointLight{"inside", Vec3(0.35, 0.55, 0.45), Spectrum::Constant(1, 1)});
-  for (const CrateRoom* room : {&lamp_inside, &open, &point_inside}) {
+  for (CrateRoom* room : {&lamp_inside, &open, &point_inside}) {
     const ZoneMesh mesh = build_mesh(room->scene()).mesh;
     const std::vector<std::uint8_t> sealed = sealed_sides(Room(room->scene(), mesh));
     for (std::size_t s = 0; s < sealed.size(); ++s)
-      if (is_inside_crate(mesh, TriangleId(s / 2), s % 2 == 0, room->crates())) {
+      if (is_inside_crate(mesh, SideId(s), room->crates())) {
         EXPECT_EQ(sealed[s], 0) << "side " << s;
       }
   }
@@ -115,7 +114,7 @@ TEST(LightOnSides, IsThatOfThePointLight) {
   const Room walls(room.scene(), mesh);
   constexpr double kZoneArea = 0.001;  // so that there are 64 points on each
   const std::vector<SideLightness> light =
-      light_on_sides(walls, std::vector<SideUse>(2 * mesh.triangle_count()), kZoneArea, {});
+      light_on_sides(walls, std::vector<SideUse>(mesh.side_count()), kZoneArea, {});
 
   // Irradiance 1/(1 + x^2 + y^2)^(3/2) by quadrature over each triangle.
   std::vector<double> mean(mesh.triangle_count(), 0.0);
@@ -141,10 +140,11 @@ TEST(LightOnSides, IsThatOfThePointLight) {
   const double dim = 0.3 * power / area;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const double level = mean[t] + dim;
-    EXPECT_NEAR(static_cast<double>(light[2 * t].level), std::log(level / dim), 0.02) << "triangle " << t;
+    const SideLightness& front = light[side_of(TriangleId(t), true).index()];
+    EXPECT_NEAR(static_cast<double>(front.level), std::log(level / dim), 0.02) << "triangle " << t;
     const double spread = (square[t] - mean[t] * mean[t]) / (level * level);
-    EXPECT_NEAR(static_cast<double>(light[2 * t].spread), spread, 0.15 * spread + 1e-4) << "triangle " << t;
-    EXPECT_EQ(light[2 * t + 1].level, 0);  // backs
+    EXPECT_NEAR(static_cast<double>(front.spread), spread, 0.15 * spread + 1e-4) << "triangle " << t;
+    EXPECT_EQ(light[side_of(TriangleId(t), false).index()].level, 0);
   }
 }
 
@@ -168,7 +168,7 @@ TEST(BuildZones, CutsFinerWhereLightDiffers) {
 }
 
 TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
-  const CrateRoom room(5, 20);  // 12,000 quads on crates
+  CrateRoom room(5, 20);  // 12,000 quads on crates
   for (const int wanted : {300, 1000, 4000}) {
     MeshSettings settings;
     settings.default_zone_count = wanted;
@@ -186,7 +186,7 @@ TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
 }
 
 TEST(BuildZones, CellsAreNoLargerThanAskedFor) {
-  const CrateRoom room(5, 20);
+  CrateRoom room(5, 20);
   constexpr double kZoneArea = 0.1;
   const ZoneMesh mesh = build_zones(room.scene(), {.zone_area = kZoneArea}).mesh;
   EXPECT_GT(mesh.groups().count, mesh.groups().sealed);
@@ -215,7 +215,7 @@ TEST(BuildZones, ManySurfacesDoNotMakeWallsCoarse) {
 }
 
 TEST(BuildZones, AreKeptByTheSolutionFile) {
-  const CrateRoom room(3, 6);
+  CrateRoom room(3, 6);
   MeshSettings mesh_settings;
   mesh_settings.default_zone_count = 150;
   SolverSettings settings;
@@ -237,7 +237,7 @@ TEST(BuildZones, AreKeptByTheSolutionFile) {
 }
 
 TEST(BuildZones, PutsTogetherWhatIsAlike) {
-  const CrateRoom room(5, 20);
+  CrateRoom room(5, 20);
   MeshSettings settings;
   settings.default_zone_count = 2000;
   const ZoneMesh mesh = build_zones(room.scene(), settings).mesh;
@@ -263,7 +263,7 @@ TEST(BuildZones, PutsTogetherWhatIsAlike) {
 class GroupedLight : public ::testing::TestWithParam<SolveMethod> {};
 
 TEST_P(GroupedLight, IsTheMeanOfItsMembers) {
-  const CrateRoom room(3, 6);
+  CrateRoom room(3, 6);
   MeshSettings mesh_settings;
   mesh_settings.default_zone_count = 150;
   const ZoneMesh grouped = build_zones(room.scene(), mesh_settings).mesh;

@@ -163,7 +163,7 @@ TEST(GatherVertices, the_inside_of_a_solid_is_left_out_although_its_surface_has_
 }
 
 TEST(GatherVertices, groups_of_sides_keep_every_vertex) {
-  const test::CrateRoom room(3, 6);
+  test::CrateRoom room(3, 6);
   MeshSettings mesh_settings;
   mesh_settings.default_zone_count = 400;
   MeshResult grouped = build_zones(room.scene(), mesh_settings);
