@@ -7,14 +7,16 @@
 
 namespace reemit {
 
-/// All cells of all sides that have zones: by triangle, the front before the back, each side in the order of
-/// zone_lookup.h. Those of sides that are in no group are the first zones of the mesh, in their order.
+/// All cells, as far as they are cut, of all sides that have zones, by side. Those of sides that are in no
+/// group are the first zones of the mesh, in their order.
 class ZoneCells {
  public:
   /// The mesh must outlive it.
   explicit ZoneCells(const ZoneMesh& mesh);
 
   std::size_t size() const { return side_.size(); }
+  /// First cell of a side; that of the one after the last is size().
+  std::size_t first(SideId side) const { return first_[side.index()]; }
   SideCell cell(std::size_t i) const;
   ZoneId zone(std::size_t i) const;  ///< That the cell is, or belongs to.
   double area(std::size_t i) const;  ///< [m2]
@@ -22,7 +24,7 @@ class ZoneCells {
  private:
   const ZoneMesh* mesh_;
   std::vector<SideId> side_;        // of each cell
-  std::vector<std::size_t> first_;  // cell of each side
+  std::vector<std::size_t> first_;  // cell of each side, and the end
 };
 
 }  // namespace reemit

@@ -11,6 +11,12 @@ namespace reemit {
 // floor(u n). Row i holds 2(n-i)-1 triangles, lower ones (with the orientation of the whole triangle) and
 // upper ones in turn, so row i starts at number 2ni - i*i.
 
+/// Place of a zone in the grid of its base triangle: cell (i,j) spans u n in [i,i+1], v n in [j,j+1].
+struct ZoneCell {
+  std::int64_t i, j;
+  bool upper;  ///< The half of the cell away from its corner (i,j).
+};
+
 /// Number of the zone inside its base triangle that holds barycentric point (u,v); any u, v are clamped into
 /// it.
 inline std::uint32_t zone_in_triangle(std::uint32_t divisions, float u, float v) {
@@ -28,11 +34,52 @@ struct Barycentric {
   double u, v;
 };
 
-/// Place of a zone in the grid of its base triangle: cell (i,j) spans u n in [i,i+1], v n in [j,j+1].
-struct ZoneCell {
-  std::int64_t i, j;
-  bool upper;  ///< The half of the cell away from its corner (i,j).
+/// The number of a place: the inverse of zone_cell.
+inline std::uint32_t cell_number(std::uint32_t divisions, const ZoneCell& cell) {
+  const auto n = static_cast<std::int64_t>(divisions);
+  return static_cast<std::uint32_t>(2 * n * cell.i - cell.i * cell.i + 2 * cell.j + (cell.upper ? 1 : 0));
+}
+
+/// Parts of a cell that is cut between the middles of its edges.
+inline constexpr std::uint32_t kCellParts = 4;
+
+/// Place, in the grid twice as fine, of one of them: at corner 0, 1 or 2 of the cell as it lies in its own
+/// orientation, an upper one being a lower one turned half round; or 3, in the middle.
+inline ZoneCell cell_part(const ZoneCell& cell, std::uint32_t part) {
+  const std::int64_t to_u = part == 1 ? 1 : 0;
+  const std::int64_t to_v = part == 2 ? 1 : 0;
+  const bool is_turned = cell.upper != (part == 3);
+  if (cell.upper) return {2 * cell.i + 1 - to_u, 2 * cell.j + 1 - to_v, is_turned};
+  return {2 * cell.i + to_u, 2 * cell.j + to_v, is_turned};
+}
+
+/// A point in the coordinates of a cell in its own orientation: a, b >= 0, a + b <= 1.
+struct InCell {
+  float a, b;
 };
+
+/// Of barycentric point (u,v), in the cell that zone_in_triangle finds for it.
+inline InCell in_cell(std::uint32_t divisions, const ZoneCell& cell, float u, float v) {
+  const float a = u * static_cast<float>(divisions) - static_cast<float>(cell.i);
+  const float b = v * static_cast<float>(divisions) - static_cast<float>(cell.j);
+  return cell.upper ? InCell{1 - a, 1 - b} : InCell{a, b};
+}
+
+/// The part of a cell that holds a point of it, which is put into the coordinates of that part.
+inline std::uint32_t part_of(InCell& x) {
+  x = {2 * x.a, 2 * x.b};
+  if (x.a >= 1) {
+    x.a -= 1;
+    return 1;
+  }
+  if (x.b >= 1) {
+    x.b -= 1;
+    return 2;
+  }
+  if (x.a + x.b <= 1) return 0;
+  x = {1 - x.a, 1 - x.b};
+  return 3;
+}
 
 /// Inverse of the numbering of zone_in_triangle.
 inline ZoneCell zone_cell(std::uint32_t divisions, std::uint32_t zone) {

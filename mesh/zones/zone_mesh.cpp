@@ -23,7 +23,8 @@ void ZoneMesh::add_shapes() {
   if (next != base_.triangles.size()) throw std::invalid_argument("patches without a shape");
 }
 
-ZoneMesh::ZoneMesh(BaseMesh base, ZoneGroups groups) : base_(std::move(base)), groups_(std::move(groups)) {
+ZoneMesh::ZoneMesh(BaseMesh base, ZoneGroups groups, CellSplits splits)
+    : base_(std::move(base)), splits_(std::move(splits)), groups_(std::move(groups)) {
   add_shapes();
   triangle_area_.reserve(base_.triangles.size());
   triangle_normal_.reserve(base_.triangles.size());
@@ -57,7 +58,8 @@ void ZoneMesh::add_cells() {
     return groups_.of_side.empty() ? ZoneGroups::kOwn : groups_.of_side[side];
   };
   sides_.reserve(side_count());
-  std::size_t zones = 0;
+  std::size_t next_split = 0;
+  std::size_t next_bit = 0;
   for (std::size_t s = 0; s < side_count(); ++s) {
     const BaseTriangle& t = triangle(triangle_of(SideId(s)));
     if (!is_front(SideId(s)) && !t.two_sided) {
@@ -66,16 +68,55 @@ void ZoneMesh::add_cells() {
     } else if (group_of(s) != ZoneGroups::kOwn) {
       sides_.push_back({ZoneId(), 1});  // numbered once all cells are
     } else {
-      sides_.push_back({ZoneId(zones), t.divisions});
-      zones += std::size_t{t.divisions} * t.divisions;
-      if (zones >= std::numeric_limits<std::uint32_t>::max() - groups_.count)
+      const std::size_t cells = std::size_t{t.divisions} * t.divisions;
+      if (zone_side_.size() + cells >= std::numeric_limits<std::uint32_t>::max() - groups_.count)
         throw std::invalid_argument("more than 2^32-2 zones");
+      sides_.push_back({ZoneId(zone_side_.size()), t.divisions});
+      if (next_split < splits_.sides.size() && splits_.sides[next_split] == SideId(s)) {
+        add_split_cells(SideId(s), next_bit);
+        ++next_split;
+      } else {
+        zone_side_.insert(zone_side_.end(), cells, SideId(s));
+        for (std::uint32_t c = 0; c < cells; ++c) zone_cell_.push_back({t.divisions, c});
+      }
     }
   }
-  zone_side_.reserve(zones + groups_.count);
-  for (std::size_t s = 0; s < side_count(); ++s)
-    if (sides_[s].first_zone.valid())
-      zone_side_.insert(zone_side_.end(), std::size_t{sides_[s].divisions} * sides_[s].divisions, SideId(s));
+  if (next_split != splits_.sides.size() || next_bit != splits_.is_split.size())
+    throw std::invalid_argument("splits of sides without cells, or more of them than cells");
+}
+
+void ZoneMesh::add_split_cells(SideId side, std::size_t& next_bit) {
+  const std::uint32_t n = sides_[side.index()].divisions;
+  const std::size_t first = nodes_.size();
+  sides_[side.index()].nodes = static_cast<std::uint32_t>(first);
+  nodes_.resize(first + std::size_t{n} * n);
+  for (std::uint32_t c = 0; c < n * n; ++c) add_node(side, first + c, n, reemit::zone_cell(n, c), next_bit);
+}
+
+void ZoneMesh::add_node(SideId side, std::size_t node, std::uint32_t divisions, const ZoneCell& cell,
+                        std::size_t& next_bit) {
+  if (next_bit >= splits_.is_split.size()) throw std::invalid_argument("splits that end too early");
+  if (splits_.is_split[next_bit++] == 0) {
+    const std::size_t first = sides_[side.index()].first_zone.index();
+    nodes_[node] = {static_cast<std::uint32_t>(zone_side_.size() - first), false};
+    zone_side_.push_back(side);
+    zone_cell_.push_back({divisions, cell_number(divisions, cell)});
+    return;
+  }
+  if (divisions > kMostDivisions / 2) throw std::invalid_argument("cells that are cut too finely");
+  const std::size_t parts = nodes_.size();
+  nodes_[node] = {static_cast<std::uint32_t>(parts), true};
+  nodes_.resize(parts + kCellParts);
+  for (std::uint32_t k = 0; k < kCellParts; ++k)
+    add_node(side, parts + k, 2 * divisions, cell_part(cell, k), next_bit);
+}
+
+std::uint32_t ZoneMesh::zone_in_cell(const Side& side, std::uint32_t cell, float u, float v) const {
+  const Node* node = &nodes_[side.nodes + cell];
+  if (!node->is_split) return node->at;
+  InCell x = in_cell(side.divisions, reemit::zone_cell(side.divisions, cell), u, v);
+  while (node->is_split) node = &nodes_[node->at + part_of(x)];
+  return node->at;
 }
 
 void ZoneMesh::add_groups() {
@@ -140,9 +181,8 @@ SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
 
 double ZoneMesh::zone_area(ZoneId z) const {
   if (is_group(z)) return members_area_[first_member(z) + member_count(z) - 1];
-  const TriangleId t = zone_triangle(z);
-  const double n = triangle(t).divisions;
-  return triangle_area(t) / (n * n);
+  const double n = zone_cell_[z.index()].divisions;
+  return triangle_area(zone_triangle(z)) / (n * n);
 }
 
 Vec3 ZoneMesh::zone_normal(ZoneId z) const {
@@ -160,9 +200,8 @@ Vec3 ZoneMesh::zone_normal(ZoneId z) const {
 }
 
 std::array<Barycentric, 3> ZoneMesh::zone_barycentrics(ZoneId z) const {
-  const TriangleId t = zone_triangle(z);
-  const ZoneId first = first_zone(t, zone_is_front(z));
-  return zone_corners(triangle(t).divisions, static_cast<std::uint32_t>(z.index() - first.index()));
+  const GridCell& cell = zone_cell_[z.index()];
+  return zone_corners(cell.divisions, cell.number);
 }
 
 Vec3 ZoneMesh::point(TriangleId t, double u, double v) const {

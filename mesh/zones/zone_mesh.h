@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/zones/cell_splits.h"
 #include "mesh/zones/curved_patch.h"
 #include "mesh/zones/side.h"
 #include "mesh/zones/zone_groups.h"
@@ -22,7 +23,7 @@ struct BaseTriangle {
                                       kFlat};  ///< Into BaseMesh::normals, kFlat = geometric normal.
   SurfaceId surface;
   std::uint32_t face = 0;       ///< Index of the polygon in its Surface it was cut from.
-  std::uint32_t divisions = 1;  ///< n >= 1: the triangle holds n*n zones on each side that has zones.
+  std::uint32_t divisions = 1;  ///< n >= 1: the triangle holds n*n cells on each side that has zones.
   bool two_sided = false;       ///< The back has zones of its own; else it absorbs.
   std::uint32_t shape = kFlat;  ///< Into BaseMesh::shapes; kFlat = a flat triangle.
   std::uint32_t patch = 0;      ///< Of CurvedPatches.
@@ -46,7 +47,8 @@ struct SidePoint {
   bool front = true;
 };
 
-/// One of the divisions^2 congruent parts of a side of a base triangle (zone_lookup.h).
+/// One of the divisions^2 congruent parts of a side of a base triangle (zone_lookup.h); divisions are those
+/// of the triangle, or a power of 2 times as many (CellSplits).
 struct SideCell {
   TriangleId triangle;
   bool front = true;
@@ -59,19 +61,22 @@ struct SideCell {
 SidePoint cell_point(const SideCell& cell, float a, float b);
 
 /// Base triangles and their zones: the one place that knows what a zone is, which zone a point belongs to,
-/// and where the points of a zone are. A zone is one cell of a base triangle seen from one side, or a group
-/// of whole sides of triangles (ZoneGroups). The back of a two-sided triangle has zones of its own, numbered
-/// like those of its front; groups come after all cells. No radiometric value is stored here.
+/// and where the points of a zone are. A zone is one cell of a base triangle seen from one side, a part of a
+/// cell that is cut further (CellSplits), or a group of whole sides of triangles (ZoneGroups). The back of a
+/// two-sided triangle has zones of its own; groups come after all cells. No radiometric value is stored here.
 class ZoneMesh {
  public:
   /// Throws std::invalid_argument when an index is out of range, patches are not in order, divisions is 0,
-  /// the zones exceed 2^32-2, or a group is empty, mixes surfaces or fronts with backs, or has a side that
-  /// has no zones.
-  explicit ZoneMesh(BaseMesh base, ZoneGroups groups = {});
+  /// the zones exceed 2^32-2, a group is empty, mixes surfaces or fronts with backs, or has a side that has
+  /// no zones, or splits do not end, are of another number of cells or cut finer than kMostDivisions.
+  explicit ZoneMesh(BaseMesh base, ZoneGroups groups = {}, CellSplits splits = {});
+
+  static constexpr std::uint32_t kMostDivisions = 32768;  ///< Of cells that are cut further.
 
   const BaseMesh& base() const { return base_; }
   BaseMesh release_base() && { return std::move(base_); }
   const ZoneGroups& groups() const { return groups_; }
+  const CellSplits& splits() const { return splits_; }
   std::size_t triangle_count() const { return base_.triangles.size(); }
   std::size_t side_count() const { return reemit::side_count(triangle_count()); }  ///< With zones or without.
   std::size_t zone_count() const { return zone_side_.size(); }
@@ -103,7 +108,7 @@ class ZoneMesh {
   /// First patch of a shape.
   TriangleId first_patch(std::size_t shape) const { return first_patch_[shape]; }
 
-  /// First zone on the given side; not valid for the back of a one-sided triangle.
+  /// First zone on the given side, or its group; not valid for the back of a one-sided triangle.
   ZoneId first_zone(TriangleId t, bool front) const { return side(t, front).first_zone; }
   /// The back of a one-sided triangle has none.
   bool has_zones(TriangleId t, bool front) const { return first_zone(t, front).valid(); }
@@ -112,18 +117,19 @@ class ZoneMesh {
   /// none.
   ZoneId zone_at(TriangleId t, float u, float v, bool front) const {
     const Side& s = side(t, front);
-    return s.first_zone.valid() ? ZoneId(s.first_zone.index() + zone_in_triangle(s.divisions, u, v))
-                                : ZoneId();
+    if (!s.first_zone.valid()) return ZoneId();
+    const std::uint32_t cell = zone_in_triangle(s.divisions, u, v);
+    return ZoneId(s.first_zone.index() + (s.nodes == kWhole ? cell : zone_in_cell(s, cell, u, v)));
+  }
+  /// The cell that a zone is. Pre: not a group.
+  SideCell zone_cell(ZoneId z) const {
+    const SideId side = zone_side_[z.index()];
+    const GridCell& cell = zone_cell_[z.index()];
+    return {triangle_of(side), is_front(side), cell.divisions, cell.number};
   }
   /// A cell of the zone, chosen in proportion to areas by a uniform number, which is uniform again
   /// afterwards: the zone itself, or a member of the group.
-  SideCell pick_cell(ZoneId z, float& u) const {
-    if (is_group(z)) return member_cell(z, u);
-    const SideId s = zone_side_[z.index()];
-    const Side& side = sides_[s.index()];
-    return {triangle_of(s), is_front(s), side.divisions,
-            static_cast<std::uint32_t>(z.index() - side.first_zone.index())};
-  }
+  SideCell pick_cell(ZoneId z, float& u) const { return is_group(z) ? member_cell(z, u) : zone_cell(z); }
   /// Number of a side within its group. Pre: it is in one.
   std::uint32_t member(TriangleId t, bool front) const { return member_[side_of(t, front).index()]; }
   /// The triangle of a member of a group.
@@ -134,6 +140,7 @@ class ZoneMesh {
     return first_member_[group.index() - cell_zone_count() + 1] - first_member(group);
   }
 
+  SideId zone_side(ZoneId z) const { return zone_side_[z.index()]; }  ///< Of a group, its first member.
   /// The zone's parent; of a group, its first member.
   TriangleId zone_triangle(ZoneId z) const { return triangle_of(zone_side_[z.index()]); }
   bool zone_is_front(ZoneId z) const { return is_front(zone_side_[z.index()]); }
@@ -151,17 +158,31 @@ class ZoneMesh {
   Vec3 zone_centroid(ZoneId z) const;  ///< [m]; of a group, the mean over its area.
 
  private:
+  static constexpr std::uint32_t kWhole = 0xffffffff;
   struct Side {
     ZoneId first_zone;
     std::uint32_t divisions;
+    std::uint32_t nodes = kWhole;  // those of its cells start here; kWhole: none is cut further
+  };
+  struct GridCell {
+    std::uint32_t divisions, number;  // as in SideCell
+  };
+  /// A cell, or a part of one.
+  struct Node {
+    std::uint32_t at;  // zone within its side, or the first of its parts
+    bool is_split;
   };
 
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   std::size_t first_member(ZoneId group) const { return first_member_[group.index() - cell_zone_count()]; }
   SideCell member_cell(ZoneId group, float& u) const;
+  std::uint32_t zone_in_cell(const Side& side, std::uint32_t cell, float u, float v) const;
 
   void add_shapes();
   void add_cells();
+  void add_split_cells(SideId side, std::size_t& next_bit);
+  void add_node(SideId side, std::size_t node, std::uint32_t divisions, const ZoneCell& cell,
+                std::size_t& next_bit);
   void add_groups();
 
   BaseMesh base_;
@@ -170,8 +191,11 @@ class ZoneMesh {
   std::vector<TriangleId> first_patch_;
   std::vector<double> triangle_area_;
   std::vector<Vec3> triangle_normal_;
-  std::vector<Side> sides_;        // of one in a group: the group, 1
-  std::vector<SideId> zone_side_;  // of each zone; of a group, its first member
+  std::vector<Side> sides_;          // of one in a group: the group, 1
+  std::vector<SideId> zone_side_;    // of each zone; of a group, its first member
+  std::vector<GridCell> zone_cell_;  // of each zone that is no group
+  CellSplits splits_;
+  std::vector<Node> nodes_;
   ZoneGroups groups_;
   std::vector<std::size_t> first_member_;  // of each group, and the end
   std::vector<SideId> members_;            // by group

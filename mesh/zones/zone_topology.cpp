@@ -1,10 +1,13 @@
 #include "mesh/zones/zone_topology.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <numeric>
 #include <vector>
 
 #include "mesh/zones/smooth_patches.h"
+#include "mesh/zones/zone_cells.h"
 
 namespace reemit {
 namespace {
@@ -24,7 +27,9 @@ struct EdgeVertices {
 class TopologyBuilder {
  public:
   TopologyBuilder(const ZoneMesh& mesh, double crease_angle_deg)
-      : mesh_(mesh), patches_(mesh, crease_angle_deg), edges_(6 * mesh.triangle_count()) {}
+      : mesh_(mesh), cells_(mesh), patches_(mesh, crease_angle_deg), edges_(3 * mesh.side_count()) {
+    for (const SideId side : mesh.splits().sides) split_[side] = points_of(side);
+  }
 
   ZoneTopology build() {
     reserve();
@@ -39,10 +44,28 @@ class TopologyBuilder {
   }
 
  private:
-  // A point of the grid of a triangle: u = i/n, v = j/n.
+  // A point of the finest grid of a side: u = i/n, v = j/n.
   struct GridPoint {
     std::uint32_t i, j;
+    auto operator<=>(const GridPoint&) const = default;
   };
+  // A side with cells of several sizes.
+  struct SplitSide {
+    std::uint32_t divisions = 1;    // of the finest grid
+    std::vector<GridPoint> points;  // corners of its cells, ascending
+  };
+
+  SplitSide points_of(SideId side) const;
+  std::array<GridPoint, 3> corners_of(const SideCell& cell, std::uint32_t divisions) const;
+  const SplitSide* split_side(SideId side) const {
+    const auto found = split_.find(side);
+    return found == split_.end() ? nullptr : &found->second;
+  }
+  std::uint32_t finest_divisions(SideId side) const {
+    const SplitSide* split = split_side(side);
+    return split != nullptr ? split->divisions : mesh_.triangle(triangle_of(side)).divisions;
+  }
+  std::vector<std::uint32_t> steps_on_edge(SideId side, int k) const;
 
   void reserve();
   void add_corner_vertices();
@@ -50,8 +73,10 @@ class TopologyBuilder {
   void add_edge(std::size_t slot, SideId p, int k);
   void add_patch(TriangleId t, bool front);
   void add_interior_vertices();
-  void add_zone(const std::array<GridPoint, 3>& corners, bool lower);
+  void add_interior_vertex(const GridPoint& g);
+  void add_cell(const SideCell& cell);
   void append_side(const GridPoint& from, const GridPoint& to, int edge);
+  void append_between(const GridPoint& from, const GridPoint& to);
   bool can_add() const;
   std::uint32_t vertex_at(const GridPoint& g) const;
   const EdgeVertices& edge_vertices(int k) const;
@@ -64,7 +89,9 @@ class TopologyBuilder {
   Vec3 corner_normal(SideId p, int k) const { return patches_.corner_normal(patches_.corner_vertex(p, k)); }
 
   const ZoneMesh& mesh_;
+  ZoneCells cells_;
   SmoothPatches patches_;
+  std::map<SideId, SplitSide> split_;
   std::vector<EdgeVertices> edges_;  // by 3*patch+edge; of two joined slots the smaller one holds them
   ZoneTopology out_;
 
@@ -72,7 +99,9 @@ class TopologyBuilder {
   TriangleId triangle_;
   SideId patch_;
   bool front_ = true;
-  std::uint32_t n_ = 1;
+  std::uint32_t n_ = 1;                   // of its finest grid
+  const SplitSide* split_now_ = nullptr;  // its cells if they are not all of that grid
+  std::vector<GridPoint> interior_;       // their corners inside the patch
   std::uint32_t first_interior_ = 0;
   std::vector<OpenMesh::VertexHandle> polygon_;
 };
@@ -86,13 +115,60 @@ std::uint32_t TopologyBuilder::add_vertex(const Vec3& position, const Vec3& norm
 
 void TopologyBuilder::reserve() {
   std::size_t vertices = 0;
-  std::size_t cells = 0;
   for (const BaseTriangle& t : mesh_.base().triangles) {
     const std::size_t n = t.divisions;
     vertices += (t.two_sided ? 2 : 1) * (n + 1) * (n + 2) / 2;
-    cells += (t.two_sided ? 2 : 1) * n * n;
   }
-  out_.reserve(vertices, cells + vertices, cells);
+  for (const auto& [side, split] : split_) vertices += split.points.size();
+  out_.reserve(vertices, cells_.size() + vertices, cells_.size());
+}
+
+std::array<TopologyBuilder::GridPoint, 3> TopologyBuilder::corners_of(const SideCell& cell,
+                                                                      std::uint32_t divisions) const {
+  const ZoneCell place = zone_cell(cell.divisions, cell.number);
+  const std::uint32_t step = divisions / cell.divisions;
+  const auto i = static_cast<std::uint32_t>(place.i) * step;
+  const auto j = static_cast<std::uint32_t>(place.j) * step;
+  if (place.upper) return {{{i + step, j}, {i + step, j + step}, {i, j + step}}};
+  return {{{i, j}, {i + step, j}, {i, j + step}}};
+}
+
+TopologyBuilder::SplitSide TopologyBuilder::points_of(SideId side) const {
+  SplitSide split;
+  const std::size_t first = cells_.first(side);
+  const std::size_t last = cells_.first(SideId(side.index() + 1));
+  for (std::size_t c = first; c < last; ++c)
+    split.divisions = std::max(split.divisions, cells_.cell(c).divisions);
+  for (std::size_t c = first; c < last; ++c)
+    for (const GridPoint& corner : corners_of(cells_.cell(c), split.divisions))
+      split.points.push_back(corner);
+  std::sort(split.points.begin(), split.points.end());
+  split.points.erase(std::unique(split.points.begin(), split.points.end()), split.points.end());
+  return split;
+}
+
+// Steps of the finest grid from corner k of a side to the point of edge k.
+std::uint32_t steps_along(std::uint32_t i, std::uint32_t j, std::uint32_t n, int edge) {
+  return edge == 0 ? i : edge == 1 ? j : n - j;
+}
+
+// The corners of cells strictly inside edge k of a side, counted from the end of the edge with the smaller
+// vertex index.
+std::vector<std::uint32_t> TopologyBuilder::steps_on_edge(SideId side, int k) const {
+  const std::uint32_t n = finest_divisions(side);
+  std::vector<std::uint32_t> steps;
+  const SplitSide* split = split_side(side);
+  if (split == nullptr) {
+    for (std::uint32_t s = 1; s < n; ++s) steps.push_back(s);
+    return steps;
+  }
+  const bool down = runs_down(triangle_of(side), k);
+  for (const GridPoint& g : split->points) {
+    const bool on_edge = k == 0 ? g.j == 0 : k == 1 ? g.i + g.j == n : g.i == 0;
+    const std::uint32_t s = steps_along(g.i, g.j, n, k);
+    if (on_edge && s > 0 && s < n) steps.push_back(down ? n - s : s);
+  }
+  return steps;
 }
 
 void TopologyBuilder::add_corner_vertices() {
@@ -122,16 +198,16 @@ void TopologyBuilder::add_edge(std::size_t slot, SideId p, int k) {
   const std::uint32_t other = patches_.neighbour(p, k);
   if (other != SmoothPatches::kNone && other < slot) return;
   const TriangleId t = triangle_of(p);
-  const std::uint32_t n = mesh_.triangle(t).divisions;
-  const std::uint32_t m = other == SmoothPatches::kNone ? 1 : mesh_.triangle(TriangleId(other / 6)).divisions;
+  const std::uint32_t n = finest_divisions(p);
+  const std::uint32_t m = other == SmoothPatches::kNone ? 1 : finest_divisions(SideId(other / 3));
   EdgeVertices& edge = edges_[slot];
   edge.scale = std::lcm(n, m);
-  for (std::uint32_t i = 1; i < n; ++i) edge.position.push_back(i * (edge.scale / n));
-  if (m != n) {
-    for (std::uint32_t i = 1; i < m; ++i) edge.position.push_back(i * (edge.scale / m));
-    std::sort(edge.position.begin(), edge.position.end());
-    edge.position.erase(std::unique(edge.position.begin(), edge.position.end()), edge.position.end());
-  }
+  for (const std::uint32_t s : steps_on_edge(p, k)) edge.position.push_back(s * (edge.scale / n));
+  if (other != SmoothPatches::kNone)
+    for (const std::uint32_t s : steps_on_edge(SideId(other / 3), static_cast<int>(other % 3)))
+      edge.position.push_back(s * (edge.scale / m));
+  std::sort(edge.position.begin(), edge.position.end());
+  edge.position.erase(std::unique(edge.position.begin(), edge.position.end()), edge.position.end());
   edge.first = static_cast<std::uint32_t>(out_.n_vertices());
   const bool down = runs_down(t, k);
   const int from = down ? (k + 1) % 3 : k;
@@ -171,35 +247,58 @@ std::uint32_t TopologyBuilder::vertex_at(const GridPoint& g) const {
   if (g.j == 0) return on_edge(0, g.i);
   if (g.i + g.j == n_) return on_edge(1, g.j);
   if (g.i == 0) return on_edge(2, n_ - g.j);
+  if (split_now_ != nullptr) {
+    const auto found = std::lower_bound(interior_.begin(), interior_.end(), g);
+    return first_interior_ + static_cast<std::uint32_t>(found - interior_.begin());
+  }
   // Row i of the interior holds n-1-i vertices.
   return first_interior_ + (g.i - 1) * (n_ - 1) - g.i * (g.i - 1) / 2 + g.j - 1;
 }
 
 void TopologyBuilder::add_interior_vertices() {
   first_interior_ = static_cast<std::uint32_t>(out_.n_vertices());
-  const bool curved = mesh_.triangle(triangle_).is_curved();
-  const double side = front_ ? 1 : -1;
-  const std::array<Vec3, 3> normal{corner_normal(patch_, 0), corner_normal(patch_, 1),
-                                   corner_normal(patch_, 2)};
-  for (std::uint32_t i = 1; i + 1 < n_; ++i) {
-    for (std::uint32_t j = 1; i + j < n_; ++j) {
-      const double u = static_cast<double>(i) / n_;
-      const double v = static_cast<double>(j) / n_;
-      const Vec3 n = curved ? Vec3(side * mesh_.normal(triangle_, u, v))
-                            : Vec3((1 - u - v) * normal[0] + u * normal[1] + v * normal[2]);
-      add_vertex(mesh_.point(triangle_, u, v), n);
-    }
+  interior_.clear();
+  if (split_now_ != nullptr) {
+    for (const GridPoint& g : split_now_->points)
+      if (g.i > 0 && g.j > 0 && g.i + g.j < n_) interior_.push_back(g);
+    for (const GridPoint& g : interior_) add_interior_vertex(g);
+    return;
   }
+  for (std::uint32_t i = 1; i + 1 < n_; ++i)
+    for (std::uint32_t j = 1; i + j < n_; ++j) add_interior_vertex({i, j});
+}
+
+void TopologyBuilder::add_interior_vertex(const GridPoint& g) {
+  const double u = static_cast<double>(g.i) / n_;
+  const double v = static_cast<double>(g.j) / n_;
+  const Vec3 normal = mesh_.triangle(triangle_).is_curved()
+                          ? Vec3((front_ ? 1 : -1) * mesh_.normal(triangle_, u, v))
+                          : Vec3((1 - u - v) * corner_normal(patch_, 0) + u * corner_normal(patch_, 1) +
+                                 v * corner_normal(patch_, 2));
+  add_vertex(mesh_.point(triangle_, u, v), normal);
+}
+
+// Appends the corners of smaller cells between two points inside the patch.
+void TopologyBuilder::append_between(const GridPoint& from, const GridPoint& to) {
+  if ((from.i + to.i) % 2 != 0 || (from.j + to.j) % 2 != 0) return;
+  const GridPoint middle{(from.i + to.i) / 2, (from.j + to.j) / 2};
+  if (!std::binary_search(interior_.begin(), interior_.end(), middle)) return;
+  append_between(from, middle);
+  polygon_.emplace_back(static_cast<int>(vertex_at(middle)));
+  append_between(middle, to);
 }
 
 // Appends the corner `from` and what lies between it and `to`; `edge` is the edge of the patch they lie on,
 // or -1.
 void TopologyBuilder::append_side(const GridPoint& from, const GridPoint& to, int edge) {
   polygon_.emplace_back(static_cast<int>(vertex_at(from)));
-  if (edge < 0) return;
+  if (edge < 0) {
+    if (split_now_ != nullptr) append_between(from, to);
+    return;
+  }
   const EdgeVertices& finer = edge_vertices(edge);
-  if (finer.scale == n_) return;
-  const auto steps = [&](const GridPoint& g) { return edge == 0 ? g.i : edge == 1 ? g.j : n_ - g.j; };
+  if (finer.scale == n_ && split_now_ == nullptr) return;
+  const auto steps = [&](const GridPoint& g) { return steps_along(g.i, g.j, n_, edge); };
   const std::uint32_t unit = finer.scale / n_;
   const bool down = runs_down(triangle_, edge);
   const std::uint32_t a = (down ? n_ - steps(from) : steps(from)) * unit;
@@ -221,16 +320,17 @@ bool TopologyBuilder::can_add() const {
   return true;
 }
 
-void TopologyBuilder::add_zone(const std::array<GridPoint, 3>& corners, bool lower) {
+void TopologyBuilder::add_cell(const SideCell& cell) {
   polygon_.clear();
-  const auto& [a, b, c] = corners;
+  const auto [a, b, c] = corners_of(cell, n_);
+  const bool lower = a.i < b.i;
   append_side(a, b, lower && a.j == 0 ? 0 : -1);
   append_side(b, c, lower && b.i + b.j == n_ ? 1 : -1);
   append_side(c, a, lower && a.i == 0 ? 2 : -1);
   if (!front_) std::reverse(polygon_.begin(), polygon_.end());
   OpenMesh::FaceHandle face;
   if (can_add()) face = out_.add_face(polygon_);
-  if (!face.is_valid()) {  // sheets that meet in an edge or a point: this zone gets vertices of its own
+  if (!face.is_valid()) {  // sheets that meet in an edge or a point: this cell gets vertices of its own
     for (OpenMesh::VertexHandle& v : polygon_) {
       const OpenMesh::VertexHandle copy = out_.add_vertex(out_.point(v));
       out_.set_normal(copy, out_.normal(v));
@@ -246,15 +346,11 @@ void TopologyBuilder::add_patch(TriangleId t, bool front) {
   triangle_ = t;
   front_ = front;
   patch_ = side_of(t, front);
-  n_ = mesh_.triangle(t).divisions;
+  n_ = finest_divisions(patch_);
+  split_now_ = split_side(patch_);
   add_interior_vertices();
-  // The order of zone_lookup.h.
-  for (std::uint32_t i = 0; i < n_; ++i) {
-    for (std::uint32_t j = 0; i + j < n_; ++j) {
-      add_zone({{{i, j}, {i + 1, j}, {i, j + 1}}}, true);
-      if (i + j + 1 < n_) add_zone({{{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}}, false);
-    }
-  }
+  for (std::size_t c = cells_.first(patch_); c < cells_.first(SideId(patch_.index() + 1)); ++c)
+    add_cell(cells_.cell(c));
 }
 
 }  // namespace

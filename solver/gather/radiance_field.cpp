@@ -25,7 +25,7 @@ float RadianceField::zone_size(ZoneId z) const {
   const ZoneMesh& mesh = room_->mesh();
   const double metres = mesh.is_group(z) ? std::sqrt(2 * mesh.zone_area(z))
                                          : std::sqrt(2 * mesh.triangle_area(mesh.zone_triangle(z))) /
-                                               mesh.triangle(mesh.zone_triangle(z)).divisions;
+                                               mesh.zone_cell(z).divisions;
   return static_cast<float>(metres / room_->rays().metres_per_unit());
 }
 

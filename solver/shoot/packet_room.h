@@ -42,14 +42,14 @@ class PacketRoom {
       return;
     }
     const TrianglePatch& p = patches_[t.index()];
-    const bool front = mesh_->zone_is_front(z);
-    const std::size_t in_side = z.index() - mesh_->first_zone(t, front).index();
-    put_flat_side(static_cast<std::uint32_t>(t.index()), front, lanes, first, last);
-    const ZoneCell cell = zone_cell(p.divisions, static_cast<std::uint32_t>(in_side));
+    const SideCell zone = mesh_->zone_cell(z);
+    put_flat_side(static_cast<std::uint32_t>(t.index()), zone.front, lanes, first, last);
+    const ZoneCell cell = zone_cell(zone.divisions, zone.number);
+    const float size = static_cast<float>(p.divisions) / static_cast<float>(zone.divisions);
     // An upper zone is a lower one turned about the middle of their cell.
-    const float turn = cell.upper ? -1.0F : 1.0F;
-    const auto i = static_cast<float>(cell.i + (cell.upper ? 1 : 0));
-    const auto j = static_cast<float>(cell.j + (cell.upper ? 1 : 0));
+    const float turn = cell.upper ? -size : size;
+    const auto i = size * static_cast<float>(cell.i + (cell.upper ? 1 : 0));
+    const auto j = size * static_cast<float>(cell.j + (cell.upper ? 1 : 0));
     for (int k = 0; k < 3; ++k) {
       std::fill(lanes.corner[k] + first, lanes.corner[k] + last,
                 p.corner[k] + i * p.edge1[k] + j * p.edge2[k]);
@@ -133,7 +133,7 @@ class PacketRoom {
   void start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
   void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;
 
-  /// A base triangle with the edges of one of its zones (normalised space).
+  /// A base triangle with the edges of one of its cells (normalised space).
   struct TrianglePatch {
     Vec3f corner, edge1, edge2, middle;
     Frame frame;  // about the front normal

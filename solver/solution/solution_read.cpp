@@ -174,6 +174,16 @@ ZoneGroups read_groups(const Hdf5Group& mesh, std::uint64_t triangles) {
   return groups;
 }
 
+CellSplits read_splits(const Hdf5Group& mesh) {
+  CellSplits splits;
+  for (const std::uint32_t s : mesh.read<std::uint32_t>("split_sides", {rows_of(mesh, "split_sides")}))
+    splits.sides.emplace_back(s);
+  splits.is_split = mesh.read<std::uint8_t>("split_cells", {rows_of(mesh, "split_cells")});
+  for (std::size_t i = 1; i < splits.sides.size(); ++i)
+    require(splits.sides[i - 1] < splits.sides[i], "sides with split cells out of order");
+  return splits;
+}
+
 // `zone_count` comes from the size of the sums, which were compared with the size of the file: a damaged
 // number of divisions must not make us allocate zones that are not there.
 ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone_count) {
@@ -194,17 +204,20 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   require(all_finite(rows), "shapes that are not finite");
   for (std::size_t s = 0; s < shapes; ++s) base.shapes.push_back(shape_of(&rows[s * kShapeRow]));
   ZoneGroups groups = read_groups(group, count);
-  const auto has_own = [&](SideId side) {
-    return groups.of_side.empty() || groups.of_side[side.index()] == ZoneGroups::kOwn;
+  CellSplits splits = read_splits(group);
+  const auto counts_cells = [&](SideId side) {
+    return (groups.of_side.empty() || groups.of_side[side.index()] == ZoneGroups::kOwn) &&
+           !std::binary_search(splits.sides.begin(), splits.sides.end(), side);
   };
-  std::uint64_t zones = groups.count;
+  std::uint64_t zones = groups.count + static_cast<std::uint64_t>(
+                                           std::count(splits.is_split.begin(), splits.is_split.end(), 0));
   for (std::size_t t = 0; t < count; ++t) {
     require(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
     require(divisions[t] > 0 && divisions[t] < 65536, "triangle with an impossible number of zones");
-    const bool front_has_own = has_own(side_of(TriangleId(t), true));
-    const bool back_has_own = two_sided[t] != 0 && has_own(side_of(TriangleId(t), false));
+    const bool front_counts = counts_cells(side_of(TriangleId(t), true));
+    const bool back_counts = two_sided[t] != 0 && counts_cells(side_of(TriangleId(t), false));
     zones +=
-        std::uint64_t{divisions[t]} * divisions[t] * ((front_has_own ? 1U : 0U) + (back_has_own ? 1U : 0U));
+        std::uint64_t{divisions[t]} * divisions[t] * ((front_counts ? 1U : 0U) + (back_counts ? 1U : 0U));
     require(zones <= zone_count, "more zones in the mesh than in the sums");
     BaseTriangle triangle;
     std::copy_n(vertex.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, triangle.vertex.begin());
@@ -222,7 +235,7 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   AttributeReader counts{group};
   transfer_mesh_counts(counts, solution.mesh_report);
   solution.mesh_report.warnings = group.read_texts("warnings");
-  return ZoneMesh(std::move(base), std::move(groups));
+  return ZoneMesh(std::move(base), std::move(groups), std::move(splits));
 }
 
 /// No sum of sixteen of these overflows.

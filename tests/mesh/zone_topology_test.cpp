@@ -8,6 +8,7 @@
 
 #include "mesh/build_mesh.h"
 #include "tests/mesh/test_room.h"
+#include "tests/support/random_splits.h"
 
 namespace reemit {
 namespace {
@@ -89,6 +90,21 @@ TEST(ZoneTopology, NeighboursShareEdgesWhateverTheirDivisions) {
       EXPECT_EQ(shared_edges(mesh, topology), expected * (two_sided ? 2 : 1))
           << n.first << " beside " << n.second;
     }
+  }
+}
+
+TEST(ZoneTopology, CellsOfSeveralSizesLeaveNoGaps) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const BaseMesh base = two_triangles(1 + seed % 4, 2 + seed % 3, 10, true).base();
+    const ZoneMesh mesh(base, {}, test::random_splits(base, 4, seed));
+    const ZoneTopology topology = make_zone_topology(mesh, 30);
+    expect_faces_are_zones(mesh, topology);
+    // A gap or an edge that ends in the middle of another would be a border.
+    double border = 0;
+    for (const auto e : topology.edges())
+      if (topology.is_boundary(e)) border += topology.calc_edge_length(e);
+    const double leg = std::sqrt(1.25);
+    EXPECT_NEAR(border, 2 * 4 * leg, 1e-9) << "seed " << seed;
   }
 }
 

@@ -1,0 +1,143 @@
+// Cells that are cut further: each point belongs to the part it lies in.
+
+#include <cmath>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "mesh/zones/zone_cells.h"
+#include "mesh/zones/zone_mesh.h"
+#include "tests/support/random_splits.h"
+
+namespace reemit {
+namespace {
+
+/// A two-sided triangle and a one-sided one.
+BaseMesh two_triangles(std::uint32_t n, std::uint32_t m) {
+  BaseMesh base;
+  base.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, -1, 0.1}};
+  base.triangles.resize(2);
+  base.triangles[0].vertex = {0, 1, 2};
+  base.triangles[0].divisions = n;
+  base.triangles[0].two_sided = true;
+  base.triangles[1].vertex = {1, 0, 3};
+  base.triangles[1].divisions = m;
+  for (BaseTriangle& t : base.triangles) t.surface = SurfaceId(0);
+  return base;
+}
+
+ZoneMesh split_mesh(std::uint32_t n, std::uint32_t m, unsigned seed) {
+  const BaseMesh base = two_triangles(n, m);
+  return ZoneMesh(base, {}, test::random_splits(base, 5, seed));
+}
+
+TEST(CellSplits, PartsOfACellAreItsQuarters) {
+  for (const std::uint32_t n : {1U, 2U, 3U, 8U})
+    for (std::uint32_t c = 0; c < n * n; ++c) {
+      const auto whole = zone_corners(n, c);
+      const auto area = [](const auto& p) {
+        return 0.5 * ((p[1].u - p[0].u) * (p[2].v - p[0].v) - (p[2].u - p[0].u) * (p[1].v - p[0].v));
+      };
+      std::set<std::uint32_t> parts;
+      for (std::uint32_t k = 0; k < kCellParts; ++k) {
+        const std::uint32_t part = cell_number(2 * n, cell_part(zone_cell(n, c), k));
+        parts.insert(part);
+        const auto corners = zone_corners(2 * n, part);
+        EXPECT_NEAR(area(corners), area(whole) / 4, 1e-12);
+        const double u = (corners[0].u + corners[1].u + corners[2].u) / 3;
+        const double v = (corners[0].v + corners[1].v + corners[2].v) / 3;
+        EXPECT_EQ(zone_in_triangle(n, static_cast<float>(u), static_cast<float>(v)), c);
+      }
+      EXPECT_EQ(parts.size(), kCellParts);
+    }
+}
+
+TEST(CellSplits, EveryPointBelongsToThePartItLiesIn) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const ZoneMesh mesh = split_mesh(1 + seed, 8, seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    std::vector<int> points(mesh.zone_count(), 0);
+    constexpr int kPoints = 20'000;
+    for (std::size_t side = 0; side < mesh.side_count(); ++side) {
+      if (!mesh.has_zones(SideId(side))) continue;
+      for (int i = 0; i < kPoints; ++i) {
+        float u = uniform(random);
+        float v = uniform(random);
+        if (u + v > 1) {
+          u = 1 - u;
+          v = 1 - v;
+        }
+        const TriangleId t = triangle_of(SideId(side));
+        const ZoneId z = mesh.zone_at(t, u, v, is_front(SideId(side)));
+        ASSERT_TRUE(z.valid());
+        ASSERT_EQ(mesh.zone_side(z), SideId(side));
+        ++points[z.index()];
+        // Within rounding of its corners: all three barycentric coordinates in the cell are positive.
+        const auto c = mesh.zone_barycentrics(z);
+        const auto turn = [](const Barycentric& a, const Barycentric& b, double x, double y) {
+          return (b.u - a.u) * (y - a.v) - (b.v - a.v) * (x - a.u);
+        };
+        for (std::size_t k = 0; k < 3; ++k)
+          ASSERT_GT(turn(c[k], c[(k + 1) % 3], static_cast<double>(u), static_cast<double>(v)), -1e-7);
+      }
+    }
+    // Points fall into parts in proportion to areas: within 6 standard deviations in each of some 3,000.
+    for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+      const double share = mesh.zone_area(ZoneId(z)) / mesh.triangle_area(mesh.zone_triangle(ZoneId(z)));
+      const double expected = kPoints * share;
+      EXPECT_NEAR(points[z], expected, 6 * std::sqrt(expected) + 6) << "zone " << z;
+    }
+  }
+}
+
+TEST(CellSplits, ZonesCoverEverySideOnce) {
+  const ZoneMesh mesh = split_mesh(3, 4, 11);
+  const ZoneCells cells(mesh);
+  ASSERT_EQ(cells.size(), mesh.zone_count());
+  std::vector<double> area(mesh.side_count(), 0.0);
+  std::size_t finer = 0;
+  for (std::size_t i = 0; i < mesh.zone_count(); ++i) {
+    const ZoneId z(i);
+    EXPECT_EQ(cells.zone(i), z);
+    EXPECT_DOUBLE_EQ(cells.area(i), mesh.zone_area(z));
+    const SideCell cell = cells.cell(i);
+    EXPECT_EQ(side_of(cell.triangle, cell.front), mesh.zone_side(z));
+    area[mesh.zone_side(z).index()] += mesh.zone_area(z);
+    if (cell.divisions > mesh.triangle(cell.triangle).divisions) ++finer;
+    const SidePoint middle = cell_point(cell, 1.0F / 3, 1.0F / 3);
+    const auto u = static_cast<float>(middle.at.u);
+    const auto v = static_cast<float>(middle.at.v);
+    EXPECT_EQ(mesh.zone_at(cell.triangle, u, v, cell.front), z);
+    EXPECT_LT((mesh.zone_centroid(z) - mesh.point(cell.triangle, middle.at.u, middle.at.v)).norm(), 1e-6);
+  }
+  EXPECT_GT(finer, mesh.zone_count() / 4);
+  for (std::size_t s = 0; s < mesh.side_count(); ++s) {
+    const SideId side(s);
+    EXPECT_NEAR(area[s], mesh.has_zones(side) ? mesh.triangle_area(triangle_of(side)) : 0, 1e-12);
+  }
+}
+
+TEST(CellSplits, WhatCannotBeIsRefused) {
+  const BaseMesh base = two_triangles(1, 1);
+  const SideId front = side_of(TriangleId(0), true);
+  const SideId no_zones = side_of(TriangleId(1), false);
+  const auto mesh_of = [&](CellSplits splits, ZoneGroups groups = {}) {
+    return ZoneMesh(base, std::move(groups), std::move(splits));
+  };
+  EXPECT_EQ(mesh_of({{front}, {1, 0, 0, 0, 0}}).zone_count(), 6U);
+  EXPECT_THROW(mesh_of({{front}, {1, 0, 0, 0}}), std::invalid_argument);          // ends too early
+  EXPECT_THROW(mesh_of({{front}, {1, 0, 0, 0, 0, 0}}), std::invalid_argument);    // more than cells
+  EXPECT_THROW(mesh_of({{no_zones}, {1, 0, 0, 0, 0}}), std::invalid_argument);    // no zones there
+  EXPECT_THROW(mesh_of({{SideId(99)}, {1, 0, 0, 0, 0}}), std::invalid_argument);  // no such side
+  EXPECT_THROW(mesh_of({{front}, std::vector<std::uint8_t>(80, 1)}), std::invalid_argument);  // no end
+  ZoneGroups group;
+  group.of_side = {0, ZoneGroups::kOwn, ZoneGroups::kOwn, ZoneGroups::kOwn};
+  group.count = 1;
+  EXPECT_THROW(mesh_of({{front}, {1, 0, 0, 0, 0}}, group), std::invalid_argument);  // in a group
+}
+
+}  // namespace
+}  // namespace reemit
