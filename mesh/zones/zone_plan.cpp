@@ -183,17 +183,11 @@ bool may_share(const ZoneMesh& mesh, TriangleId t, double zone_area) {
   return mesh.triangle(t).is_curved() && mesh.triangle_area(t) <= kLargestPatch * zone_area;
 }
 
-/// A side that shares nothing.
-struct LoneSide {
-  double area;    // [m2]
-  double spread;  // SideLightness
-};
-
-/// Cells of these when zones have `zone_area`.
-double cells_of(const std::vector<LoneSide>& sides, double zone_area) {
+/// Cells of sides of these areas [m2] when zones have `zone_area`.
+double cells_of(const std::vector<double>& areas, double zone_area) {
   double cells = 0;
-  for (const LoneSide& side : sides) {
-    const double n = divisions_at_least(wanted_divisions(side.area, side.spread, zone_area));
+  for (const double area : areas) {
+    const double n = divisions_at_least(wanted_divisions(area, zone_area));
     cells += n * n;
   }
   return cells;
@@ -201,14 +195,13 @@ double cells_of(const std::vector<LoneSide>& sides, double zone_area) {
 
 }  // namespace
 
-ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
-                    const std::vector<SideLightness>& light, double wanted, double zone_area,
-                    double largest_zone_area) {
+ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses, const std::vector<float>& light,
+                    double wanted, double zone_area, double largest_zone_area) {
   ZonePlan plan{zone_area, {}};
   plan.groups.of_side.assign(mesh.side_count(), ZoneGroups::kOwn);
   group_sealed(mesh, uses, plan.groups);
   Grouping grouping(mesh, zone_area);
-  std::vector<LoneSide> large;
+  std::vector<double> large;  // areas of sides that share nothing
   double zones_now = 0;
   for (std::size_t s = 0; s < uses.size(); ++s) {
     const SideId side(s);
@@ -217,9 +210,9 @@ ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
     const double n = mesh.triangle(t).divisions;
     zones_now += n * n;
     if (uses[s] == SideUse::kOwn || !may_share(mesh, t, zone_area))
-      large.push_back({mesh.triangle_area(t), static_cast<double>(light[s].spread)});
+      large.push_back(mesh.triangle_area(t));
     else
-      grouping.add(side, light[s].level);
+      grouping.add(side, light.empty() ? 0.0F : light[s]);
   }
   if (zones_now > kEnough * wanted) {
     grouping.divide(wanted, kCellCost * largest_zone_area);

@@ -20,21 +20,15 @@ enum class SideUse : std::uint8_t {
   kSealed,  ///< No light reaches it.
 };
 
-/// Direct light that a side reflects, as a guess.
-struct SideLightness {
-  float level = 0;   ///< log(1 + B/m), B its mean and m what counts as dim in the room.
-  float spread = 0;  ///< Variance over the side / (m + B)^2.
-};
-
-/// `mesh` as size_zones made it with `zone_area` [m2]; `uses` and `light` by side as in ZoneGroups. All
-/// sealed sides of one surface become one group, fronts and backs apart, and do not count. If the others have
-/// up to half as many zones again as wanted, they stay as they are. Else small sides are put together within
-/// their surface: starting with one group for each surface and side, the group in which light is likely to
-/// differ most, by area, extent, directions of normals and light, is cut in two, until it is as uneven as a
-/// cell of a large face; and cells become larger, up to `largest_zone_area` [m2], until there are about as
-/// many of both as wanted. Deterministic.
-ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses,
-                    const std::vector<SideLightness>& light, double wanted, double zone_area,
-                    double largest_zone_area);
+/// `mesh` as size_zones made it with `zone_area` [m2]; `uses` and `light`, if there is any, by side
+/// as in ZoneGroups; light is the logarithm of 1 + B/m, B what the side reflects and m what counts as dim.
+/// All sealed sides of one surface become one group, fronts and backs apart, and do not count. If the others
+/// have up to half as many zones again as wanted, they stay as they are. Else small sides are put together
+/// within their surface: starting with one group for each surface and side, the group in which light is
+/// likely to differ most, by area, extent, directions of normals and light, is cut in two, until it is as
+/// uneven as a cell of a large face; and cells become larger, up to `largest_zone_area` [m2], until there are
+/// about as many of both as wanted. Deterministic.
+ZonePlan plan_zones(const ZoneMesh& mesh, const std::vector<SideUse>& uses, const std::vector<float>& light,
+                    double wanted, double zone_area, double largest_zone_area);
 
 }  // namespace reemit

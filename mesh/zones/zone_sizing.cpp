@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "mesh/zones/zone_cost.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -14,8 +13,6 @@ namespace {
 
 /// Divisions are rounded up, so zones come out smaller than wanted, by this much in the mean.
 constexpr double kRounding = 1.4;
-/// Cost of light that differs over the cost of place.
-constexpr double kSpreadCost = kLightWeight * kLightWeight / kCellCost;
 
 }  // namespace
 
@@ -45,14 +42,11 @@ std::uint32_t divisions_at_least(double n) {
   return static_cast<std::uint32_t>(power);
 }
 
-double wanted_divisions(double area, double spread, double zone_area) {
-  // What a cell costs (zone_cost.h) falls with the fourth power of the divisions, as the variances of place
-  // and light in it fall with their square.
-  const double cost = area * (area + kSpreadCost * spread * zone_area);
-  return std::sqrt(std::sqrt(cost)) / std::sqrt(zone_area);
+double wanted_divisions(double area, double zone_area) {
+  return std::sqrt(area / zone_area) * (1 - 1e-12);  // a zone of just the wanted area is fine
 }
 
-void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spread) {
+void size_zones(BaseMesh& mesh, double zone_area) {
   constexpr double kMostZones = 2147483648.0;
   std::vector<CurvedPatches> curved;
   for (const CurvedShape& shape : mesh.shapes) curved.emplace_back(shape);
@@ -68,12 +62,7 @@ void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spre
     const double area =
         t.is_curved() ? curved[t.shape].patch_area()
                       : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
-    const TriangleId id(static_cast<std::size_t>(&t - mesh.triangles.data()));
-    const auto variance = static_cast<double>(
-        spread.empty() ? 0.0F
-                       : std::max(spread[side_of(id, true).index()], spread[side_of(id, false).index()]));
-    // A zone of just the wanted area is fine.
-    const double n = wanted_divisions(area, variance, zone_area) * (1 - 1e-12);
+    const double n = wanted_divisions(area, zone_area);
     if (n < 65536) t.divisions = divisions_at_least(t.is_curved() ? std::max<double>(n, least) : n);
     zones += n < 65536 ? (t.two_sided ? 2.0 : 1.0) * t.divisions * t.divisions : kMostZones;
     if (zones >= kMostZones)

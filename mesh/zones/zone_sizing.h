@@ -16,13 +16,11 @@ double wanted_zone_count(const MeshSettings& settings, double zoned_area);
 /// the smaller mostly divides the larger, so that zones of neighbouring triangles share vertices.
 std::uint32_t divisions_at_least(double n);
 
-/// How fine a side of `area` [m2] is divided for zones of `zone_area`: the square root of their ratio, and
-/// more where light differs over it: `spread` is the variance of light over the side, relative to its square.
-double wanted_divisions(double area, double spread, double zone_area);
+/// How fine a side of `area` [m2] is divided for zones of `zone_area`.
+double wanted_divisions(double area, double zone_area);
 
-/// Sets the divisions of every triangle so that no zone exceeds `zone_area` [m2]; `spread`, if given, by side
-/// as ZoneGroups has them, makes those smaller in which light would differ more than in an even one.
-/// Throws InputError when that makes more than 2^31 zones.
-void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spread = {});
+/// Sets the divisions of every triangle so that no cell exceeds `zone_area` [m2].
+/// Throws InputError when that makes more than 2^31 cells.
+void size_zones(BaseMesh& mesh, double zone_area);
 
 }  // namespace reemit

@@ -15,7 +15,6 @@ namespace reemit {
 namespace {
 
 constexpr std::size_t kFieldHalves = 2;
-constexpr std::size_t kProbes = 1024;
 constexpr ReplicateEffort kEffort{16, 4};
 constexpr std::size_t kProbesPerTask = 64;
 /// An estimate that may as well be this many times larger says nothing, unless all it can be is small.
@@ -25,7 +24,7 @@ constexpr double kSmallEnough = 0.03;
 }  // namespace
 
 std::optional<double> discretisation_error(const Room& room, const Solution& solution,
-                                           const StopToken& stop) {
+                                           const StopToken& stop, std::size_t probe_count) {
   if (stop.requested()) return std::nullopt;
   const RadianceField field(room, solution, kFieldHalves);
   if (field.parts() != kFieldHalves) return std::nullopt;
@@ -35,7 +34,7 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
   const HemisphereGather gather(field, direct, GatherSettings{.continue_uneven = false, .seed = seed});
   const CounterRng rng(seed, RngPurpose::kDiscretisation);
   const std::vector<ZoneProbe> probes =
-      choose_probes(solution, kProbes, static_cast<double>(rng.uniform4(0, 1, 0)[0]));
+      choose_probes(solution, probe_count, static_cast<double>(rng.uniform4(0, 1, 0)[0]));
 
   // By probe and band: product of the two differences, product of the two zone values.
   std::vector<double> differences(probes.size() * bands);

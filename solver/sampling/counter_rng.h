@@ -26,6 +26,7 @@ enum class RngPurpose : std::uint32_t {
   kArrival,
   kSealedSides,
   kLightOnSides,
+  kPilotLight,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

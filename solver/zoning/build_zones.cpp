@@ -7,6 +7,8 @@
 #include "mesh/zones/zone_sizing.h"
 #include "solver/room/room.h"
 #include "solver/zoning/light_on_sides.h"
+#include "solver/zoning/pilot_light.h"
+#include "solver/zoning/refine_cells.h"
 #include "solver/zoning/sealed_sides.h"
 
 namespace reemit {
@@ -17,6 +19,9 @@ constexpr std::size_t kFewLuminaires = 2000;
 /// Zones whose area nobody asked for grow up to this many times for the sake of their number: a room of very
 /// many surfaces has at least one for each side of each, and its walls must not become coarse for that.
 constexpr double kMostLarger = 4;
+/// Where light is even, cells are this many times as large as zones on average: what looks even from a few
+/// points may not be.
+constexpr double kCoarsest = 4;
 
 std::vector<SideUse> uses_of_sides(const Room& room, const WorkWatch& watch) {
   const std::vector<std::uint8_t> sealed = sealed_sides(room, watch);
@@ -45,46 +50,64 @@ double open_area(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
   return area;
 }
 
-/// What shadow rays and others find out about the sides of a mesh.
-struct Survey {
-  std::vector<SideUse> uses;
-  std::vector<SideLightness> light;
-  double open_area = 0;  // [m2]
-  double zone_area = 0;  // such that there are as many as wanted [m2]
-};
+/// A room without light that anything could be told from.
+bool is_dark(const Scene& scene) {
+  return scene.lights.empty() && std::none_of(scene.materials.begin(), scene.materials.end(),
+                                              [](const Material& m) { return m.emits(); });
+}
 
-Survey survey(const Scene& scene, const ZoneMesh& mesh, const MeshSettings& settings,
-              const WorkWatch& watch) {
-  constexpr double kSealing = 0.5;  // of the work
-  const Room room(scene, mesh);
-  Survey result;
-  result.uses = uses_of_sides(room, watch.part(0, kSealing));
-  result.open_area = open_area(mesh, result.uses);
-  if (!(result.open_area > 0)) return result;
-  result.zone_area = wanted_zone_area(settings, result.open_area);
-  result.light = light_on_sides(room, result.uses, result.zone_area, watch.part(kSealing, 1));
-  return result;
+/// Sides that have cells of their own.
+std::vector<SideId> sides_with_cells(const ZoneMesh& mesh, const ZoneGroups& groups) {
+  std::vector<SideId> sides;
+  for (std::size_t s = 0; s < mesh.side_count(); ++s)
+    if (mesh.has_zones(SideId(s)) && (groups.of_side.empty() || groups.of_side[s] == ZoneGroups::kOwn))
+      sides.emplace_back(s);
+  return sides;
+}
+
+/// The mesh with cells for zones of `zone_area` [m2].
+ZoneMesh with_cells(BaseMesh base, double zone_area, ZoneGroups groups = {}) {
+  size_zones(base, zone_area);
+  return ZoneMesh(std::move(base), std::move(groups));
 }
 
 }  // namespace
 
 MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const WorkWatch& watch) {
   if (!settings.share_zones) return build_mesh(scene, settings, watch);
-  constexpr double kMeshing = 0.5;  // of the work
-  MeshResult result = build_mesh(scene, settings, watch.part(0, kMeshing));
-  const Survey found = survey(scene, result.mesh, settings, watch.part(kMeshing, 1));
-  if (!(found.open_area > 0)) return result;  // there is no light
-  std::vector<float> spread(found.light.size());
-  for (std::size_t s = 0; s < spread.size(); ++s) spread[s] = found.light[s].spread;
+  // Shares of the work.
+  constexpr double kMeshed = 0.4;
+  constexpr double kSealed = 0.6;
+  constexpr double kSolved = 0.75;
+  constexpr double kGrouped = 0.9;
+  MeshResult result = build_mesh(scene, settings, watch.part(0, kMeshed));
+  const std::vector<SideUse> uses = uses_of_sides(Room(scene, result.mesh), watch.part(kMeshed, kSealed));
+  const double area = open_area(result.mesh, uses);
+  if (!(area > 0)) return result;  // there is no light
+  const double zone_area = wanted_zone_area(settings, area);
+  const double wanted = wanted_zone_count(settings, area);
+  const double largest = settings.zone_area ? zone_area : kMostLarger * zone_area;
+  result.mesh = with_cells(std::move(result.mesh).release_base(), zone_area);
+  ZonePlan plan = plan_zones(result.mesh, uses, {}, wanted, zone_area, largest);
+  if (is_dark(scene)) {
+    result.mesh = with_cells(std::move(result.mesh).release_base(), plan.zone_area, std::move(plan.groups));
+    return result;
+  }
+  const PilotLight pilot(
+      scene, {with_cells(result.mesh.base(), plan.zone_area, std::move(plan.groups)), result.report},
+      watch.part(kSealed, kSolved));
+  const std::vector<float> light = light_on_sides(pilot, uses, watch.part(kSolved, kGrouped));
+  plan = plan_zones(result.mesh, uses, light, wanted, zone_area, largest);
+  const double root_area = std::min(kCoarsest * plan.zone_area, largest);
   BaseMesh base = std::move(result.mesh).release_base();
-  size_zones(base, found.zone_area, spread);
-  result.mesh = ZoneMesh(std::move(base));
-  const double largest = settings.zone_area ? found.zone_area : kMostLarger * found.zone_area;
-  ZonePlan plan = plan_zones(result.mesh, found.uses, found.light,
-                             wanted_zone_count(settings, found.open_area), found.zone_area, largest);
-  base = std::move(result.mesh).release_base();
-  if (plan.zone_area > found.zone_area) size_zones(base, plan.zone_area, spread);
-  result.mesh = ZoneMesh(std::move(base), std::move(plan.groups));
+  size_zones(base, root_area);
+  ZoneMesh roots(std::move(base), std::move(plan.groups));
+  const std::vector<SideId> sides = sides_with_cells(roots, roots.groups());
+  const double cells = wanted - (roots.groups().count - roots.groups().sealed);
+  CellSplits splits =
+      refine_cells(pilot, roots.base(), sides, {cells, plan.zone_area}, watch.part(kGrouped, 1));
+  ZoneGroups groups = roots.groups();
+  result.mesh = ZoneMesh(std::move(roots).release_base(), std::move(groups), std::move(splits));
   return result;
 }
 

@@ -4,9 +4,10 @@
 
 namespace reemit {
 
-/// A room meshed with about as many zones as `settings` asks for, whatever its number of triangles:
-/// build_mesh, then sides that no light reaches get one zone per surface (sealed_sides), the rest is sized
-/// anew by the area that is left, and small sides share zones (group_sides). Throws as build_mesh.
+/// A room meshed with about as many zones as `settings` asks for, whatever its number of triangles, and small
+/// where light differs: build_mesh, then sides that no light reaches get one zone per surface (sealed_sides),
+/// small sides share zones (plan_zones), and the cells of large ones are cut by what a quick solution says of
+/// the light on them (PilotLight, refine_cells). The same for any number of threads. Throws as build_mesh.
 MeshResult build_zones(const Scene& scene, const MeshSettings& settings = {}, const WorkWatch& watch = {});
 
 }  // namespace reemit

@@ -3,14 +3,14 @@
 
 #include "mesh/zones/zone_plan.h"
 #include "scenes/model/work_watch.h"
-#include "solver/room/room.h"
+#include "solver/zoning/pilot_light.h"
 
 namespace reemit {
 
-/// By side of a base triangle, how direct light lies on it, for plan_zones; nothing on sides that are sealed.
-/// A few shadow rays from each, more from large ones. `zone_area`: of zones that one would cut the room into
-/// [m2]. The same for any number of threads. Throws Interrupted when `watch` ends it.
-std::vector<SideLightness> light_on_sides(const Room& room, const std::vector<SideUse>& uses,
-                                          double zone_area, const WorkWatch& watch);
+/// By side of a base triangle, the level of the light on it (light_level.h), a guess from a few rays, for
+/// plan_zones; only of sides that are kShared, 0 on others. The same for any number of threads. Throws
+/// Interrupted when `watch` ends it.
+std::vector<float> light_on_sides(const PilotLight& pilot, const std::vector<SideUse>& uses,
+                                  const WorkWatch& watch);
 
 }  // namespace reemit

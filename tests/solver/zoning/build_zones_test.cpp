@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "solver/gather/discretisation.h"
 #include "solver/progressive_solver.h"
 #include "solver/solution/solution_file.h"
 #include "solver/zoning/light_on_sides.h"
@@ -102,49 +104,78 @@ TEST(SealedSides, LightFromInfinitelyFarComesToTheOutside) {
 }
 
 /// A point light 1 m over the floor of a black hall; two tiles lie on the floor.
-TEST(LightOnSides, IsThatOfThePointLight) {
+TEST(PilotLight, IsThatOfThePointLight) {
   CrateRoom room(0, 1);
   room.scene().surfaces.clear();
-  const MaterialId tile = room.material(0.5, 0, false);
+  constexpr double kReflectance = 0.5;
+  const MaterialId tile = room.material(kReflectance, 0, false);
   // Below the light, small; beside it, large: x from 1 to 3.
   room.quad(room.surface("near", tile), {-0.05, -0.05, 0}, {0.1, 0, 0}, {0, 0.1, 0}, 1);
   room.quad(room.surface("far", tile), {1, -0.05, 0}, {2, 0, 0}, {0, 0.1, 0}, 1);
   room.scene().lights.push_back(PointLight{"lamp", Vec3(0, 0, 1), Spectrum::Constant(1, 1)});
-  const ZoneMesh mesh = build_mesh(room.scene(), {.zone_area = 100}).mesh;
-  const Room walls(room.scene(), mesh);
-  constexpr double kZoneArea = 0.001;  // so that there are 64 points on each
-  const std::vector<SideLightness> light =
-      light_on_sides(walls, std::vector<SideUse>(mesh.side_count()), kZoneArea, {});
+  const PilotLight pilot(room.scene(), build_mesh(room.scene(), {.zone_area = 100}), {});
+  const ZoneMesh& mesh = pilot.mesh();
+  PilotLight::Looker looker(pilot);
 
   // Irradiance 1/(1 + x^2 + y^2)^(3/2) by quadrature over each triangle.
-  std::vector<double> mean(mesh.triangle_count(), 0.0);
-  std::vector<double> square(mesh.triangle_count(), 0.0);
   double power = 0;
   double area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     constexpr int kSteps = 200;
     double count = 0;
+    double mean = 0;
+    double square = 0;
     for (int i = 0; i < kSteps; ++i)
       for (int j = 0; i + j < kSteps; ++j) {
         const Vec3 p = mesh.point(TriangleId(t), (i + 1.0 / 3) / kSteps, (j + 1.0 / 3) / kSteps);
-        const double e = std::pow(1 + p.squaredNorm(), -1.5);
-        mean[t] += e;
-        square[t] += e * e;
+        const double radiance = kReflectance / std::numbers::pi * std::pow(1 + p.squaredNorm(), -1.5);
+        mean += radiance;
+        square += radiance * radiance;
         ++count;
       }
-    mean[t] /= count;
-    square[t] /= count;
+    mean /= count;
+    const double variance = square / count - mean * mean;
     area += mesh.triangle_area(TriangleId(t));
-    power += mesh.triangle_area(TriangleId(t)) * mean[t];
+    power += mesh.triangle_area(TriangleId(t)) * mean;
+    const LightSpread light = looker.look({TriangleId(t), true, 1, 0}, 256);
+    EXPECT_NEAR(light.mean(), mean, 0.01 * mean) << "triangle " << t;
+    EXPECT_NEAR(light.variance(), variance, 0.1 * variance + 1e-6 * mean * mean) << "triangle " << t;
   }
-  const double dim = 0.3 * power / area;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const double level = mean[t] + dim;
-    const SideLightness& front = light[side_of(TriangleId(t), true).index()];
-    EXPECT_NEAR(static_cast<double>(front.level), std::log(level / dim), 0.02) << "triangle " << t;
-    const double spread = (square[t] - mean[t] * mean[t]) / (level * level);
-    EXPECT_NEAR(static_cast<double>(front.spread), spread, 0.15 * spread + 1e-4) << "triangle " << t;
-    EXPECT_EQ(light[side_of(TriangleId(t), false).index()].level, 0);
+  EXPECT_NEAR(pilot.mean(), power / area, 0.02 * power / area);  // 262,144 packets
+  const std::vector<float> levels =
+      light_on_sides(pilot, std::vector<SideUse>(mesh.side_count(), SideUse::kShared), {});
+  const double near = kReflectance / std::numbers::pi / pilot.mean();
+  EXPECT_NEAR(static_cast<double>(levels[side_of(TriangleId(0), true).index()]), std::log1p(near / 0.3),
+              0.02);
+  EXPECT_EQ(levels[side_of(TriangleId(0), false).index()], 0);
+}
+
+TEST(PilotLight, EvenLightHasNoSpreadAndABorderHasItsOwn) {
+  // A screen shades the half x < 0 of the tile, whose other half is lit evenly enough.
+  CrateRoom room(0, 1);
+  room.scene().surfaces.clear();
+  const MaterialId tile = room.material(0.5, 0, false);
+  room.quad(room.surface("tile", tile), {-0.1, -0.1, 0}, {0.2, 0, 0}, {0, 0.2, 0}, 1);
+  room.quad(room.surface("screen", room.material(0, 0, true)), {-2, -1, 2.5}, {2, 0, 0}, {0, 2, 0}, 1);
+  room.scene().lights.push_back(PointLight{"lamp", Vec3(0, 0, 5), Spectrum::Constant(1, 1)});
+  const PilotLight pilot(room.scene(), build_mesh(room.scene(), {.zone_area = 100}), {});
+  PilotLight::Looker looker(pilot);
+  for (std::uint32_t cell = 0; cell < 64; ++cell) {
+    const SideCell of_tile{TriangleId(0), true, 8, cell};
+    double low = 1;
+    double high = -1;
+    for (const Barycentric& c : zone_corners(8, cell)) {
+      const double x = pilot.mesh().point(TriangleId(0), c.u, c.v).x();
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    const LightSpread light = looker.look(of_tile, 64);
+    constexpr double kLit = 0.5 / std::numbers::pi / 25;  // radiance
+    const double relative = light.variance() / (kLit * kLit);
+    if (low > -1e-9 || high < 1e-9)
+      EXPECT_LT(std::abs(relative), 1e-5) << "cell " << cell;
+    else
+      EXPECT_GT(relative, 1e-2) << "cell " << cell;
   }
 }
 
@@ -153,18 +184,48 @@ TEST(BuildZones, CutsFinerWhereLightDiffers) {
   CrateRoom room(0, 1);
   room.scene().surfaces.clear();
   const MaterialId tile = room.material(0.5, 0, false);
-  room.quad(room.surface("even", tile), {-0.2, -0.2, -3}, {0.4, 0, 0}, {0, 0.4, 0}, 1);
-  room.quad(room.surface("uneven", tile), {0.1, -0.2, 0.4}, {0.4, 0, 0}, {0, 0.4, 0}, 1);
+  const SurfaceId even = room.surface("even", tile);
+  const SurfaceId uneven = room.surface("uneven", tile);
+  room.quad(even, {-0.2, -0.2, -3}, {0.4, 0, 0}, {0, 0.4, 0}, 1);
+  room.quad(uneven, {0.1, -0.2, 0.4}, {0.4, 0, 0}, {0, 0.4, 0}, 1);
   room.scene().lights.push_back(PointLight{"lamp", Vec3(0, 0, 0.5), Spectrum::Constant(1, 1)});
-  // Just less than 8 x 8 on each half of a tile, where light is even.
-  const ZoneMesh mesh = build_zones(room.scene(), {.zone_area = 0.08 / 63}).mesh;
-  const auto divisions = [&](std::size_t surface) {
-    for (const BaseTriangle& t : mesh.base().triangles)
-      if (t.surface == SurfaceId(surface)) return t.divisions;
-    return 0U;
+  MeshSettings settings;
+  settings.default_zone_count = 400;
+  const ZoneMesh mesh = build_zones(room.scene(), settings).mesh;
+  std::size_t on_even = 0;
+  double smallest = 1;
+  double smallest_place = 1;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    if (mesh.zone_surface(ZoneId(z)) == even) ++on_even;
+    if (mesh.zone_area(ZoneId(z)) >= smallest) continue;
+    smallest = mesh.zone_area(ZoneId(z));
+    smallest_place = mesh.zone_centroid(ZoneId(z)).x();
+  }
+  EXPECT_LT(on_even, mesh.zone_count() / 3);
+  // Beside the lamp, 10 cm over the tile, light falls off most.
+  EXPECT_LT(smallest_place, 0.25);
+  EXPECT_LT(smallest, 0.32 / static_cast<double>(mesh.zone_count()) / 4);
+}
+
+TEST(BuildZones, PointsLieCloserToTheirZonesThanToAsManyOfOneSize) {
+  // Hard shadows of the crates on walls and floor.
+  CrateRoom room(3, 1);
+  room.scene().lights.push_back(PointLight{"lamp", Vec3(1.6, 0.9, 1.2), Spectrum::Constant(1, 50)});
+  SolverSettings settings;
+  settings.packets = 2'000'000;
+  const StopToken stop(test::kNever);
+  const auto difference = [&](MeshResult zones, std::size_t& lit) {
+    const Solution s = solve_zones(room.scene(), std::move(zones), settings, {}, test::kNever);
+    lit = s.mesh.zone_count() - s.record.unreached_zones;
+    return discretisation_error(Room(room.scene(), s.mesh), s, stop, 4096).value_or(1e9);
   };
-  EXPECT_EQ(divisions(0), 8U);
-  EXPECT_EQ(divisions(1), 12U);
+  std::size_t lit_of_one_size = 0;
+  std::size_t lit = 0;
+  const double of_one_size = difference(build_mesh(room.scene(), {.zone_area = 0.04}), lit_of_one_size);
+  MeshSettings fitting;
+  fitting.default_zone_count = static_cast<int>(lit_of_one_size);
+  EXPECT_LT(difference(build_zones(room.scene(), fitting), lit), 0.8 * of_one_size);
+  EXPECT_LT(static_cast<double>(lit), 1.05 * static_cast<double>(lit_of_one_size));
 }
 
 TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
@@ -217,18 +278,21 @@ TEST(BuildZones, ManySurfacesDoNotMakeWallsCoarse) {
 TEST(BuildZones, AreKeptByTheSolutionFile) {
   CrateRoom room(3, 6);
   MeshSettings mesh_settings;
-  mesh_settings.default_zone_count = 150;
+  mesh_settings.default_zone_count = 400;
   SolverSettings settings;
   settings.packets = 100'000;
   const Solution saved =
       solve(room.scene(), build_zones(room.scene(), mesh_settings), settings, {}, test::kNever);
   ASSERT_GT(saved.mesh.groups().count, saved.mesh.groups().sealed);
+  ASSERT_FALSE(saved.mesh.splits().sides.empty());
   const test::TempFolder folder;
   save_solution(saved, folder / "groups.h5");
   const Solution read = load_solution(folder / "groups.h5");
   EXPECT_EQ(read.mesh.groups().of_side, saved.mesh.groups().of_side);
   EXPECT_EQ(read.mesh.groups().count, saved.mesh.groups().count);
   EXPECT_EQ(read.mesh.groups().sealed, saved.mesh.groups().sealed);
+  EXPECT_EQ(read.mesh.splits().sides, saved.mesh.splits().sides);
+  EXPECT_EQ(read.mesh.splits().is_split, saved.mesh.splits().is_split);
   ASSERT_EQ(read.mesh.zone_count(), saved.mesh.zone_count());
   for (std::size_t z = 0; z < read.mesh.zone_count(); ++z) {
     EXPECT_EQ(read.mesh.zone_area(ZoneId(z)), saved.mesh.zone_area(ZoneId(z)));

@@ -1,0 +1,127 @@
+#include "solver/zoning/pilot_light.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <utility>
+
+#include "solver/gather/point_sampler.h"
+#include "solver/progressive_solver.h"
+#include "solver/reflect/lambert.h"
+#include "solver/sampling/warp.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::uint64_t kPilotSeed = 1;  // nothing of a solution should depend on it
+constexpr std::uint64_t kPackets = 1 << 18;
+/// Independent parts of the solution: a point is looked at once with each.
+constexpr int kHalves = 2;
+constexpr int kShadows = 2;
+constexpr int kGathers = 4;
+/// Surfaces reflect no more than this in it, so that it ends soon whatever the room.
+constexpr double kMostReflectance = 0.9;
+
+Scene dimmed(Scene scene) {
+  for (Material& material : scene.materials)
+    material.reflectance = material.reflectance.min(kMostReflectance);
+  return scene;
+}
+
+Solution solve_pilot(const Scene& scene, MeshResult mesh, const WorkWatch& watch) {
+  SolverSettings settings;
+  settings.packets = kPackets;
+  settings.batch_packets = kPackets / static_cast<std::uint64_t>(settings.smallest_batch_count);
+  settings.gather_small_zones = false;
+  settings.stop_share = 1e-3;
+  settings.seed = kPilotSeed;
+  const std::atomic<bool> never{false};
+  ProgressiveSolver solver(scene, new_solution(scene, std::move(mesh), settings), never, watch.part(0, 0.5));
+  while (solver.step()) watch.at(0.5 + 0.5 * solver.progress().fraction);
+  return solver.finish({}, Examination::kNone);
+}
+
+double mean_radiance(const RadianceField& field) {
+  const ZoneMesh& mesh = field.room().mesh();
+  double power = 0;
+  double area = 0;
+  for (std::size_t i = 0; i < mesh.zone_count(); ++i) {
+    const ZoneId z(i);
+    if (mesh.is_sealed(z)) continue;
+    area += mesh.zone_area(z);
+    for (std::size_t part = 0; part < field.parts(); ++part)
+      for (std::size_t b = 0; b < field.band_count(); ++b)
+        power += mesh.zone_area(z) * static_cast<double>(field.reflected(z, part)[b]);
+  }
+  return area > 0 ? power / (area * static_cast<double>(field.parts())) : 0;
+}
+
+/// A number for each cell of every grid of a side.
+std::uint64_t key_of(const SideCell& cell) {
+  const std::uint64_t n = cell.divisions;
+  return (static_cast<std::uint64_t>(side_of(cell.triangle, cell.front).index()) << 32) ^
+         (n * n + cell.number);
+}
+
+}  // namespace
+
+PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& watch)
+    : pilot_scene_(dimmed(scene)), solution_(solve_pilot(pilot_scene_, std::move(mesh), watch)) {
+  room_.emplace(pilot_scene_, solution_.mesh);
+  field_.emplace(*room_, solution_, kHalves);
+  direct_.emplace(*room_);
+  gather_.emplace(*field_, *direct_, GatherSettings{.continue_uneven = false, .seed = kPilotSeed});
+  mean_ = mean_radiance(*field_);
+}
+
+PilotLight::Looker::Looker(const PilotLight& pilot) : pilot_(&pilot), batch_(*pilot.gather_) {}
+
+LightSpread PilotLight::Looker::look(const SideCell& cell, int points) {
+  const Room& room = pilot_->room();
+  const std::size_t bands = room.band_count();
+  const float* reflectance = room.surfaces().reflectance(cell.triangle, cell.front);
+  std::vector<float> direct_weight(bands);
+  std::vector<float> ray_weight(bands);
+  for (std::size_t b = 0; b < bands; ++b) {
+    direct_weight[b] = lambert_reflected_radiance(reflectance[b], 1.0F / static_cast<float>(kShadows));
+    ray_weight[b] = reflectance[b] / static_cast<float>(kGathers);
+  }
+  found_.assign(static_cast<std::size_t>(points * kHalves) * bands, 0.0F);
+  const std::uint64_t key = key_of(cell);
+  const PointSampler sampler(kPilotSeed, RngPurpose::kPilotLight, key, 0,
+                             std::countr_zero(std::bit_ceil(static_cast<unsigned>(points))));
+  float* next = found_.data();
+  for (int i = 0; i < points; ++i) {
+    const std::array<float, 2> u = sampler.place(i);
+    const auto [a, b] = sample_triangle(u[0], u[1]);
+    const SidePoint at = cell_point(cell, a, b);
+    const SurfacePoint x = surface_point(room.rays(), at.triangle, static_cast<float>(at.at.u),
+                                         static_cast<float>(at.at.v), at.front);
+    // The same rays from every point, so that their noise is the same and only differences of the light are
+    // left.
+    for (int half = 0; half < kHalves; ++half, next += bands) {
+      for (int ray = 0; ray < kShadows; ++ray)
+        pilot_->direct_->add_sample(x, sampler.light(half, ray, kShadows), direct_weight.data(), next);
+      const auto part =
+          static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_->parts());
+      for (int ray = 0; ray < kGathers; ++ray) {
+        const std::array<float, 2> d = sampler.hemisphere(half, ray, kGathers);
+        const auto path = static_cast<std::uint32_t>((i * kHalves + half) * kGathers + ray);
+        batch_.add(x, d[0], d[1], {key, part, path, part}, ray_weight.data(), next);
+      }
+    }
+  }
+  batch_.flush();
+  LightSpread light;
+  const float* value = found_.data();
+  for (int i = 0; i < points; ++i) {
+    std::array<double, kHalves> sum{};
+    for (double& of_half : sum)
+      for (std::size_t b = 0; b < bands; ++b) of_half += static_cast<double>(*value++);
+    light.add(sum[0], sum[1]);
+  }
+  return light;
+}
+
+}  // namespace reemit

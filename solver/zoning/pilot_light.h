@@ -1,0 +1,52 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+
+#include "mesh/zones/zone_mesh.h"
+#include "scenes/model/work_watch.h"
+#include "solver/gather/hemisphere_gather.h"
+#include "solver/gather/light_spread.h"
+#include "solver/solution/solution.h"
+
+namespace reemit {
+
+/// A quick solution on coarse zones, and what it says about the light on other cells of the same triangles:
+/// reflected radiance at points, by shadow rays and gather rays, all bands together. Nothing in it depends on
+/// the seed of a solve or on threads.
+class PilotLight {
+ public:
+  /// Solves the room on this mesh. Throws Interrupted when `watch` ends it. `scene` must outlive it.
+  PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& watch);
+  PilotLight(const PilotLight&) = delete;
+  PilotLight& operator=(const PilotLight&) = delete;
+
+  const ZoneMesh& mesh() const { return room_->mesh(); }
+  const Room& room() const { return *room_; }
+  /// Reflected radiance averaged over all area that is not sealed [W/(m2 sr)]; 0 in a room without light.
+  double mean() const { return mean_; }
+
+  /// What cells are looked at with. One per thread.
+  class Looker {
+   public:
+    explicit Looker(const PilotLight& pilot);
+    /// Looks at `points` points [1, 2^16] of the cell, twice at each, with halves of the pilot solution. The
+    /// same for the same cell and number of points.
+    LightSpread look(const SideCell& cell, int points);
+
+   private:
+    const PilotLight* pilot_;
+    GatherBatch batch_;
+    std::vector<float> found_;  // by point, half and band
+  };
+
+ private:
+  Scene pilot_scene_;
+  Solution solution_;
+  std::optional<Room> room_;
+  std::optional<RadianceField> field_;
+  std::optional<DirectLight> direct_;
+  std::optional<HemisphereGather> gather_;
+  double mean_ = 0;
+};
+
+}  // namespace reemit
