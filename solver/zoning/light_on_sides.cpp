@@ -11,7 +11,7 @@
 namespace reemit {
 namespace {
 
-constexpr int kPointsOfSide = 2;  // of a side
+constexpr LookEffort kEffort{2, 1, 1};
 
 }  // namespace
 
@@ -29,7 +29,7 @@ std::vector<float> light_on_sides(const PilotLight& pilot, const std::vector<Sid
       for (std::size_t s = range.begin(); s != range.end(); ++s) {
         const SideId side(s);
         if (uses[s] != SideUse::kShared || !mesh.has_zones(side)) continue;
-        const LightSpread light = looker.look({triangle_of(side), is_front(side), 1, 0}, kPointsOfSide);
+        const LightSpread light = looker.look({triangle_of(side), is_front(side), 1, 0}, kEffort);
         levels[s] = static_cast<float>(light_level(light.mean(), pilot.mean()));
       }
     });

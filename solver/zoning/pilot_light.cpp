@@ -18,8 +18,6 @@ constexpr std::uint64_t kPilotSeed = 1;  // nothing of a solution should depend 
 constexpr std::uint64_t kPackets = 1 << 18;
 /// Independent parts of the solution: a point is looked at once with each.
 constexpr int kHalves = 2;
-constexpr int kShadows = 2;
-constexpr int kGathers = 4;
 /// Surfaces reflect no more than this in it, so that it ends soon whatever the room.
 constexpr double kMostReflectance = 0.9;
 
@@ -71,28 +69,29 @@ PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& wat
   room_.emplace(pilot_scene_, solution_.mesh);
   field_.emplace(*room_, solution_, kHalves);
   direct_.emplace(*room_);
-  gather_.emplace(*field_, *direct_, GatherSettings{.continue_uneven = false, .seed = kPilotSeed});
+  gather_.emplace(*field_, *direct_,
+                  GatherSettings{.close_hit = 0, .continue_uneven = false, .seed = kPilotSeed});
   mean_ = mean_radiance(*field_);
 }
 
 PilotLight::Looker::Looker(const PilotLight& pilot) : pilot_(&pilot), batch_(*pilot.gather_) {}
 
-LightSpread PilotLight::Looker::look(const SideCell& cell, int points) {
+LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& effort) {
   const Room& room = pilot_->room();
   const std::size_t bands = room.band_count();
   const float* reflectance = room.surfaces().reflectance(cell.triangle, cell.front);
   std::vector<float> direct_weight(bands);
   std::vector<float> ray_weight(bands);
   for (std::size_t b = 0; b < bands; ++b) {
-    direct_weight[b] = lambert_reflected_radiance(reflectance[b], 1.0F / static_cast<float>(kShadows));
-    ray_weight[b] = reflectance[b] / static_cast<float>(kGathers);
+    direct_weight[b] = lambert_reflected_radiance(reflectance[b], 1.0F / static_cast<float>(effort.shadows));
+    ray_weight[b] = reflectance[b] / static_cast<float>(effort.gathers);
   }
-  found_.assign(static_cast<std::size_t>(points * kHalves) * bands, 0.0F);
+  found_.assign(static_cast<std::size_t>(effort.points * kHalves) * bands, 0.0F);
   const std::uint64_t key = key_of(cell);
   const PointSampler sampler(kPilotSeed, RngPurpose::kPilotLight, key, 0,
-                             std::countr_zero(std::bit_ceil(static_cast<unsigned>(points))));
+                             std::countr_zero(std::bit_ceil(static_cast<unsigned>(effort.points))));
   float* next = found_.data();
-  for (int i = 0; i < points; ++i) {
+  for (int i = 0; i < effort.points; ++i) {
     const std::array<float, 2> u = sampler.place(i);
     const auto [a, b] = sample_triangle(u[0], u[1]);
     const SidePoint at = cell_point(cell, a, b);
@@ -101,13 +100,13 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, int points) {
     // The same rays from every point, so that their noise is the same and only differences of the light are
     // left.
     for (int half = 0; half < kHalves; ++half, next += bands) {
-      for (int ray = 0; ray < kShadows; ++ray)
-        pilot_->direct_->add_sample(x, sampler.light(half, ray, kShadows), direct_weight.data(), next);
+      for (int ray = 0; ray < effort.shadows; ++ray)
+        pilot_->direct_->add_sample(x, sampler.light(half, ray, effort.shadows), direct_weight.data(), next);
       const auto part =
           static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_->parts());
-      for (int ray = 0; ray < kGathers; ++ray) {
-        const std::array<float, 2> d = sampler.hemisphere(half, ray, kGathers);
-        const auto path = static_cast<std::uint32_t>((i * kHalves + half) * kGathers + ray);
+      for (int ray = 0; ray < effort.gathers; ++ray) {
+        const std::array<float, 2> d = sampler.hemisphere(half, ray, effort.gathers);
+        const auto path = static_cast<std::uint32_t>((i * kHalves + half) * effort.gathers + ray);
         batch_.add(x, d[0], d[1], {key, part, path, part}, ray_weight.data(), next);
       }
     }
@@ -115,7 +114,7 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, int points) {
   batch_.flush();
   LightSpread light;
   const float* value = found_.data();
-  for (int i = 0; i < points; ++i) {
+  for (int i = 0; i < effort.points; ++i) {
     std::array<double, kHalves> sum{};
     for (double& of_half : sum)
       for (std::size_t b = 0; b < bands; ++b) of_half += static_cast<double>(*value++);

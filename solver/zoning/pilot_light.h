@@ -10,6 +10,13 @@
 
 namespace reemit {
 
+/// How closely a cell is looked at.
+struct LookEffort {
+  int points;   ///< [1, 2^16]
+  int shadows;  ///< Shadow rays from each point for each half of the pilot solution, >= 1.
+  int gathers;  ///< Gather rays likewise, >= 1.
+};
+
 /// A quick solution on coarse zones, and what it says about the light on other cells of the same triangles:
 /// reflected radiance at points, by shadow rays and gather rays, all bands together. Nothing in it depends on
 /// the seed of a solve or on threads.
@@ -29,9 +36,9 @@ class PilotLight {
   class Looker {
    public:
     explicit Looker(const PilotLight& pilot);
-    /// Looks at `points` points [1, 2^16] of the cell, twice at each, with halves of the pilot solution. The
-    /// same for the same cell and number of points.
-    LightSpread look(const SideCell& cell, int points);
+    /// Looks at points of the cell, twice at each, with halves of the pilot solution. The same for the same
+    /// cell and effort.
+    LightSpread look(const SideCell& cell, const LookEffort& effort);
 
    private:
     const PilotLight* pilot_;

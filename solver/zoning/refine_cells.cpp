@@ -14,7 +14,7 @@
 namespace reemit {
 namespace {
 
-constexpr int kPointsOfCell = 16;  // of a cell
+constexpr LookEffort kCellEffort{16, 2, 4};
 /// Of all cells that there are, the share that is cut before the others are looked at again.
 constexpr std::size_t kShareAtOnce = 16;
 
@@ -96,7 +96,7 @@ class Refinement {
   double cost_of(const SideCell& cell, PilotLight::Looker& looker) const {
     const double n = cell.divisions;
     const double area = pilot_.mesh().triangle_area(cell.triangle) / (n * n);
-    const LightSpread light = looker.look(cell, kPointsOfCell);
+    const LightSpread light = looker.look(cell, kCellEffort);
     return area * (kCellCost * area + kUnevenWeight * unevenness(light, pilot_.mean()) * budget_.zone_area);
   }
 

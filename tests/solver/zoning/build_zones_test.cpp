@@ -137,7 +137,7 @@ TEST(PilotLight, IsThatOfThePointLight) {
     const double variance = square / count - mean * mean;
     area += mesh.triangle_area(TriangleId(t));
     power += mesh.triangle_area(TriangleId(t)) * mean;
-    const LightSpread light = looker.look({TriangleId(t), true, 1, 0}, 256);
+    const LightSpread light = looker.look({TriangleId(t), true, 1, 0}, {256, 2, 4});
     EXPECT_NEAR(light.mean(), mean, 0.01 * mean) << "triangle " << t;
     EXPECT_NEAR(light.variance(), variance, 0.1 * variance + 1e-6 * mean * mean) << "triangle " << t;
   }
@@ -169,7 +169,7 @@ TEST(PilotLight, EvenLightHasNoSpreadAndABorderHasItsOwn) {
       low = std::min(low, x);
       high = std::max(high, x);
     }
-    const LightSpread light = looker.look(of_tile, 64);
+    const LightSpread light = looker.look(of_tile, {64, 2, 4});
     constexpr double kLit = 0.5 / std::numbers::pi / 25;  // radiance
     const double relative = light.variance() / (kLit * kLit);
     if (low > -1e-9 || high < 1e-9)
