@@ -26,7 +26,7 @@ constexpr std::array kKinds = {
     Kind{"nonplanar", "repaired: not planar, split into triangles"},
     Kind{"crossed", "repaired: an outline or holes that cross, filled"},
     Kind{"welded", "repaired: a corner moved onto another, or twice in the outline"},
-    Kind{"faceted", "repaired: flat, of round shapes that faces pass through"},
+    Kind{"faceted", "flat instead of round: made of round shapes that other faces pass through"},
     Kind{"cut", "cut along the contact with others"},
 };
 constexpr Kind kSealed = {"sealed", "sealed: no light reaches one of their sides"};
@@ -34,6 +34,14 @@ constexpr Kind kSealed = {"sealed", "sealed: no light reaches one of their sides
 void add(FaceList& list, const FaceRef& face) {
   ++list.count;
   if (list.first.size() < FaceList::kMostNamed) list.first.push_back(face);
+}
+
+/// Of those that round shapes became, which are hundreds for each, one of a surface is enough to be named.
+void add_faceted(FaceList& list, const FaceRef& face) {
+  if (!list.first.empty() && list.first.back().surface == face.surface)
+    ++list.count;
+  else
+    add(list, face);
 }
 
 FaceList list_sealed(const ZoneMesh& mesh) {
@@ -51,10 +59,12 @@ FaceList list_sealed(const ZoneMesh& mesh) {
 }
 
 std::string name_of(const Scene& scene, const FaceRef& face) {
-  if (!face.is_shape) return face_name(scene, face.surface, face.number);
+  const Surface& surface = scene.surfaces[face.surface.index()];
+  if (!face.is_shape && face.number < surface.faces.size())
+    return face_name(scene, face.surface, face.number);
   const std::string& source = source_of(scene, face);
-  return fmt::format("'{}' ({}{}shape {})", scene.surfaces[face.surface.index()].name, source,
-                     source.empty() ? "" : ", ", face.number);
+  const std::string what = face.is_shape ? fmt::format("shape {}", face.number) : "its round shapes";
+  return fmt::format("'{}' ({}{}{})", surface.name, source, source.empty() ? "" : ", ", what);
 }
 
 }  // namespace
@@ -63,7 +73,8 @@ std::vector<FaceList> list_faces(const MeshResult& meshed) {
   std::vector<FaceList> lists;
   for (const Kind& kind : kKinds) lists.push_back({kind.key, kind.description, 0, {}});
   for (const ChangedFace& change : meshed.report.changes)
-    add(lists[static_cast<std::size_t>(change.change)], {change.surface, change.face});
+    (change.change == FaceChange::kFaceted ? add_faceted : add)(
+        lists[static_cast<std::size_t>(change.change)], {change.surface, change.face});
   lists.push_back(list_sealed(meshed.mesh));
   std::erase_if(lists, [](const FaceList& list) { return list.count == 0; });
   return lists;

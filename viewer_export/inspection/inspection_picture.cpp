@@ -16,7 +16,7 @@ namespace reemit {
 namespace {
 
 /// Patches of round shapes are drawn with at least this many cells along each side.
-constexpr std::uint32_t kRound = 4;
+constexpr std::uint32_t kRound = 2;
 /// Of the crosses at luminaires without area, in diagonals of the room.
 constexpr double kCross = 0.01;
 /// From one set to the next, in widths of the room.
@@ -41,16 +41,19 @@ std::array<double, 3> hue_rgb(double hue) {
 }
 
 /// Hue by area on a logarithmic scale, red for the smallest and blue for the largest; lightness tells neighbours
-/// apart.
+/// apart. A few that are far from all others do not stretch the scale.
 class ZoneColours {
  public:
   explicit ZoneColours(const ZoneMesh& mesh) : mesh_(mesh) {
-    for (const ZoneKind kind : {ZoneKind::kCell, ZoneKind::kShared}) {
-      const ZoneSizes sizes = zone_sizes(mesh, kind);
-      if (sizes.count == 0) continue;
-      smallest_ = smallest_ > 0 ? std::min(smallest_, sizes.smallest) : sizes.smallest;
-      largest_ = std::max(largest_, sizes.largest);
-    }
+    constexpr double kTail = 0.02;  // of the zones at either end, which look like their neighbours
+    std::vector<double> areas;
+    for (std::size_t z = 0; z < mesh.zone_count(); ++z)
+      if (!mesh.is_sealed(ZoneId(z))) areas.push_back(mesh.zone_area(ZoneId(z)));
+    if (areas.empty()) return;
+    std::sort(areas.begin(), areas.end());
+    const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(areas.size()));
+    smallest_ = areas[tail];
+    largest_ = areas[areas.size() - 1 - tail];
   }
 
   Rgba operator()(ZoneId zone) const {
@@ -69,7 +72,7 @@ class ZoneColours {
 
  private:
   const ZoneMesh& mesh_;
-  double smallest_ = 0;  // [m2], of zones that light reaches
+  double smallest_ = 0;  // [m2], of zones that light reaches, without the tails
   double largest_ = 0;
 };
 
@@ -104,7 +107,7 @@ class InspectionArtist {
     const BaseTriangle& triangle = mesh_.triangle(t);
     std::uint32_t n = mesh_.is_group(mesh_.first_zone(t, is_front(side))) ? 1 : triangle.divisions;
     if (triangle.is_curved())
-      n *= (kRound + n - 1) / n;
+      n = std::max(triangle.divisions, kRound);
     else if (whole)
       n = 1;
     const double sign = is_front(side) ? 1 : -1;

@@ -35,7 +35,7 @@ Json extras_of(const InspectionPicture& picture, const Scene& scene) {
   Json extras{{"room", one_line(scene.source.empty() ? scene.name : scene.source)},
               {"room hash", content_hash(scene)},
               {"colours", legend},
-              {"zones", "red: smallest, over green to blue: largest, logarithmic; grey: no light"}};
+              {"zones", "red: smallest, over green to blue: largest, logarithmic, the last 2 % alike; grey: no light"}};
   for (const PictureSet& set : picture.sets) extras["shift_m"][set.name] = set.shift.x();
   return extras;
 }

@@ -12,6 +12,7 @@ constexpr SideKindStyle kStyles[kSideKindCount] = {
     {"covers", "overlapping, covers another", {0x8c, 0x56, 0x2b}},
     {"repaired", "repaired", {0xd6, 0x20, 0x20}},
     {"cut", "cut along contacts", {0x1f, 0xa0, 0x8a}},
+    {"faceted", "flat instead of round", {0xb0, 0x9c, 0xe0}},
     {"luminaire", "luminous, untouched", {0xff, 0xe1, 0x4d}},
     {"untouched", "untouched", {0xc8, 0xc8, 0xc8}},
 };
@@ -22,12 +23,12 @@ SideKind kind_of(FaceChange change) {
     case FaceChange::kCovered: return SideKind::kCovered;
     case FaceChange::kCovers: return SideKind::kCovers;
     case FaceChange::kCut: return SideKind::kCut;
+    case FaceChange::kFaceted: return SideKind::kFaceted;
     case FaceChange::kDuplicate:
     case FaceChange::kDegenerate:
     case FaceChange::kNonPlanar:
     case FaceChange::kCrossed:
-    case FaceChange::kWelded:
-    case FaceChange::kFaceted: break;
+    case FaceChange::kWelded: break;
   }
   return SideKind::kRepaired;
 }

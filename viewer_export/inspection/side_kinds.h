@@ -18,12 +18,13 @@ enum class SideKind : std::uint8_t {
   kSealed,     ///< No light reaches it.
   kCovered,    ///< What is left of a face of which others of its plane took a part.
   kCovers,     ///< Of a face that took a part of another or is kept of two alike.
-  kRepaired,   ///< Of a face that is bent, crosses itself, was welded, or stands for a round shape.
+  kRepaired,   ///< Of a face that is bent, crosses itself or was welded.
   kCut,        ///< Of a face that is cut along contacts.
+  kFaceted,    ///< Flat, of a round shape that other faces pass through.
   kLuminaire,  ///< It emits.
   kUntouched,
 };
-inline constexpr std::size_t kSideKindCount = 8;
+inline constexpr std::size_t kSideKindCount = 9;
 
 /// How a kind is shown.
 struct SideKindStyle {
