@@ -102,8 +102,8 @@ FaceLoops PolygonRepair::read(SurfaceId surface, std::uint32_t face) {
   return polygon;
 }
 
-// Returns whether that moved a corner, by more than what rounding does to coordinates of transformed objects, or
-// merged some.
+// Returns whether that moved a corner, by more than what rounding does to coordinates of transformed objects,
+// or merged some.
 bool PolygonRepair::weld(FaceLoops& polygon) {
   const double still = 0.01 * tolerances_.weld;
   bool changed = false;

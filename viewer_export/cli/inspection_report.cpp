@@ -37,7 +37,8 @@ std::string picture_text(const Scene& scene, const MeshResult& meshed, const std
   table.row({"object", "colour", "sides of triangles", "area [m2]"});
   for (const SideKindSum& sum : sum_sides_of(scene, meshed)) {
     const SideKindStyle& style = style_of(sum.kind);
-    table.row({fmt::format("  {}", style.name), style.hex(), std::to_string(sum.sides), number_text(sum.area)});
+    table.row(
+        {fmt::format("  {}", style.name), style.hex(), std::to_string(sum.sides), number_text(sum.area)});
   }
   return fmt::format("Report: {}{}; docs/meshing.md says how to read it\n", report.string(),
                      megabytes_text(report)) +

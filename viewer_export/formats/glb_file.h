@@ -23,16 +23,16 @@ struct Gltf {
 /// Whether the way that is up in a room is z, which glTF files turn: there it is y.
 bool has_z_up(const Vec3& up);
 
-/// Makes `nodes` and the one scene of a document; `roots` are the nodes that have no parent. Rooms with z up get a
-/// node above them that turns them.
+/// Makes `nodes` and the one scene of a document; `roots` are the nodes that have no parent. Rooms with z up
+/// get a node above them that turns them.
 void add_scene(nlohmann::ordered_json& gltf, nlohmann::ordered_json nodes, nlohmann::ordered_json roots,
                const Vec3& up);
 
 /// The views of the binary chunk of a .glb, one after the other.
 class BufferViews {
  public:
-  /// `target`: Gltf::kArrayBuffer of vertices, with the bytes of each in `stride`, or kElementArrayBuffer. Returns
-  /// its number.
+  /// `target`: Gltf::kArrayBuffer of vertices, with the bytes of each in `stride`, or kElementArrayBuffer.
+  /// Returns its number.
   std::size_t add(std::size_t bytes, int target, std::size_t stride = 0);
   /// Makes `bufferViews` and `buffers`.
   void add_to(nlohmann::ordered_json& gltf) &&;
@@ -43,8 +43,8 @@ class BufferViews {
 };
 
 /// Writes a .glb up to the first byte of its binary chunk; the caller appends as many as `buffers` of the
-/// document says, a multiple of 4. Throws InputError with this advice where the file would exceed the 4 GiB of the
-/// format.
+/// document says, a multiple of 4. Throws InputError with this advice where the file would exceed the 4 GiB
+/// of the format.
 void begin_glb(const nlohmann::ordered_json& gltf, const std::string& advice, OutputFile& file);
 
 }  // namespace reemit

@@ -133,7 +133,7 @@ Json extras_of(const VertexData& data, const ToneMap& tone_map) {
   extras["white"] = tone_map.white();
   extras["axes"] = has_z_up(data.up)
                        ? "in the meshes as in the room file, z up; the node above them turns z up to y up"
-                          : "as in the room file";
+                       : "as in the room file";
   extras["backs"] = fmt::format("moved {:.3g} m off their fronts", back_gap(data));
   return extras;
 }

@@ -28,8 +28,8 @@ struct FaceList {
   static constexpr std::size_t kMostNamed = 5;
 };
 
-/// Faces by what meshing did to them, and those of which a side is sealed; a face may be in several lists. In the
-/// order of FaceChange, the sealed ones last; without those that are empty.
+/// Faces by what meshing did to them, and those of which a side is sealed; a face may be in several lists. In
+/// the order of FaceChange, the sealed ones last; without those that are empty.
 std::vector<FaceList> list_faces(const MeshResult& meshed);
 
 /// "'wall' (room.obj:12, face 3), ... and 7 more".

@@ -40,8 +40,8 @@ std::array<double, 3> hue_rgb(double hue) {
   return {near(0), near(2), near(4)};
 }
 
-/// Hue by area on a logarithmic scale, red for the smallest and blue for the largest; lightness tells neighbours
-/// apart. A few that are far from all others do not stretch the scale.
+/// Hue by area on a logarithmic scale, red for the smallest and blue for the largest; lightness tells
+/// neighbours apart. A few that are far from all others do not stretch the scale.
 class ZoneColours {
  public:
   explicit ZoneColours(const ZoneMesh& mesh) : mesh_(mesh) {
@@ -62,8 +62,8 @@ class ZoneColours {
     const double light = 0.5 + 0.5 * scattered(zone.index(), kGolden);
     const double white = 0.25 * scattered(zone.index(), kPlastic);
     if (mesh_.is_sealed(zone)) return rgba_of_srgb(0.7 * light, 0.7 * light, 0.7 * light);
-    const double share =
-        largest_ > smallest_ ? std::log(mesh_.zone_area(zone) / smallest_) / std::log(largest_ / smallest_)
+    const double share = largest_ > smallest_
+                             ? std::log(mesh_.zone_area(zone) / smallest_) / std::log(largest_ / smallest_)
                              : 0.5;
     std::array<double, 3> rgb = hue_rgb(4 * std::clamp(share, 0.0, 1.0));
     for (double& c : rgb) c = light * (white + (1 - white) * c);
@@ -169,9 +169,8 @@ class InspectionArtist {
     for (std::size_t s = 0; s < mesh_.side_count(); ++s) {
       const SideId side(s);
       if (mesh_.has_zones(side) && emits(scene_, mesh_, side))
-        for_each_cell(side, true, lift_of(side) + gap(), [&](const auto& corners, ZoneId) {
-          corners_of.add_triangle(corners, kLineColour);
-        });
+        for_each_cell(side, true, lift_of(side) + gap(),
+                      [&](const auto& corners, ZoneId) { corners_of.add_triangle(corners, kLineColour); });
     }
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     const std::vector<std::uint32_t>& corner = corners_of.indices();

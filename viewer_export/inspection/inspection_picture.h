@@ -21,13 +21,13 @@ struct PictureSet {
 struct InspectionPicture {
   Vec3 origin{0, 0, 0};  ///< Of the positions of all objects [m].
   Vec3 up{0, 1, 0};
-  /// What meshing did, one object for each SideKind that occurs, and luminaires as lines; beside it the zones,
-  /// coloured by area.
+  /// What meshing did, one object for each SideKind that occurs, and luminaires as lines; beside it the
+  /// zones, coloured by area.
   std::vector<PictureSet> sets;
 };
 
-/// Every side of a base triangle that has zones, once in each of the two sets: fronts where they are, backs off
-/// them as in exports.
+/// Every side of a base triangle that has zones, once in each of the two sets: fronts where they are, backs
+/// off them as in exports.
 InspectionPicture draw_inspection(const Scene& scene, const MeshResult& meshed);
 
 /// Throws InputError unless a picture can have this name.

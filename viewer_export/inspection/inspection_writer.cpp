@@ -4,13 +4,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reemit/version.h"
 #include "viewer_export/formats/glb_file.h"
 #include "viewer_export/formats/vertex_export.h"
 #include "viewer_export/inspection/inspection_picture.h"
 #include "viewer_export/inspection/side_kinds.h"
 #include "viewer_export/output/export_info.h"
 #include "viewer_export/output/file_extension.h"
+
+#include "reemit/version.h"
 
 namespace reemit {
 namespace {
@@ -32,10 +33,12 @@ Json extras_of(const InspectionPicture& picture, const Scene& scene) {
     const SideKindStyle& style = style_of(static_cast<SideKind>(k));
     legend[style.name] = style.hex();
   }
-  Json extras{{"room", one_line(scene.source.empty() ? scene.name : scene.source)},
-              {"room hash", content_hash(scene)},
-              {"colours", legend},
-              {"zones", "red: smallest, over green to blue: largest, logarithmic, the last 2 % alike; grey: no light"}};
+  Json extras{
+      {"room", one_line(scene.source.empty() ? scene.name : scene.source)},
+      {"room hash", content_hash(scene)},
+      {"colours", legend},
+      {"zones",
+       "red: smallest, over green to blue: largest, logarithmic, the last 2 % alike; grey: no light"}};
   for (const PictureSet& set : picture.sets) extras["shift_m"][set.name] = set.shift.x();
   return extras;
 }
@@ -110,8 +113,7 @@ class Document {
     primitive["attributes"]["POSITION"] = add_positions(object);
     primitive["attributes"]["COLOR_0"] = add_accessor(
         {{"bufferView", 0},
-         {"byteOffset",
-          sizeof(PictureObject::Vertex) * vertices_ + offsetof(PictureObject::Vertex, colour)},
+         {"byteOffset", sizeof(PictureObject::Vertex) * vertices_ + offsetof(PictureObject::Vertex, colour)},
          {"componentType", Gltf::kUnsignedByte},
          {"normalized", true},
          {"count", object.vertices().size()},

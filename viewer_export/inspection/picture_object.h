@@ -29,8 +29,8 @@ class PictureObject {
 
   PictureObject(std::string name, const Vec3& origin) : name_(std::move(name)), origin_(origin) {}
 
-  /// Corners counter-clockwise from where it is seen [m]. Triangles whose corners fall on one another in single
-  /// precision are left out.
+  /// Corners counter-clockwise from where it is seen [m]. Triangles whose corners fall on one another in
+  /// single precision are left out.
   void add_triangle(const std::array<Vec3, 3>& corners, const Rgba& colour);
   /// An object has lines or triangles, not both.
   void add_line(const Vec3& from, const Vec3& to, const Rgba& colour);

@@ -19,16 +19,22 @@ constexpr SideKindStyle kStyles[kSideKindCount] = {
 
 SideKind kind_of(FaceChange change) {
   switch (change) {
-    case FaceChange::kFlipped: return SideKind::kFlipped;
-    case FaceChange::kCovered: return SideKind::kCovered;
-    case FaceChange::kCovers: return SideKind::kCovers;
-    case FaceChange::kCut: return SideKind::kCut;
-    case FaceChange::kFaceted: return SideKind::kFaceted;
+    case FaceChange::kFlipped:
+      return SideKind::kFlipped;
+    case FaceChange::kCovered:
+      return SideKind::kCovered;
+    case FaceChange::kCovers:
+      return SideKind::kCovers;
+    case FaceChange::kCut:
+      return SideKind::kCut;
+    case FaceChange::kFaceted:
+      return SideKind::kFaceted;
     case FaceChange::kDuplicate:
     case FaceChange::kDegenerate:
     case FaceChange::kNonPlanar:
     case FaceChange::kCrossed:
-    case FaceChange::kWelded: break;
+    case FaceChange::kWelded:
+      break;
   }
   return SideKind::kRepaired;
 }

@@ -11,8 +11,8 @@
 
 namespace reemit {
 
-/// What a picture of the mesh shows of a side of a base triangle: the first of these that holds. docs/meshing.md
-/// has the legend.
+/// What a picture of the mesh shows of a side of a base triangle: the first of these that holds.
+/// docs/meshing.md has the legend.
 enum class SideKind : std::uint8_t {
   kFlipped,    ///< Of a face that was turned round.
   kSealed,     ///< No light reaches it.

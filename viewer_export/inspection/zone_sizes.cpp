@@ -11,9 +11,12 @@ ZoneKind kind_of(const ZoneMesh& mesh, ZoneId zone) {
 
 const char* name_of(ZoneKind kind) {
   switch (kind) {
-    case ZoneKind::kCell: return "cells";
-    case ZoneKind::kShared: return "groups of sides";
-    case ZoneKind::kSealed: break;
+    case ZoneKind::kCell:
+      return "cells";
+    case ZoneKind::kShared:
+      return "groups of sides";
+    case ZoneKind::kSealed:
+      break;
   }
   return "sealed sides";
 }

@@ -102,7 +102,6 @@ TEST(InfoReport, RefusesWhatCannotBeAReport) {
   };
   refused((folder / "report.ply").string(), "known are .glb");
   refused((folder / "report").string(), "known are .glb");
-  refused((folder / "missing" / "report.glb").string(), "Create it first");
   std::filesystem::create_directory(folder / "folder.glb");
   refused((folder / "folder.glb").string(), "--report");
   EXPECT_THAT(folder.listing(), ElementsAre("crate.obj", "folder.glb", "room.json"));
@@ -121,19 +120,6 @@ TEST(InfoReport, FilesOfTheRoomAreNotReplaced) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, AllOf(HasSubstr("output is the input file"), HasSubstr("--report")));
   EXPECT_EQ(read_bytes(model), before);
-}
-
-TEST(InfoReport, FullDiskKeepsThePreviousOne) {
-  const TempFolder folder;
-  const std::string room = write_room(folder);
-  folder.write("report.glb", "previous");
-  RunOptions full_disk;
-  full_disk.largest_file = 20000;
-  const ProgramRun run = run_reemit(info(room, (folder / "report.glb").string()), full_disk);
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("report.glb"));
-  EXPECT_EQ(read_bytes(folder / "report.glb"), "previous");
-  EXPECT_THAT(folder.listing(), ElementsAre("crate.obj", "report.glb", "room.json")) << "no partial file";
 }
 
 TEST(InfoReport, SolutionsHaveNone) {

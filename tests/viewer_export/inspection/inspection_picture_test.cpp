@@ -1,4 +1,6 @@
 // The picture of a mesh, read back from its file: objects, colours, areas and sides.
+#include "viewer_export/inspection/inspection_picture.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +23,6 @@
 #include "tests/support/test_rooms.h"
 #include "viewer_export/formats/vertex_export.h"
 #include "viewer_export/inspection/face_lists.h"
-#include "viewer_export/inspection/inspection_picture.h"
 #include "viewer_export/inspection/side_kinds.h"
 #include "viewer_export/inspection/zone_sizes.h"
 
@@ -156,8 +157,8 @@ std::array<int, 3> colour_in_file(SideKind kind) {
   return rgb;
 }
 
-constexpr SideKind kAllKinds[] = {SideKind::kFlipped,  SideKind::kSealed,    SideKind::kCovered,
-                                  SideKind::kCovers,   SideKind::kRepaired,  SideKind::kCut,
+constexpr SideKind kAllKinds[] = {SideKind::kFlipped,   SideKind::kSealed,   SideKind::kCovered,
+                                  SideKind::kCovers,    SideKind::kRepaired, SideKind::kCut,
                                   SideKind::kLuminaire, SideKind::kUntouched};
 
 TEST(InspectionPicture, HasAnObjectOfItsColourForEveryKind) {
