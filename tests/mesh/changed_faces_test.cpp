@@ -93,11 +93,12 @@ TEST(ChangedFaces, RepairsAreToldApart) {
   const MaterialId m = room.material();
   const SurfaceId s = room.surface("scrap", m);
   room.add(s, triangle(0));
-  room.add(s, {{2, 0, 0}, {3, 0, 0}, {3, 1, 0.2}, {2, 1, 0}});        // bent
-  room.add(s, {{4, 0, 0}, {5, 0, 0}, {6, 0, 0}});                     // no area
-  room.add(s, {{7, 0, 0}, {8, 0, 0}, {8, 1, 0}, {7.2, -0.1, 0}});     // crosses itself
-  room.add(s, {{9, 0, 0}, {10, 0, 0}, {10, 0, 3e-7}, {9, 1, 0}});     // two corners are one
-  room.add(s, {{11, 0, 0}, {12, 0, 0}, {12, 1, 1e-13}, {11, 1, 0}});  // rounding only
+  room.add(s, {{2, 0, 0}, {3, 0, 0}, {3, 1, 0.2}, {2, 1, 0}});     // bent
+  room.add(s, {{4, 0, 0}, {5, 0, 0}, {6, 0, 0}});                  // no area
+  room.add(s, {{7, 0, 0}, {8, 0, 0}, {8, 1, 0}, {7.2, -0.1, 0}});  // crosses itself
+  room.add(s, {{9, 0, 0}, {10, 0, 0}, {10, 0, 3e-7}, {9, 1, 0}});  // two corners are one
+  room.add(s, {{11, 0, 0}, {12, 0, 0}, {12, 1, 1e-13}, {11, 1, 0}});
+  room.add(s, {{12, 0, 0}, {13, 0, 0}, {12, 1, 0}});  // shares a corner with the one before, but for rounding
   const MeshReport report = build_mesh(room.scene()).report;
   EXPECT_EQ(changed(room.scene(), report, FaceChange::kNonPlanar), Names{"scrap 1"});
   EXPECT_EQ(changed(room.scene(), report, FaceChange::kDegenerate), Names{"scrap 2"});
