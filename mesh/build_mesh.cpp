@@ -48,10 +48,18 @@ void book_areas(const VertexTable& vertices, const std::vector<FacePiece>& piece
     if (meshed[p] + cut.covered[p] <= 0) {
       areas.removed += pieces[p].area;
       areas.collapsed += pieces[p].area;
+      report.changes.push_back({pieces[p].surface, pieces[p].face, FaceChange::kDegenerate});
     } else {
       areas.welded += pieces[p].area - meshed[p] - cut.covered[p];
     }
   }
+}
+
+// The faces that round shapes became come after those as read.
+void note_faceted(const Scene& room, const Scene& faceted, MeshReport& report) {
+  for (std::size_t s = 0; s < room.surfaces.size(); ++s)
+    for (std::size_t f = room.surfaces[s].faces.size(); f < faceted.surfaces[s].faces.size(); ++f)
+      report.changes.push_back({SurfaceId(s), static_cast<std::uint32_t>(f), FaceChange::kFaceted});
 }
 
 // Numbers the vertices and normals that triangles use, in the order of their use.
@@ -169,6 +177,8 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const Wor
   BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);
   append_patches(scene, shapes, base, report);
   check_dropped_luminaires(scene, tolerances.weld, report);
+  note_faceted(room, scene, report);
+  tidy(report.changes);
   size_zones(base, zone_area);
   return {ZoneMesh(std::move(base)), std::move(report)};
 }

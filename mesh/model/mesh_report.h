@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "mesh/model/changed_faces.h"
+
 namespace reemit {
 
 /// Area of one surface through repair and meshing [m2], one side: input = meshed + removed to 1e-9 relative.
@@ -26,6 +28,8 @@ struct MeshReport {
   std::size_t nonplanar_faces = 0;    ///< Split into triangles.
   std::size_t cut_faces = 0;          ///< Cut along the contact with another face.
   std::vector<std::string> warnings;  ///< With surface names, files and lines.
+  /// Which faces the counts are of, and some more; tidy once the room is meshed. Not kept in solution files.
+  std::vector<ChangedFace> changes;
 };
 
 }  // namespace reemit

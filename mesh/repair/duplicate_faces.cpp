@@ -91,6 +91,8 @@ void drop_duplicate_faces(const Scene& scene, std::vector<FacePiece>& pieces, Me
     report.surfaces[pieces[loser].surface.index()].removed += pieces[loser].area;
     area += pieces[loser].area;
     notes.add(scene, pieces[loser].surface, pieces[loser].face);
+    report.changes.push_back({pieces[loser].surface, pieces[loser].face, FaceChange::kDuplicate});
+    report.changes.push_back({pieces[winner].surface, pieces[winner].face, FaceChange::kCovers});
   }
   if (notes.count() == 0) return;
   std::size_t write = 0;

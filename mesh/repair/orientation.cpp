@@ -101,6 +101,7 @@ class Orientation {
         report_(report),
         in_shell_(pieces.size(), false),
         turned_(pieces.size(), false),
+        flipped_(pieces.size(), false),
         number_(vertices.size(), EdgeUses::kNone) {}
 
   void run() {
@@ -157,8 +158,7 @@ class Orientation {
 
   void flip(std::size_t i) {
     pieces_[i].flip();
-    notes_.add(scene_, pieces_[i].surface, pieces_[i].face);
-    flipped_area_ += pieces_[i].area;
+    flipped_[i] = !flipped_[i];
   }
 
   void make_consistent(const Shell& shell) {
@@ -200,14 +200,23 @@ class Orientation {
   }
 
   void warn() {
-    report_.flipped_faces = notes_.count();
-    if (notes_.count() == 0) return;
+    FaceNotes notes;
     double total = 0;
-    for (const FacePiece& p : pieces_) total += p.area;
+    double flipped_area = 0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const FacePiece& piece = pieces_[i];
+      total += piece.area;
+      if (!flipped_[i]) continue;
+      notes.add(scene_, piece.surface, piece.face);
+      report_.changes.push_back({piece.surface, piece.face, FaceChange::kFlipped});
+      flipped_area += piece.area;
+    }
+    report_.flipped_faces = notes.count();
+    if (notes.count() == 0) return;
     report_.warnings.push_back(fmt::format(
         "{} faces ({:.3g} % of the area) were turned round because their closed shell shows that their "
         "winding is wrong: {}",
-        notes_.count(), 100 * flipped_area_ / total, notes_.names()));
+        notes.count(), 100 * flipped_area / total, notes.names()));
   }
 
   const Scene& scene_;
@@ -216,9 +225,8 @@ class Orientation {
   MeshReport& report_;
   std::vector<bool> in_shell_;
   std::vector<bool> turned_;           // by piece in a shell, against the first of the shell
+  std::vector<bool> flipped_;          // by piece: it faces the other way than as read
   std::vector<std::uint32_t> number_;  // for EdgeUses
-  FaceNotes notes_;
-  double flipped_area_ = 0;
 };
 
 }  // namespace

@@ -51,10 +51,13 @@ class PolygonRepair {
   FaceLoops read(SurfaceId surface, std::uint32_t face);
   std::vector<Corner> read_loop(SurfaceId surface, const std::vector<std::uint32_t>& loop,
                                 const std::vector<std::uint32_t>& normals);
-  void weld(FaceLoops& polygon);
+  bool weld(FaceLoops& polygon);
   std::vector<FaceLoops> split_welded_seams(FaceLoops face);
   double repair_part(SurfaceId surface, std::uint32_t face, const FaceLoops& part, double area_as_read);
   void drop(const FacePiece& piece, double area);
+  void note(FaceChange change, SurfaceId surface, std::uint32_t face) {
+    report_.changes.push_back({surface, face, change});
+  }
   bool finish_plane(FacePiece& piece, const FaceLoops& polygon, double& deviation) const;
   void refuse_if_crossed(const FacePiece& piece, const FaceLoops& polygon) const;
   void add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners);
@@ -99,16 +102,26 @@ FaceLoops PolygonRepair::read(SurfaceId surface, std::uint32_t face) {
   return polygon;
 }
 
-void PolygonRepair::weld(FaceLoops& polygon) {
+// Returns whether that moved a corner, by more than what rounding does to coordinates of transformed objects,
+// or merged some.
+bool PolygonRepair::weld(FaceLoops& polygon) {
+  const double still = 0.01 * tolerances_.weld;
+  bool changed = false;
   for (std::vector<Corner>& loop : polygon.loops) {
-    for (Corner& c : loop) c.vertex = vertices_.weld(c.read);
+    for (Corner& c : loop) {
+      c.vertex = vertices_.weld(c.read);
+      changed |= (vertices_[c.vertex] - c.read).squaredNorm() > still * still;
+    }
+    const std::size_t corners = loop.size();
     const auto same = [](const Corner& a, const Corner& b) { return a.vertex == b.vertex; };
     loop.erase(std::unique(loop.begin(), loop.end(), same), loop.end());
     while (loop.size() > 1 && same(loop.front(), loop.back())) loop.pop_back();
+    changed |= loop.size() != corners;
   }
   const auto collapsed = [](const std::vector<Corner>& loop) { return loop.size() < 3; };
   polygon.loops.erase(std::remove_if(polygon.loops.begin() + 1, polygon.loops.end(), collapsed),
                       polygon.loops.end());
+  return changed;
 }
 
 // The parts of a face whose outline draws holes or islands by seams whose ends only welding made equal
@@ -149,6 +162,7 @@ void PolygonRepair::drop(const FacePiece& piece, double area) {
   areas.removed += area;
   areas.collapsed += area;
   degenerate_.add(scene_, piece.surface, piece.face);
+  note(FaceChange::kDegenerate, piece.surface, piece.face);
 }
 
 // Fits the plane; false if the polygon encloses no area. `deviation`: largest distance of a corner from the
@@ -277,6 +291,7 @@ void PolygonRepair::add_polygon(FacePiece piece, const FaceLoops& polygon) {
   const double slack = 8 * tolerances_.weld * piece.diameter * static_cast<double>(corners.size());
   if (std::abs(filled - area) > slack + 1e-9 * area) {
     crossed_.add(scene_, piece.surface, piece.face);
+    note(FaceChange::kCrossed, piece.surface, piece.face);
     area = filled;
   }
   piece.area = area;
@@ -333,7 +348,7 @@ double PolygonRepair::repair_part(SurfaceId surface, std::uint32_t face, const F
 void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
   FaceLoops polygon = read(surface, face);
   const double area_as_read = vector_area_as_read(polygon.loops[0]).norm();
-  weld(polygon);
+  if (weld(polygon)) note(FaceChange::kWelded, surface, face);
   const std::vector<FaceLoops> parts = split_welded_seams(std::move(polygon));
   double bend = 0;
   for (const FaceLoops& part : parts)
@@ -343,6 +358,7 @@ void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
   if (bend == 0) return;
   ++report_.nonplanar_faces;
   bent_.add(scene_, surface, face);
+  note(FaceChange::kNonPlanar, surface, face);
   largest_bend_ = std::max(largest_bend_, bend);
 }
 

@@ -93,6 +93,9 @@ class GroupTriangulation {
                                   std::vector<std::uint32_t> ids);
   bool conserves_area(std::size_t piece) const;
   void count_cut_pieces(std::size_t g);
+  void note(FaceChange change, std::size_t piece) {
+    report_.changes.push_back({pieces_[piece].surface, pieces_[piece].face, change});
+  }
   void report_overlaps();
 
   double area_of(const std::array<std::uint32_t, 3>& t) const {
@@ -298,7 +301,9 @@ void GroupTriangulation::count_cut_pieces(std::size_t g) {
     const NearRectangle in_box(outlines[k].min, outlines[k].max);
     tree.visit([&](const Vec3& min, const Vec3& max) { return !cut && in_box(min, max); },
                [&](std::uint32_t i) { cut = cut || outlines[k].contains(middles[i]); });
-    if (cut) ++report_.cut_faces;
+    if (!cut) continue;
+    ++report_.cut_faces;
+    note(FaceChange::kCut, group.pieces[k]);
   }
 }
 
@@ -306,11 +311,15 @@ void GroupTriangulation::report_overlaps() {
   std::map<std::size_t, double> lost;
   std::map<std::pair<SurfaceId, SurfaceId>, double> by_surface;
   double total = 0;
+  std::size_t last_winner = pieces_.size();
   for (const auto& [pair, area] : overlap_) {
     lost[pair.second] += area;
     by_surface[{pieces_[pair.first].surface, pieces_[pair.second].surface}] += area;
     total += area;
+    if (pair.first != last_winner) note(FaceChange::kCovers, pair.first);
+    last_winner = pair.first;
   }
+  for (const auto& [piece, area] : lost) note(FaceChange::kCovered, piece);
   report_.overlapping_faces = lost.size();
   if (lost.empty()) return;
   std::vector<std::pair<double, std::pair<SurfaceId, SurfaceId>>> largest;

@@ -22,6 +22,7 @@ using ::testing::IsEmpty;
 struct Writer {
   std::vector<std::string> command;
   std::string extension;
+  std::string option = "-o";
 };
 
 std::vector<Writer> writers(const TempFolder& folder) {
@@ -32,12 +33,13 @@ std::vector<Writer> writers(const TempFolder& folder) {
           {{"render", solution, "--size", "8x8", "--spp", "1"}, ".png"},
           {{"export", solution, "--values", "zones"}, ".ply"},
           {{"export", solution, "--values", "zones"}, ".glb"},
-          {{"export", solution, "--values", "zones"}, ".csv"}};
+          {{"export", solution, "--values", "zones"}, ".csv"},
+          {{"info", (folder / "room.json").string()}, ".glb", "--report"}};
 }
 
 ProgramRun write_to(const Writer& writer, const std::string& output, const RunOptions& options = {}) {
   std::vector<std::string> arguments = writer.command;
-  arguments.insert(arguments.end(), {"-o", output});
+  arguments.insert(arguments.end(), {writer.option, output});
   return run_reemit(arguments, options);
 }
 

@@ -12,6 +12,7 @@
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
+#include "viewer_export/cli/inspection_report.h"
 #include "viewer_export/cli/light_report.h"
 #include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/luminaire_list.h"
@@ -24,6 +25,7 @@ namespace {
 
 struct InfoOptions {
   std::vector<std::filesystem::path> files;
+  std::filesystem::path report;  ///< Empty: none.
   ReadOptions read;
   OutputStyle style;
 };
@@ -65,13 +67,19 @@ ExitCode show_solution(const InfoOptions& options) {
 }
 
 ExitCode show_room(const InfoOptions& options) {
+  const bool reports = !options.report.empty();
+  if (reports) check_report(options.report, options.files);
   const Scene scene = load_room(options.files, options.read, options.style);
   const MeshResult meshed = mesh_room(scene, {}, options.style);
+  if (reports) write_report(options.report, scene, meshed, options.style);
   const std::vector<std::string> light_warnings = luminaire_warnings(scene, meshed.mesh);
   if (options.style.json) {
-    print_json(room_json(scene, meshed, light_warnings));
+    nlohmann::ordered_json json = room_json(scene, meshed, light_warnings);
+    add_inspection(json, scene, meshed, options.report);
+    print_json(json);
   } else {
     print_result(room_text(scene, meshed));
+    if (reports) print_result('\n' + inspection_text(scene, meshed, options.report));
     std::fflush(stdout);
     print_warnings(scene.warnings);
     print_warnings(meshed.report.warnings);
@@ -93,6 +101,9 @@ ExitCode show(const InfoOptions& options) {
   if (options.files.size() > 1)
     throw InputError(solution->string(), "it is a solution, and it is not the only file",
                      "Give one solution, or the files of one room.");
+  if (!options.report.empty())
+    throw InputError("--report", "a solution file does not keep what meshing did to the faces",
+                     "Give the room: reemit info ROOM --report " + options.report.string());
   return show_solution(options);
 }
 
@@ -106,12 +117,18 @@ void add_info_command(CLI::App& program, Action& action) {
       "kind what of the files was refused and what is not modelled.\n"
       "Examples:\n"
       "  reemit info room.json    units, size, materials, luminaires, cameras\n"
+      "  reemit info room.json --report room.glb   what meshing did to which face, to look at\n"
       "  reemit info room.h5      lux, exitance and flux of every surface and material, with errors");
   info.add_option("file", options->files,
                   "Room (.json .obj .gltf .glb .mgf; several .mgf files are read in order as one room)\n"
                   "or solution file")
       ->required()
       ->type_name("ROOM|SOLUTION");
+  info.add_option(
+          "--report", options->report,
+          "Also write a picture of the mesh of a room to this .glb file: faces by what meshing did to\n"
+          "them, sides that no light reaches, zones by size; and print the first faces of each kind")
+      ->type_name("FILE");
   add_gltf_unit_options(info, options->read);
   add_json_option(info, options->style);
   info.callback([options, &action] { action = [options] { return show(*options); }; });

@@ -12,7 +12,9 @@ namespace reemit::cli {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kChooseAnother = "choose another output with -o";
+std::string choose_another(const std::string& option = "-o") {
+  return "choose another output with " + option;
+}
 
 void check_can_write(const fs::path& file) {
   const FinishWriting finish;
@@ -25,17 +27,18 @@ void check_can_write(const fs::path& file) {
 
 }  // namespace
 
-void check_output_file(const fs::path& output, const fs::path& input) {
+void check_output_file(const fs::path& output, const fs::path& input, const std::string& option) {
   std::error_code problem;
   const fs::file_status status = fs::status(output, problem);
   if (fs::is_directory(status)) {
-    throw InputError(output.string(), "output is a directory", "give the name of a file with -o");
+    throw InputError(output.string(), "output is a directory", "give the name of a file with " + option);
   }
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    throw InputError(output.string(), "output is not a regular file and cannot be replaced", kChooseAnother);
+    throw InputError(output.string(), "output is not a regular file and cannot be replaced",
+                     choose_another(option));
   }
   if (fs::exists(status) && fs::equivalent(output, input, problem)) {
-    throw InputError(output.string(), "output is the input file", kChooseAnother);
+    throw InputError(output.string(), "output is the input file", choose_another(option));
   }
   check_can_write(output);
 }
@@ -44,7 +47,7 @@ void make_output_directory(const fs::path& output) {
   std::error_code problem;
   const fs::file_status status = fs::status(output, problem);
   if (fs::exists(status) && !fs::is_directory(status)) {
-    throw InputError(output.string(), "output exists and is not a directory", kChooseAnother);
+    throw InputError(output.string(), "output exists and is not a directory", choose_another());
   }
   // "pictures/" and "pictures" are the same folder, and the same folder is above them.
   const fs::path folder = output.has_filename() ? output : output.parent_path();
@@ -53,7 +56,7 @@ void make_output_directory(const fs::path& output) {
   if (!fs::exists(status)) fs::create_directory(folder, problem);
   if (!fs::is_directory(folder)) {
     throw OutputError(output.string() + ": cannot create the directory: " + problem.message() + "\n  " +
-                      kChooseAnother);
+                      choose_another());
   }
   check_can_write(output / "probe");
 }

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
+#include <string>
 
 namespace reemit::cli {
 
@@ -13,8 +14,9 @@ class OutputError : public std::runtime_error {
 
 /// Throws InputError or OutputError unless a file can be created or replaced at `output`; call it before long
 /// work. Leaves nothing behind and does not touch an existing file. `input` is refused as output: it would be
-/// lost.
-void check_output_file(const std::filesystem::path& output, const std::filesystem::path& input);
+/// lost. `option`: that names the output, for messages.
+void check_output_file(const std::filesystem::path& output, const std::filesystem::path& input,
+                       const std::string& option = "-o");
 
 /// The same for a directory that will hold several files; it is created if it is missing, its parent is not.
 void make_output_directory(const std::filesystem::path& output);

@@ -4,29 +4,19 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
+#include "viewer_export/formats/glb_file.h"
 #include "viewer_export/formats/vertex_export.h"
 
 namespace reemit {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Numbers that the glTF 2.0 specification assigns.
-constexpr int kFloat = 5126;
-constexpr int kUnsignedInt = 5125;
-constexpr int kArrayBuffer = 34962;
-constexpr int kElementArrayBuffer = 34963;
-constexpr int kTriangles = 4;
-constexpr std::uint32_t kMagic = 0x46546C67;
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
-constexpr std::uint32_t kBinChunk = 0x004E4942;
 
 float finite(double value) {
   constexpr float kLargest = std::numeric_limits<float>::max();
@@ -141,9 +131,9 @@ Json extras_of(const VertexData& data, const ToneMap& tone_map) {
   extras["exposure"] = tone_map.exposure();
   extras["exposure_ev"] = tone_map.exposure_ev();
   extras["white"] = tone_map.white();
-  const bool turned = data.up.z() > 0.5;
-  extras["axes"] = turned ? "in the meshes as in the room file, z up; the node above them turns z up to y up"
-                          : "as in the room file";
+  extras["axes"] = has_z_up(data.up)
+                       ? "in the meshes as in the room file, z up; the node above them turns z up to y up"
+                       : "as in the room file";
   extras["backs"] = fmt::format("moved {:.3g} m off their fronts", back_gap(data));
   return extras;
 }
@@ -156,22 +146,15 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
                    {"generator", "reemit " + data.info.program_version},
                    {"extras", extras_of(data, tone_map)}};
   gltf["extensionsUsed"] = {"KHR_materials_unlit"};
-  gltf["scene"] = 0;
-  Json views = Json::array();
-  std::size_t offset = 0;
-  const auto add_view = [&](std::size_t bytes, int target) -> Json& {
-    views.push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", target}});
-    offset += bytes;
-    return views.back();
-  };
+  BufferViews views;
   for (const Attribute& a : attributes) {
     const auto stride = 4 * static_cast<std::size_t>(a.components);
-    add_view(layout.order.size() * stride, kArrayBuffer)["byteStride"] = stride;
+    views.add(layout.order.size() * stride, Gltf::kArrayBuffer, stride);
   }
   const std::size_t index_count =
       3 * std::accumulate(layout.parts.begin(), layout.parts.end(), std::size_t{0},
                           [](std::size_t n, const Part& p) { return n + p.triangles.size(); });
-  add_view(4 * index_count, kElementArrayBuffer);
+  views.add(4 * index_count, Gltf::kElementArrayBuffer);
 
   Json accessors = Json::array();
   Json meshes = Json::array();
@@ -185,7 +168,7 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
       const int components = attributes[a].components;
       Json accessor = {{"bufferView", a},
                        {"byteOffset", part.first_vertex * 4 * static_cast<std::size_t>(components)},
-                       {"componentType", kFloat},
+                       {"componentType", Gltf::kFloat},
                        {"count", part.vertex_count},
                        {"type", components == 3 ? "VEC3" : "SCALAR"}};
       if (attributes[a].semantic == "POSITION") {
@@ -204,7 +187,7 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
     primitive["indices"] = accessors.size();
     accessors.push_back({{"bufferView", attributes.size()},
                          {"byteOffset", index_offset},
-                         {"componentType", kUnsignedInt},
+                         {"componentType", Gltf::kUnsignedInt},
                          {"count", 3 * part.triangles.size()},
                          {"type", "SCALAR"}});
     index_offset += 12 * part.triangles.size();
@@ -216,7 +199,7 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
                            {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
     }
     primitive["material"] = material;
-    primitive["mode"] = kTriangles;
+    primitive["mode"] = Gltf::kTriangles;
     const std::string& name = data.surface_names[part.surface.index()];
     nodes.push_back({{"name", name}, {"mesh", meshes.size()}});
     if (origin != Vec3::Zero()) nodes.back()["translation"] = {origin.x(), origin.y(), origin.z()};
@@ -224,19 +207,11 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
   }
   Json roots = Json::array();
   for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
-  if (data.up.z() > 0.5) {  // glTF has y up
-    const double half = std::numbers::sqrt2 / 2;
-    nodes.push_back(
-        {{"name", "z up to y up"}, {"rotation", {-half, 0.0, 0.0, half}}, {"children", std::move(roots)}});
-    roots = Json::array({nodes.size() - 1});
-  }
-  gltf["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
-  gltf["nodes"] = std::move(nodes);
+  add_scene(gltf, std::move(nodes), std::move(roots), data.up);
   gltf["meshes"] = std::move(meshes);
   gltf["materials"] = std::move(materials);
   gltf["accessors"] = std::move(accessors);
-  gltf["bufferViews"] = std::move(views);
-  gltf["buffers"] = Json::array({{{"byteLength", offset}}});
+  std::move(views).add_to(gltf);
   return gltf;
 }
 
@@ -255,22 +230,8 @@ std::optional<ToneMap> write_glb(const VertexData& data, OutputFile& file) {
   const std::vector<Attribute> attributes = attributes_of(data, colours, positions);
 
   const Json gltf = document(data, layout, attributes, positions, origin, colours.tone_map);
-  std::string json = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const auto binary_bytes = gltf["buffers"][0]["byteLength"].get<std::size_t>();
-  const std::size_t total = 12 + 8 + json.size() + 8 + binary_bytes;
-  if (total > std::numeric_limits<std::uint32_t>::max())
-    throw InputError("glTF export", "the file would exceed 4 GiB, the limit of .glb",
-                     "Write .ply or .csv, or solve with larger zones.");
-
+  begin_glb(gltf, "Write .ply or .csv, or solve with larger zones.", file);
   std::string bytes;
-  for (const std::uint32_t word : {kMagic, std::uint32_t{2}, static_cast<std::uint32_t>(total),
-                                   static_cast<std::uint32_t>(json.size()), kJsonChunk})
-    append_bytes(bytes, word);
-  bytes += json;
-  append_bytes(bytes, static_cast<std::uint32_t>(binary_bytes));
-  append_bytes(bytes, kBinChunk);
-  file.write(bytes);
   for (const Attribute& attribute : attributes)
     for (const std::uint32_t v : layout.order) {
       bytes.clear();

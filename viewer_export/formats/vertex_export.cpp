@@ -30,10 +30,14 @@ VertexColours colours_of(const VertexData& data) {
 }
 
 double back_gap(const VertexData& data) {
-  constexpr double kShareOfDiagonal = 5e-5;
   if (std::find(data.on_back.begin(), data.on_back.end(), true) == data.on_back.end()) return 0;
   const auto [low, high] = box_of(data);
-  return kShareOfDiagonal * (high - low).norm();
+  return back_gap((high - low).norm());
+}
+
+double back_gap(double diagonal) {
+  constexpr double kShareOfDiagonal = 5e-5;
+  return kShareOfDiagonal * diagonal;
 }
 
 std::vector<Vec3> positions_for_viewing(const VertexData& data, double gap) {
@@ -46,6 +50,10 @@ std::vector<Vec3> positions_for_viewing(const VertexData& data, double gap) {
 Vec3 single_precision_origin(const VertexData& data) {
   if (data.positions.empty()) return Vec3::Zero();
   const auto [low, high] = box_of(data);
+  return single_precision_origin(low, high);
+}
+
+Vec3 single_precision_origin(const Vec3& low, const Vec3& high) {
   const double size = (high - low).norm();
   const double reach = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
   // Half a unit in the last place of a float is 6e-8 of the value.

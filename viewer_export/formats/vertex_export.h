@@ -34,11 +34,15 @@ VertexColours colours_of(const VertexData& data);
 /// of the room's diagonal; 0 if there are no backs. Front and back would lie in one place, and a program that
 /// draws both sides of every triangle, or traces rays, would show now one and now the other.
 double back_gap(const VertexData& data);
+/// The same for a room with backs and this diagonal [m].
+double back_gap(double diagonal);
 /// Positions for viewing [m]: fronts as they are, backs moved along their normals by `gap`.
 std::vector<Vec3> positions_for_viewing(const VertexData& data, double gap);
 
 /// Origin for positions in single precision [m]: 0, or the centre of a room so far from 0 that float
 /// coordinates would lose more than a millionth of its size.
 Vec3 single_precision_origin(const VertexData& data);
+/// The same for a room with these smallest and largest coordinates [m].
+Vec3 single_precision_origin(const Vec3& low, const Vec3& high);
 
 }  // namespace reemit

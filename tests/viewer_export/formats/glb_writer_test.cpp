@@ -1,14 +1,12 @@
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <tiny_gltf.h>
 
 #include "scenes/model/error.h"
+#include "tests/support/glb_file.h"
 #include "tests/support/temp_folder.h"
 #include "tests/viewer_export/formats/sample_vertices.h"
 #include "viewer_export/formats/export_table.h"
@@ -17,18 +15,10 @@
 namespace reemit {
 namespace {
 
+using test::expect_valid_glb;
+using test::read_glb;
 using test::sample_vertices;
 using test::TempFolder;
-
-tinygltf::Model read_glb(const std::filesystem::path& file) {
-  tinygltf::Model model;
-  tinygltf::TinyGLTF loader;
-  std::string error;
-  std::string warning;
-  EXPECT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, file.string())) << error;
-  EXPECT_EQ(warning, "");
-  return model;
-}
 
 // Numbers of a float attribute of the only primitive of a mesh.
 std::vector<float> attribute(const tinygltf::Model& model, std::size_t mesh, const std::string& name) {
@@ -45,25 +35,6 @@ std::vector<float> attribute(const tinygltf::Model& model, std::size_t mesh, con
   std::memcpy(values.data(), model.buffers.at(0).data.data() + view.byteOffset + accessor.byteOffset,
               values.size() * sizeof(float));
   return values;
-}
-
-std::string first_line_of_issues(const std::string& report) {
-  const auto json = nlohmann::json::parse(report, nullptr, false);
-  return json.is_discarded() ? report : json["issues"].dump();
-}
-
-// Runs the Khronos validator; skips the test when it is not installed.
-void expect_valid(const std::filesystem::path& file) {
-  const std::filesystem::path modules = REEMIT_NODE_MODULES;
-  if (std::system("node --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "node is not installed";
-  if (!std::filesystem::exists(modules / "gltf-validator"))
-    GTEST_SKIP() << "no gltf-validator in " << modules
-                 << ": copy " REEMIT_SOURCE_DIR "/tests/viewer_export/gltf/package.json to "
-                 << modules.parent_path() << " and run npm install there";
-  const std::string report = file.string() + ".report";
-  const std::string command = "node '" REEMIT_SOURCE_DIR "/tests/viewer_export/gltf/validate_glb.mjs' '" +
-                              modules.string() + "' '" + file.string() + "' > '" + report + "' 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << first_line_of_issues(test::read_bytes(report));
 }
 
 TEST(GlbWriter, IsReadBackByTinyGltf) {
@@ -188,7 +159,7 @@ TEST(GlbWriter, NothingToDrawIsAnError) {
 TEST(GlbWriter, SatisfiesTheKhronosValidatorInRgb) {
   const TempFolder folder;
   write_vertex_data(sample_vertices(BandSet::rgb()), folder / "a.glb");
-  expect_valid(folder / "a.glb");
+  expect_valid_glb(folder / "a.glb");
 }
 
 TEST(GlbWriter, SatisfiesTheKhronosValidatorWithZUp) {
@@ -196,13 +167,13 @@ TEST(GlbWriter, SatisfiesTheKhronosValidatorWithZUp) {
   VertexData data = sample_vertices(BandSet::rgb());
   data.up = Vec3(0, 0, 1);
   write_vertex_data(data, folder / "a.glb");
-  expect_valid(folder / "a.glb");
+  expect_valid_glb(folder / "a.glb");
 }
 
 TEST(GlbWriter, SatisfiesTheKhronosValidatorInSpectralBandsFarAway) {
   const TempFolder folder;
   write_vertex_data(sample_vertices(BandSet::spectral({450, 550.5}), Vec3(1e7, 0, 0)), folder / "a.glb");
-  expect_valid(folder / "a.glb");
+  expect_valid_glb(folder / "a.glb");
 }
 
 TEST(GlbWriter, SatisfiesTheKhronosValidatorWithNumbersThatAreNotFinite) {
@@ -213,7 +184,7 @@ TEST(GlbWriter, SatisfiesTheKhronosValidatorWithNumbersThatAreNotFinite) {
   data.radiance_stderr[1] = std::numeric_limits<float>::infinity();
   data.normals[1] = Vec3::Zero();
   write_vertex_data(data, folder / "a.glb");
-  expect_valid(folder / "a.glb");
+  expect_valid_glb(folder / "a.glb");
 }
 
 }  // namespace
