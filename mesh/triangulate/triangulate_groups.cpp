@@ -121,7 +121,7 @@ std::vector<std::uint32_t> GroupTriangulation::lift(const PieceGroup& group, con
   for (std::size_t i = given; i < cut.points.size(); ++i) {
     const auto [a, b] = cut.on_segment[i - given];
     if (a == PlanarTriangulation::kNone) {
-      ids.push_back(vertices_.append(group.plane.lift(cut.points[i])));
+      ids.push_back(vertices_.weld(group.plane.lift(cut.points[i])));
       continue;
     }
     // Along the edge in space, from its smaller vertex on, so that neighbours find the very same point.

@@ -52,7 +52,8 @@ double wanted_divisions(double area, double spread, double zone_area) {
   return std::sqrt(std::sqrt(cost)) / std::sqrt(zone_area);
 }
 
-void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spread) {
+void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spread,
+                const std::vector<bool>& dark) {
   constexpr double kMostZones = 2147483648.0;
   std::vector<CurvedPatches> curved;
   for (const CurvedShape& shape : mesh.shapes) curved.emplace_back(shape);
@@ -69,6 +70,11 @@ void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spre
         t.is_curved() ? curved[t.shape].patch_area()
                       : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
     const TriangleId id(static_cast<std::size_t>(&t - mesh.triangles.data()));
+    if (!dark.empty() && dark[id.index()]) {
+      t.divisions = 1;
+      zones += t.two_sided ? 2 : 1;
+      continue;
+    }
     const auto variance = static_cast<double>(
         spread.empty() ? 0.0F
                        : std::max(spread[side_of(id, true).index()], spread[side_of(id, false).index()]));

@@ -45,6 +45,18 @@ double open_area(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
   return area;
 }
 
+/// Triangles of which no side with zones gets light. Those of round shapes keep their patches, whose zones
+/// become vertices.
+std::vector<bool> dark_triangles(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
+  std::vector<bool> dark(mesh.triangle_count(), true);
+  for (std::size_t s = 0; s < uses.size(); ++s) {
+    const TriangleId t = triangle_of(SideId(s));
+    if (mesh.triangle(t).is_curved() || (mesh.has_zones(SideId(s)) && uses[s] != SideUse::kSealed))
+      dark[t.index()] = false;
+  }
+  return dark;
+}
+
 /// What shadow rays and others find out about the sides of a mesh.
 struct Survey {
   std::vector<SideUse> uses;
@@ -76,14 +88,15 @@ MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const W
   if (!(found.open_area > 0)) return result;  // there is no light
   std::vector<float> spread(found.light.size());
   for (std::size_t s = 0; s < spread.size(); ++s) spread[s] = found.light[s].spread;
+  const std::vector<bool> dark = dark_triangles(result.mesh, found.uses);
   BaseMesh base = std::move(result.mesh).release_base();
-  size_zones(base, found.zone_area, spread);
+  size_zones(base, found.zone_area, spread, dark);
   result.mesh = ZoneMesh(std::move(base));
   const double largest = settings.zone_area ? found.zone_area : kMostLarger * found.zone_area;
   ZonePlan plan = plan_zones(result.mesh, found.uses, found.light,
                              wanted_zone_count(settings, found.open_area), found.zone_area, largest);
   base = std::move(result.mesh).release_base();
-  if (plan.zone_area > found.zone_area) size_zones(base, plan.zone_area, spread);
+  if (plan.zone_area > found.zone_area) size_zones(base, plan.zone_area, spread, dark);
   result.mesh = ZoneMesh(std::move(base), std::move(plan.groups));
   return result;
 }
