@@ -71,8 +71,7 @@ void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spre
                       : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
     const TriangleId id(static_cast<std::size_t>(&t - mesh.triangles.data()));
     if (!dark.empty() && dark[id.index()]) {
-      t.divisions = 1;
-      zones += t.two_sided ? 2 : 1;
+      zones += (t.two_sided ? 2.0 : 1.0) * t.divisions * t.divisions;
       continue;
     }
     const auto variance = static_cast<double>(

@@ -22,8 +22,8 @@ double wanted_divisions(double area, double spread, double zone_area);
 
 /// Sets the divisions of every triangle so that no zone exceeds `zone_area` [m2]; `spread`, if given, by side
 /// as ZoneGroups has them, makes those smaller in which light would differ more than in an even one; `dark`,
-/// if given, by triangle, leaves those whole that no light reaches. Throws InputError when that makes more
-/// than 2^31 zones.
+/// if given, by triangle, leaves those as they are that no light reaches. Throws InputError when that makes
+/// more than 2^31 zones.
 void size_zones(BaseMesh& mesh, double zone_area, const std::vector<float>& spread = {},
                 const std::vector<bool>& dark = {});
 
