@@ -72,10 +72,14 @@ double rms_difference(const Solution& a, const Solution& b) {
   return std::sqrt(difference / sum);
 }
 
-// The floor is one polygon under both rooms; the wall between them has no thickness.
+// The floor is one polygon under a room and a closet in its corner, whose walls have no thickness.
 TEST(HardRooms, FloorUnderAWallIsLitOnOneSideOnly) {
-  const Scene scene = room_of(kHull + "," + kLamp + R"(, {"name": "wall", "material": "wall",
-    "quad": {"corner": [2.3, 0, 0], "u": [0, 3, 0], "v": [0, 0, 5]}})");
+  const Scene scene = room_of(kHull + "," + kLamp + R"(,
+    {"name": "a", "material": "wall", "quad": {"corner": [2.3, 0, 0], "u": [0, 3, 0], "v": [0, 0, 3.1]}},
+    {"name": "b", "material": "wall", "quad": {"corner": [2.3, 0, 3.1], "u": [0, 3, 0], "v": [1.7, 0, 0]}})");
+  const auto depth = [](const Vec3& p) {
+    return std::min(p.x() - 2.3, 3.1 - p.z());
+  };  // within the closet [m]
   SolverSettings few;
   few.packets = 200'000;
   MeshSettings apart;
@@ -84,8 +88,8 @@ TEST(HardRooms, FloorUnderAWallIsLitOnOneSideOnly) {
   for (std::size_t t = 0; t < s.mesh.triangle_count(); ++t) {
     const TriangleId id(t);
     const Vec3 middle = s.mesh.point(id, 1.0 / 3, 1.0 / 3);
-    if (middle.y() > 1e-6 || middle.x() < 2.3) continue;
-    for (int k = 0; k < 3; ++k) EXPECT_GT(s.mesh.corner(id, k).x(), 2.3 - 1e-6) << "not cut under the wall";
+    if (middle.y() > 1e-6 || depth(middle) < 0) continue;
+    for (int k = 0; k < 3; ++k) EXPECT_GT(depth(s.mesh.corner(id, k)), -1e-6) << "not cut under the wall";
     EXPECT_EQ(s.irradiance(s.mesh.zone_at(id, 1.0F / 3, 1.0F / 3, true), 0).mean, 0);
   }
   VertexSettings settings;
@@ -96,9 +100,9 @@ TEST(HardRooms, FloorUnderAWallIsLitOnOneSideOnly) {
   for (std::size_t v = 0; v < data.vertex_count(); ++v) {
     const Vec3& p = data.positions[v];
     if (data.on_back[v] || p.y() != 0 || data.normals[v].y() < 0.9) continue;
-    if (p.x() > 2.3 + 1e-6) {
+    if (depth(p) > 1e-6) {
       EXPECT_EQ(data.irradiance[v], 0) << p.transpose();
-    } else if (p.x() < 2.3 - 1e-6) {
+    } else if (depth(p) < -1e-6) {
       EXPECT_GT(data.irradiance[v], 0) << p.transpose();
     }
   }
