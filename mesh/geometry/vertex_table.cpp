@@ -46,14 +46,10 @@ std::uint32_t VertexTable::weld(const Vec3& p) {
     }
   }
   if (found) return best;
-  const std::uint32_t added = append(p);
+  const auto added = static_cast<std::uint32_t>(points_.size());
+  points_.push_back(p);
   cells_.emplace(cell_of(p), added);
   return added;
-}
-
-std::uint32_t VertexTable::append(const Vec3& p) {
-  points_.push_back(p);
-  return static_cast<std::uint32_t>(points_.size() - 1);
 }
 
 }  // namespace reemit

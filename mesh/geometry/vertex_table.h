@@ -17,8 +17,6 @@ class VertexTable {
   /// Index of the vertex at `p`: the nearest one within the weld distance (the first of equals), else a new
   /// one.
   std::uint32_t weld(const Vec3& p);
-  /// A new vertex that is never merged with others.
-  std::uint32_t append(const Vec3& p);
 
   const Vec3& operator[](std::uint32_t i) const { return points_[i]; }
   std::size_t size() const { return points_.size(); }

@@ -97,6 +97,7 @@ class GroupTriangulation {
     report_.changes.push_back({pieces_[piece].surface, pieces_[piece].face, change});
   }
   void report_overlaps();
+  void report_lamps_turned_away();
 
   double area_of(const std::array<std::uint32_t, 3>& t) const {
     return 0.5 * (vertices_[t[1]] - vertices_[t[0]]).cross(vertices_[t[2]] - vertices_[t[0]]).norm();
@@ -124,7 +125,7 @@ std::vector<std::uint32_t> GroupTriangulation::lift(const PieceGroup& group, con
   for (std::size_t i = given; i < cut.points.size(); ++i) {
     const auto [a, b] = cut.on_segment[i - given];
     if (a == PlanarTriangulation::kNone) {
-      ids.push_back(vertices_.append(group.plane.lift(cut.points[i])));
+      ids.push_back(vertices_.weld(group.plane.lift(cut.points[i])));
       continue;
     }
     // Along the edge in space, from its smaller vertex on, so that neighbours find the very same point.
@@ -338,6 +339,33 @@ void GroupTriangulation::report_overlaps() {
                   lost.size(), total, names));
 }
 
+// A lamp in the plane of a one-sided face that looks the other way lights what is behind that face, which is
+// hardly meant.
+void GroupTriangulation::report_lamps_turned_away() {
+  std::map<std::size_t, double> turned;  // area by winner
+  std::string first;
+  for (const auto& [pair, area] : overlap_) {
+    const FacePiece& lamp = pieces_[pair.first];
+    const FacePiece& behind = pieces_[pair.second];
+    const Material& material = scene_.material_of(scene_.surfaces[lamp.surface.index()]);
+    if (!material.emits() || material.emits_both_sides ||
+        scene_.material_of(scene_.surfaces[behind.surface.index()]).two_sided ||
+        lamp.plane.normal.dot(behind.plane.normal) > 0)
+      continue;
+    if (turned.empty())
+      first = fmt::format("'{}' lies in '{}'", scene_.surfaces[lamp.surface.index()].name,
+                          scene_.surfaces[behind.surface.index()].name);
+    turned[pair.first] += area;
+  }
+  if (turned.empty()) return;
+  double area = 0;
+  for (const auto& [lamp, part] : turned) area += part;
+  report_.warnings.push_back(fmt::format(
+      "{} luminous faces, {:.4g} m2, lie in one-sided faces and shine out of their backs ({}): turn them "
+      "round if they should light the side that those faces look to",
+      turned.size(), area, first));
+}
+
 GroupTriangles GroupTriangulation::run(const WorkStep& step) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     step.at(g, groups_.size());
@@ -345,6 +373,7 @@ GroupTriangles GroupTriangulation::run(const WorkStep& step) {
     count_cut_pieces(g);
   }
   report_overlaps();
+  report_lamps_turned_away();
   return {std::move(out_), std::move(covered_)};
 }
 

@@ -13,8 +13,8 @@ inline constexpr double kNormalWeight = 3;
 inline constexpr double kPatchNormals = 1.0 / 3;
 /// The level of the light on sides (light_on_sides) counts as lengths times this.
 inline constexpr double kLightWeight = 5;
-/// The unevenness of the light on a cell (light_level.h) counts as a variance of place times this. A third or three
-/// times as much changes the error of as many zones by less than a tenth.
+/// The unevenness of the light on a cell (light_level.h) counts as a variance of place times this. A third or
+/// three times as much changes the error of as many zones by less than a tenth.
 inline constexpr double kUnevenWeight = 300;
 
 }  // namespace reemit

@@ -46,7 +46,7 @@ double wanted_divisions(double area, double zone_area) {
   return std::sqrt(area / zone_area) * (1 - 1e-12);  // a zone of just the wanted area is fine
 }
 
-void size_zones(BaseMesh& mesh, double zone_area) {
+void size_zones(BaseMesh& mesh, double zone_area, const std::vector<bool>& dark) {
   constexpr double kMostZones = 2147483648.0;
   std::vector<CurvedPatches> curved;
   for (const CurvedShape& shape : mesh.shapes) curved.emplace_back(shape);
@@ -62,6 +62,11 @@ void size_zones(BaseMesh& mesh, double zone_area) {
     const double area =
         t.is_curved() ? curved[t.shape].patch_area()
                       : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
+    const TriangleId id(static_cast<std::size_t>(&t - mesh.triangles.data()));
+    if (!dark.empty() && dark[id.index()]) {
+      zones += (t.two_sided ? 2.0 : 1.0) * t.divisions * t.divisions;
+      continue;
+    }
     const double n = wanted_divisions(area, zone_area);
     if (n < 65536) t.divisions = divisions_at_least(t.is_curved() ? std::max<double>(n, least) : n);
     zones += n < 65536 ? (t.two_sided ? 2.0 : 1.0) * t.divisions * t.divisions : kMostZones;

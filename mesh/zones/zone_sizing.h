@@ -19,8 +19,9 @@ std::uint32_t divisions_at_least(double n);
 /// How fine a side of `area` [m2] is divided for zones of `zone_area`.
 double wanted_divisions(double area, double zone_area);
 
-/// Sets the divisions of every triangle so that no cell exceeds `zone_area` [m2].
-/// Throws InputError when that makes more than 2^31 cells.
-void size_zones(BaseMesh& mesh, double zone_area);
+/// Sets the divisions of every triangle so that no cell exceeds `zone_area` [m2]; `dark`, if given, by
+/// triangle, leaves those as they are that no light reaches. Throws InputError when that makes more than 2^31
+/// cells.
+void size_zones(BaseMesh& mesh, double zone_area, const std::vector<bool>& dark = {});
 
 }  // namespace reemit

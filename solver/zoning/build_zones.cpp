@@ -51,9 +51,21 @@ double open_area(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
 }
 
 /// A room without light that anything could be told from.
-bool is_dark(const Scene& scene) {
+bool has_no_light(const Scene& scene) {
   return scene.lights.empty() && std::none_of(scene.materials.begin(), scene.materials.end(),
                                               [](const Material& m) { return m.emits(); });
+}
+
+/// Triangles of which no side with zones gets light. Those of round shapes keep their patches, whose zones
+/// become vertices.
+std::vector<bool> dark_triangles(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
+  std::vector<bool> dark(mesh.triangle_count(), true);
+  for (std::size_t s = 0; s < uses.size(); ++s) {
+    const TriangleId t = triangle_of(SideId(s));
+    if (mesh.triangle(t).is_curved() || (mesh.has_zones(SideId(s)) && uses[s] != SideUse::kSealed))
+      dark[t.index()] = false;
+  }
+  return dark;
 }
 
 /// Sides that have cells of their own.
@@ -66,8 +78,8 @@ std::vector<SideId> sides_with_cells(const ZoneMesh& mesh, const ZoneGroups& gro
 }
 
 /// The mesh with cells for zones of `zone_area` [m2].
-ZoneMesh with_cells(BaseMesh base, double zone_area, ZoneGroups groups = {}) {
-  size_zones(base, zone_area);
+ZoneMesh with_cells(BaseMesh base, double zone_area, const std::vector<bool>& dark, ZoneGroups groups = {}) {
+  size_zones(base, zone_area, dark);
   return ZoneMesh(std::move(base), std::move(groups));
 }
 
@@ -86,21 +98,23 @@ MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const W
   if (!(area > 0)) return result;  // there is no light
   const double zone_area = wanted_zone_area(settings, area);
   const double wanted = wanted_zone_count(settings, area);
+  const std::vector<bool> dark = dark_triangles(result.mesh, uses);
   const double largest = settings.zone_area ? zone_area : kMostLarger * zone_area;
-  result.mesh = with_cells(std::move(result.mesh).release_base(), zone_area);
+  result.mesh = with_cells(std::move(result.mesh).release_base(), zone_area, dark);
   ZonePlan plan = plan_zones(result.mesh, uses, {}, wanted, zone_area, largest);
-  if (is_dark(scene)) {
-    result.mesh = with_cells(std::move(result.mesh).release_base(), plan.zone_area, std::move(plan.groups));
+  if (has_no_light(scene)) {
+    result.mesh =
+        with_cells(std::move(result.mesh).release_base(), plan.zone_area, dark, std::move(plan.groups));
     return result;
   }
   const PilotLight pilot(
-      scene, {with_cells(result.mesh.base(), plan.zone_area, std::move(plan.groups)), result.report},
+      scene, {with_cells(result.mesh.base(), plan.zone_area, dark, std::move(plan.groups)), result.report},
       watch.part(kSealed, kSolved));
   const std::vector<float> light = light_on_sides(pilot, uses, watch.part(kSolved, kGrouped));
   plan = plan_zones(result.mesh, uses, light, wanted, zone_area, largest);
   const double root_area = std::min(kCoarsest * plan.zone_area, largest);
   BaseMesh base = std::move(result.mesh).release_base();
-  size_zones(base, root_area);
+  size_zones(base, root_area, dark);
   ZoneMesh roots(std::move(base), std::move(plan.groups));
   const std::vector<SideId> sides = sides_with_cells(roots, roots.groups());
   const double cells = wanted - (roots.groups().count - roots.groups().sealed);

@@ -10,11 +10,7 @@ solutions (.h5), and folders of these. Files that a file mentions are copied wit
 is tried as .glb too. Without an .h5 among FILES, the first room that can be solved is solved, and its solution joins them.
 The same seed, count and files give the same damage; --only N repeats one case.
 
-What must hold of every run:
-- it ends with a documented exit code (docs/command_line.md), by itself, without a signal and without a report of a
-  sanitizer, within the limit;
-- it leaves no *.partial behind; an output that was there stays unless the run succeeds, then it is whole;
-- a refusal (exit code 2) starts with "reemit: error: " and names one of the files.
+What must hold of every run stands in judge_runs.py, which looks at it.
 --verbose lists refusals that name no place in the file (line, JSON pointer, or what carries a name).
 Exit code 0: all of this held; 1: it did not; the files are kept aside, with a command that repeats it.
 """
@@ -26,12 +22,14 @@ import pathlib
 import random
 import re
 import shutil
-import stat
 import struct
 import subprocess
 import sys
 import tempfile
 import time
+
+sys.dont_write_bytecode = True  # the module beside this file leaves nothing in the source tree
+from judge_runs import SEAL_BYTES, Checker, new_folder, print_summary, seal_of, try_case
 
 try:
     import h5py
@@ -41,8 +39,6 @@ except ImportError:
 ROOMS = {".json", ".mgf", ".obj", ".gltf", ".glb"}
 PARTS = {".ies", ".ldt", ".ply", ".mtl"}
 BINARY = {".glb", ".bin", ".h5", ".hdf5", ".png", ".jpg", ".tga"}
-SEAL = b"reemit seal "
-SEAL_BYTES = len(SEAL) + 17
 NUMBERS = ["nan", "inf", "-inf", "1e308", "-1e308", "1e999", "1e-320", "-0", "0", "-1", "1", "2", "7", "1e10", "1.1e10", "1e19",
            "1e-12", "0.9999999999", "4294967295", "4294967296", "2147483648", "-2147483649", "99999999999999999999",
            "18446744073709551616", "0x10", "1,5", "1e", "--1", ".", "1.5.2", "+3", "100000", "1e5"]
@@ -144,13 +140,6 @@ def split_glb(data):
     return data[20:20 + length], data[28 + length:]
 
 
-def seal_of(data):
-    value = 0xcbf29ce484222325
-    for byte in data:
-        value = (value ^ byte) * 0x100000001b3 & 0xffffffffffffffff
-    return SEAL + b"%016x\n" % value
-
-
 # ---------------------------------------------------------------- damage
 
 class Damage:
@@ -192,6 +181,25 @@ class Damage:
             else:
                 self.parts[name] = self.changed_bytes(self.parts[name])
             self.words[-1] = f"{name}: {self.words[-1]}"
+
+    def names(self):
+        return list(self.parts)
+
+    def write(self, folder):
+        for name, data in self.parts.items():
+            file = folder / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            kind = self.odd.get(name)
+            if kind is None:
+                file.write_bytes(data)
+            elif kind == "folder":
+                file.mkdir()
+            elif kind == "pipe":
+                os.mkfifo(file)
+            elif kind == "device":
+                file.symlink_to("/dev/zero")
+            elif kind == "loop":
+                file.symlink_to(file.name)
 
     def say(self, words):
         self.words.append(words)
@@ -479,106 +487,6 @@ class Damage:
 
 # ---------------------------------------------------------------- running
 
-class Checker:
-    def __init__(self, program, limit):
-        self.program, self.limit = program, limit
-        self.environment = dict(os.environ)
-        own = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1:exitcode=99",
-               "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1:exitcode=99"}
-        for variable, value in own.items():
-            self.environment.setdefault(variable, value)
-        self.slowest = (0.0, "")
-        self.codes = {}
-        self.placeless = {}
-
-    def run(self, arguments, folder, names, output=None, allowed=(0, 2, 3)):
-        """Runs one command in `folder`; returns exit code and complaints. `output` exists before."""
-        old = (folder / output).read_bytes() if output else b""
-        before = sorted(os.listdir(folder))
-        started = time.monotonic()
-        complaints = []
-        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-            process = subprocess.Popen([self.program, *arguments], cwd=folder, env=self.environment, stdin=subprocess.DEVNULL,
-                                       stdout=out, stderr=err)
-            try:
-                code = process.wait(timeout=self.limit)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-                code = None
-            out.seek(0)
-            err.seek(0)
-            printed, said = out.read().decode("utf-8", "replace"), err.read().decode("utf-8", "replace")
-        seconds = time.monotonic() - started
-        if seconds > self.slowest[0]:
-            self.slowest = (seconds, " ".join(arguments[:2]))
-        key = (arguments[0], "hang" if code is None else code)
-        self.codes[key] = self.codes.get(key, 0) + 1
-        if code is None:
-            complaints.append(f"does not end within {self.limit} s")
-        elif code < 0:
-            complaints.append(f"ended by signal {-code}")
-        elif code not in allowed:
-            complaints.append(f"exit code {code}")
-        if re.search(r"Sanitizer|runtime error:", said):
-            complaints.append("report of a sanitizer")
-        left = [n for n in sorted(os.listdir(folder)) if n not in before]
-        if code is not None and left:
-            complaints.append(f"left behind: {left}")
-        if output and code is not None:
-            now = (folder / output).read_bytes() if (folder / output).is_file() else None
-            if now is None:
-                complaints.append(f"{output} is lost")
-            elif code != 0 and now != old:
-                complaints.append(f"{output} was replaced by a run that failed")
-            elif code == 0 and (now == old or (output.endswith(".h5") and now[-SEAL_BYTES:-17] != SEAL)):
-                complaints.append(f"{output} is not whole")
-        if code == 2:
-            complaints += self.judge_refusal(printed, said, names, "--json" in arguments)
-        elif code == 3 and "memory" not in said:
-            complaints.append("exit code 3 without a word about memory")
-        if complaints:
-            complaints.append((said or printed)[-1500:])
-        return code, complaints
-
-    def judge_refusal(self, printed, said, names, as_json):
-        error = [line for line in said.splitlines() if line.startswith("reemit: error: ")]
-        if not error:
-            return ["refused without 'reemit: error: '"]
-        complaints = []
-        if as_json and printed:
-            try:
-                json.loads(printed)
-            except ValueError:
-                complaints.append("what --json printed is not JSON")
-        elif printed:
-            complaints.append("refused, but something was printed")
-        text = "\n".join(said.splitlines()[said.splitlines().index(error[0]):])
-        if not any(pathlib.PurePath(name).name in text for name in names):
-            complaints.append("the refusal names no file")
-        elif not re.search(r"\.\w+(:\d+|#/)|(surface|material|light|camera|luminaire|dataset|attribute|group) ['\"/\w]|is damaged", text):
-            kind = re.sub(r"/\S*/|\d+", "", error[0])
-            self.placeless[kind] = self.placeless.get(kind, 0) + 1
-        return complaints
-
-
-def write_parts(folder, damage):
-    for name, data in damage.parts.items():
-        file = folder / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        kind = damage.odd.get(name)
-        if kind is None:
-            file.write_bytes(data)
-        elif kind == "folder":
-            file.mkdir()
-        elif kind == "pipe":
-            os.mkfifo(file)
-        elif kind == "device":
-            file.symlink_to("/dev/zero")
-        elif kind == "loop":
-            file.symlink_to(file.name)
-
-
 def commands_for(main, turn):
     """What one case runs, all in `turn` of its seed: (arguments, output that is there before, exit codes that are right)."""
     if main.lower().endswith((".h5", ".hdf5")):
@@ -591,35 +499,10 @@ def commands_for(main, turn):
     return [(["info", main, "--json"], None, (0, 2, 3))] if turn % 4 == 0 else [solve]
 
 
-def try_case(checker, damage, commands, folder, place):
-    """One damaged seed; returns its complaints. The files are kept in `place` if there are any."""
-    case = folder / "case"
-    shutil.rmtree(case, ignore_errors=True)
-    case.mkdir()
-    write_parts(case, damage)
-    complaints = []
-    for arguments, output, allowed in commands:
-        if output:
-            old = b"what was here before"
-            (case / output).write_bytes(old + seal_of(old) if output.endswith(".h5") else old)
-        _, found = checker.run(arguments, case, list(damage.parts), output, allowed)
-        if found:
-            complaints += [" ".join(arguments)] + found
-    if complaints:
-        shutil.rmtree(place, ignore_errors=True)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copytree(case, place, symlinks=True,
-                        ignore=lambda d, names: [n for n in names if stat.S_ISFIFO(os.lstat(os.path.join(d, n)).st_mode)])
-        (place / "complaint.txt").write_text("\n".join(damage.words + complaints) + "\n")
-    return complaints
-
-
 def solved(checker, seed, folder):
     """A solution of the room as a seed, the room beside it, or None."""
-    case = folder / "solved"
-    shutil.rmtree(case, ignore_errors=True)
-    case.mkdir()
-    write_parts(case, Damage(seed, 0, 0, False))
+    case = new_folder(folder / "solved")
+    Damage(seed, 0, 0, False).write(case)
     run = subprocess.run([checker.program, "solve", seed.main, "-o", "solution.h5", "--packets", "20000", "--time", "5s",
                           "--zone-area", "0.2"],
                          cwd=case, env=checker.environment, capture_output=True, check=False)
@@ -696,17 +579,11 @@ def main(arguments):
                 print(f"case {number}, {seed.main}, {'; '.join(damage.words)}:\n  " + "\n  ".join(complaints), flush=True)
     print(f"seed {options.seed}: {sum(kinds.values())} files:", ", ".join(f"{n} {k}" for k, n in sorted(kinds.items())))
     print("damaged in them:", ", ".join(f"{n} {k}" for k, n in sorted(damaged.items())))
-    print("ends:", ", ".join(f"{command} {code}: {n}" for (command, code), n in sorted(checker.codes.items(), key=str)))
-    print(f"slowest: {checker.slowest[0]:.1f} s, {checker.slowest[1]}")
     if options.verbose:
         print("refusals that name no place:")
         for kind, n in sorted(checker.placeless.items()):
             print(f"  {n} x {kind}")
-    for number, name, complaints in offending:
-        print(f"offending: case {number} of {name}: {complaints[1]}")
-    if offending:
-        print(f"{len(offending)} of {sum(kinds.values())} files offend; they are in {keep}, and --only NUMBER repeats one")
-    return 1 if offending else 0
+    return print_summary(checker, offending, sum(kinds.values()), keep)
 
 
 # ---------------------------------------------------------------- self-test

@@ -105,6 +105,30 @@ TEST(LargeRooms, FanOfTooManyTrianglesIsRefusedByName) {
   EXPECT_THAT(message, HasSubstr("join thin triangles"));
 }
 
+// Crossings of cuts that should be one point are some rounding apart; as a vertex each they were cut along by
+// all of the others, and that took minutes.
+TEST(LargeRooms, SquaresThatAllPierceEachOtherInOnePointShareAVertex) {
+  TestRoom room;
+  const SurfaceId id = room.surface("knot", room.material());
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  constexpr int kSquares = 40;
+  const Vec3 c(1, 2, 3);
+  for (int i = 0; i < kSquares; ++i) {
+    const Vec3 u = Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 v = u.unitOrthogonal();
+    room.add(id, {c - u - v, c + u - v, c + u + v, c - u + v});
+  }
+  const MeshResult r = build_mesh(room.scene());
+  EXPECT_LT(test::worst_book_gap(r), test::kExact);
+  EXPECT_NEAR(test::meshed_area(r.mesh, id), 4 * kSquares, 1e-6);
+  const auto& vertices = r.mesh.base().vertices;
+  EXPECT_EQ(
+      std::count_if(vertices.begin(), vertices.end(), [&](const Vec3& p) { return (p - c).norm() < 1e-6; }),
+      1);
+  EXPECT_LT(r.mesh.triangle_count(), 500U * kSquares);
+}
+
 TEST(LargeRooms, NeighboursAlongEdgesAreNotCandidatesForContact) {
   VertexTable vertices(1e-7);
   const auto triangle = [&](const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -246,6 +246,15 @@ TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
   }
 }
 
+// A ground of 20 km outside of a closed room: cut like the walls it would have more zones than can be.
+TEST(BuildZones, WhatNoLightReachesIsNotDividedLikeTheRest) {
+  CrateRoom room(1, 1);
+  room.quad(room.surface("ground", room.material(0.5, 0, true)), {-1e4, -1e4, -1}, {2e4, 0, 0}, {0, 2e4, 0},
+            1);
+  const ZoneMesh mesh = build_zones(room.scene()).mesh;
+  EXPECT_LT(mesh.zone_count(), 20'000U);
+}
+
 TEST(BuildZones, CellsAreNoLargerThanAskedFor) {
   CrateRoom room(5, 20);
   constexpr double kZoneArea = 0.1;

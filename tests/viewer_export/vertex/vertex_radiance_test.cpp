@@ -167,7 +167,7 @@ TEST(GatherVertices, groups_of_sides_keep_every_vertex) {
   MeshSettings mesh_settings;
   mesh_settings.default_zone_count = 400;
   MeshResult grouped = build_zones(room.scene(), mesh_settings);
-  MeshResult cells{ZoneMesh(grouped.mesh.base()), grouped.report};
+  MeshResult cells{ZoneMesh(grouped.mesh.base(), {}, grouped.mesh.splits()), grouped.report};
   ASSERT_LT(2 * grouped.mesh.zone_count(), cells.mesh.zone_count());
   VertexSettings settings;
   settings.all_zones = true;
