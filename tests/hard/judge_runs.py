@@ -117,10 +117,10 @@ def new_folder(folder):
     return folder
 
 
-def try_case(checker, case, commands, folder, place, afterwards=None):
+def try_case(checker, case, commands, folder, place, judge=None):
     """Runs `commands`, (arguments, output that is there before, exit codes that are right) each, on one case: words
-    about it, names() of its files, write(folder). `afterwards` takes the folder and complains too. Returns all
-    complaints; if there are any, the files are kept in `place`."""
+    about it, names() of its files, write(folder). `judge` gets what each run that succeeded printed, and complains too.
+    Returns all complaints; if there are any, the files are kept in `place`."""
     here = new_folder(folder / "case")
     case.write(here)
     complaints = []
@@ -128,11 +128,11 @@ def try_case(checker, case, commands, folder, place, afterwards=None):
         if output:
             old = b"what was here before"
             (here / output).write_bytes(old + seal_of(old) if output.endswith(".h5") else old)
-        _, _, found = checker.run(arguments, here, case.names(), output, allowed)
+        code, printed, found = checker.run(arguments, here, case.names(), output, allowed)
+        if judge and code == 0:
+            found += judge(arguments, printed)
         if found:
             complaints += [" ".join(arguments)] + found
-    if afterwards:
-        complaints += afterwards(here)
     if complaints:
         shutil.rmtree(place, ignore_errors=True)
         place.parent.mkdir(parents=True, exist_ok=True)
