@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include <boost/container_hash/hash.hpp>
+
 #include "scenes/io/common/srgb.h"
 
 namespace reemit {
@@ -14,6 +16,10 @@ Rgba rgba_of_srgb(double r, double g, double b) {
     return static_cast<std::uint8_t>(std::lround(255 * linear_from_srgb(srgb)));
   };
   return {byte(r), byte(g), byte(b), 255};
+}
+
+std::size_t PictureObject::KeyHash::operator()(const Key& key) const {
+  return boost::hash_range(key.begin(), key.end());
 }
 
 std::uint32_t PictureObject::vertex_at(const Vec3& p, const Rgba& colour) {

@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <boost/container_hash/hash.hpp>
-
 #include "scenes/model/vec.h"
 
 namespace reemit {
@@ -45,6 +43,9 @@ class PictureObject {
 
  private:
   using Key = std::array<std::uint32_t, 4>;  // the bits of a vertex
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const;
+  };
 
   std::uint32_t vertex_at(const Vec3& p, const Rgba& colour);
 
@@ -53,7 +54,7 @@ class PictureObject {
   std::vector<Vertex> vertices_;
   std::vector<std::uint32_t> indices_;
   bool has_lines_ = false;
-  std::unordered_map<Key, std::uint32_t, boost::hash<Key>> known_;
+  std::unordered_map<Key, std::uint32_t, KeyHash> known_;
 };
 
 }  // namespace reemit
