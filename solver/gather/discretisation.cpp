@@ -23,8 +23,8 @@ constexpr double kSmallEnough = 0.03;
 
 }  // namespace
 
-std::optional<double> discretisation_error(const Room& room, const Solution& solution,
-                                           const StopToken& stop, std::size_t probe_count) {
+std::optional<double> discretisation_error(const Room& room, const Solution& solution, const StopToken& stop,
+                                           std::size_t probe_count) {
   if (stop.requested()) return std::nullopt;
   const RadianceField field(room, solution, kFieldHalves);
   if (field.parts() != kFieldHalves) return std::nullopt;

@@ -12,8 +12,8 @@ namespace reemit {
 /// edges and gradients inside a zone, which the standard error of the zone values knows nothing of; it is
 /// also the error of a picture that shows the zones themselves. Noise of gathers and zones is taken out: two
 /// independent halves of the batches give two differences, whose product has no noise on the mean. Takes
-/// about 160 rays for each probe. Nothing with fewer than two batches, without light, when noise leaves it uncertain by
-/// more than a factor of two, or when `stop` is requested before the end.
+/// about 160 rays for each probe. Nothing with fewer than two batches, without light, when noise leaves it
+/// uncertain by more than a factor of two, or when `stop` is requested before the end.
 std::optional<double> discretisation_error(const Room& room, const Solution& solution, const StopToken& stop,
                                            std::size_t probe_count = 1024);
 
