@@ -186,8 +186,7 @@ void write_mesh(const Hdf5Group& root, const Solution& solution) {
   const ZoneGroups& groups = solution.mesh.groups();
   put(mesh, "side_group", groups.of_side, 1, "",
       "group of each side, row 2t the front of triangle t, 2t+1 its back, that share one zone, numbered "
-      "after "
-      "all others; 4294967295 = has its own; empty = there are no groups");
+      "after all others; 4294967295 = has its own; empty = there are no groups");
   mesh.write_attribute("sealed_groups", groups.sealed);
   const CellSplits& splits = solution.mesh.splits();
   put(mesh, "split_sides", column<std::uint32_t>(splits.sides, std::mem_fn(&SideId::index)), 1, "",

@@ -68,7 +68,7 @@ std::vector<bool> dark_triangles(const ZoneMesh& mesh, const std::vector<SideUse
   return dark;
 }
 
-/// Sides that have cells of their own.
+/// Sides that have cells of their own when these groups are made.
 std::vector<SideId> sides_with_cells(const ZoneMesh& mesh, const ZoneGroups& groups) {
   std::vector<SideId> sides;
   for (std::size_t s = 0; s < mesh.side_count(); ++s)
@@ -112,16 +112,13 @@ MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const W
       watch.part(kSealed, kSolved));
   const std::vector<float> light = light_on_sides(pilot, uses, watch.part(kSolved, kGrouped));
   plan = plan_zones(result.mesh, uses, light, wanted, zone_area, largest);
+  const std::vector<SideId> sides = sides_with_cells(result.mesh, plan.groups);
+  const double cells = wanted - (plan.groups.count - plan.groups.sealed);
   const double root_area = std::min(kCoarsest * plan.zone_area, largest);
   BaseMesh base = std::move(result.mesh).release_base();
   size_zones(base, root_area, dark);
-  ZoneMesh roots(std::move(base), std::move(plan.groups));
-  const std::vector<SideId> sides = sides_with_cells(roots, roots.groups());
-  const double cells = wanted - (roots.groups().count - roots.groups().sealed);
-  CellSplits splits =
-      refine_cells(pilot, roots.base(), sides, {cells, plan.zone_area}, watch.part(kGrouped, 1));
-  ZoneGroups groups = roots.groups();
-  result.mesh = ZoneMesh(std::move(roots).release_base(), std::move(groups), std::move(splits));
+  CellSplits splits = refine_cells(pilot, base, sides, {cells, plan.zone_area}, watch.part(kGrouped, 1));
+  result.mesh = ZoneMesh(std::move(base), std::move(plan.groups), std::move(splits));
   return result;
 }
 
