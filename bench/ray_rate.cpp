@@ -23,6 +23,7 @@
 #include "solver/room/room.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/tally/batch_plan.h"
+#include "solver/zoning/build_zones.h"
 
 namespace {
 
@@ -111,7 +112,7 @@ void measure(const Case& c, int threads, int rounds) {
   const Scene scene = read_scene(c.room);
   MeshSettings mesh_settings;
   mesh_settings.default_zone_count = static_cast<int>(c.zones);
-  const MeshResult built = build_mesh(scene, mesh_settings);
+  const MeshResult built = build_zones(scene, mesh_settings);
   const Room walls(scene, built.mesh);
   const PacketRoom transport(walls);
   const PacketSources emission = collect_packet_sources(transport);

@@ -86,6 +86,10 @@ IntensityTable::IntensityTable(PhotometricType type, const std::vector<double>& 
     demand(std::isfinite(value) && value >= 0, "intensities must be finite and not negative");
     greatest_ = std::max(greatest_, value);
   }
+  for (const double polar : polar_) {
+    polar_sine_.push_back(std::sin(polar));
+    polar_cosine_.push_back(std::cos(polar));
+  }
   azimuth_integral_.assign(candela_.size(), 0);
   for (std::size_t j = 1; j < azimuth_.size(); ++j)
     for (std::size_t i = 0; i < lines; ++i)

@@ -59,8 +59,10 @@ class IntensityTable {
   double total_flux() const { return flux_below_.back(); }
   double greatest_intensity() const { return greatest_; }  ///< [cd]
 
-  // Running integrals of the interpolant, for sampling.
+  // For sampling.
 
+  double polar_sine(std::size_t polar) const { return polar_sine_[polar]; }      ///< At a grid line.
+  double polar_cosine(std::size_t polar) const { return polar_cosine_[polar]; }  ///< At a grid line.
   /// Flux [lm] at polar angles below grid line `polar`.
   double flux_below(std::size_t polar) const { return flux_below_[polar]; }
   /// Integral over the azimuths up to grid line `azimuth` at the grid line `polar` [cd rad].
@@ -72,6 +74,7 @@ class IntensityTable {
   PhotometricType type_;
   GoniometerAxes axes_;
   std::vector<double> polar_, azimuth_, candela_;
+  std::vector<double> polar_sine_, polar_cosine_;
   std::vector<double> flux_below_, azimuth_integral_;
   double greatest_ = 0;
   bool full_circle_ = false;
