@@ -19,8 +19,11 @@
 namespace reemit {
 namespace {
 
-// Pairs of faces that overlap, of which all are kept until the groups are known.
+// Pairs of faces that overlap, of which all are kept until the groups are known, and the crossings of their
+// outlines: bounds for rooms of any size, and for each face of large ones.
 constexpr std::size_t kMostOverlaps = 10'000'000;
+constexpr std::size_t kMostOverlapsPerFace = 10;
+constexpr std::size_t kMostCrossingsPerFace = 10;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -199,6 +202,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_
   NearPieces near(scene_, vertices_, pieces_);
   // Neighbours that share an edge or a corner reach inside by the rounding of a product, no more.
   constexpr double kRounding = 1e-3;  // of the weld distance
+  const std::size_t most = std::max(kMostOverlaps, kMostOverlapsPerFace * pieces_.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t large = 0; large < pieces_.size(); ++large) {
     step.at(large, pieces_.size());
@@ -210,7 +214,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_
       if (piece.area < other.area || (piece.area == other.area && large >= small)) return;
       if (!coplanar(piece, other) || !overlap(large, small, piece.plane)) return;
       pairs.push_back(std::minmax(large, small));
-      if (pairs.size() > kMostOverlaps) refuse(large, kMostOverlaps, "pairs of faces overlap");
+      if (pairs.size() > most) refuse(large, most, "pairs of faces overlap");
     });
   }
   std::sort(pairs.begin(), pairs.end());
@@ -219,14 +223,14 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_
 
 PieceGroups OverlapSearch::run(const WorkStep& step) {
   const auto pairs = overlapping_pairs(step);
+  const std::size_t most = std::max(kMostPlaneCrossings, kMostCrossingsPerFace * pieces_.size());
   PieceGroups out;
   out.hidden = hidden_lines(pairs);
   DisjointSets sets(pieces_.size());
   for (const auto& [i, j] : pairs) {
     sets.join(i, j);
     add_crossings(i, j, out);
-    if (out.crossings.size() > kMostPlaneCrossings)
-      refuse(i, kMostPlaneCrossings, "crossings of outlines of overlapping faces lie");
+    if (out.crossings.size() > most) refuse(i, most, "crossings of outlines of overlapping faces lie");
   }
   out.group_of.resize(pieces_.size());
   std::vector<std::uint32_t> largest;
