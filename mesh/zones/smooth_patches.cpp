@@ -30,12 +30,8 @@ std::vector<EdgeUse> sorted_edges(const BaseMesh& base) {
                       static_cast<int>(k), a < b});
     }
   }
-  std::sort(uses.begin(), uses.end(), [&](const EdgeUse& x, const EdgeUse& y) {
-    if (x.key != y.key) return x.key < y.key;
-    const SurfaceId sx = base.triangles[x.triangle].surface;
-    const SurfaceId sy = base.triangles[y.triangle].surface;
-    if (sx != sy) return sx < sy;
-    return x.triangle < y.triangle;
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
+    return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
   });
   return uses;
 }
@@ -103,8 +99,9 @@ void SmoothPatches::join_edges(const ZoneMesh& mesh, double crease_angle_deg) {
   const std::vector<EdgeUse> uses = sorted_edges(mesh.base());
   const auto surface = [&](std::size_t i) { return mesh.triangle(TriangleId(uses[i].triangle)).surface; };
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    while (end < uses.size() && uses[end].key == uses[begin].key && surface(end) == surface(begin)) ++end;
-    if (end - begin != 2) continue;
+    while (end < uses.size() && uses[end].key == uses[begin].key) ++end;
+    // A third triangle stands there: light ends on the line, whatever surface it is of.
+    if (end - begin != 2 || surface(begin) != surface(begin + 1)) continue;
     const EdgeUse& a = uses[begin];
     const EdgeUse& b = uses[begin + 1];
     const EdgeJoint joint(mesh, a, b, crease_angle_deg);

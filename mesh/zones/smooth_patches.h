@@ -13,9 +13,9 @@ class SmoothPatches {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// Two patches are joined along an edge if no third triangle of their surface meets there, their triangles
-  /// belong to the same surface, they lie on the same side, and they bend by no more than the crease angle or
-  /// have the same shading normals at both ends.
+  /// Two patches are joined along an edge if no third triangle meets there, such as that of a wall that
+  /// stands on a floor; their triangles belong to the same surface, they lie on the same side, and they bend
+  /// by no more than the crease angle or have the same shading normals at both ends.
   SmoothPatches(const ZoneMesh& mesh, double crease_angle_deg);
 
   /// Patch and edge on the other side of edge k as 3*patch+edge; kNone at a border.

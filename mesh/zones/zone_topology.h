@@ -15,8 +15,8 @@ struct ZoneTopologyTraits : OpenMesh::DefaultTraits {
 /// Half-edge mesh of the cells: face i is cell i of ZoneCells, wound counter-clockwise seen from its side.
 /// A cell beside finer ones is a polygon with the finer ones' vertices on its straight sides, so neighbours
 /// always share edges. Vertices are shared within smooth parts only: split at creases, at borders between
-/// surfaces or materials, between front and back, and where more than two cells meet at an edge. Vertex
-/// normals are the shading normals (towards the side of the cell).
+/// surfaces or materials, between front and back, and where something else stands on an edge, which light
+/// does not cross. Vertex normals are the shading normals (towards the side of the cell).
 using ZoneTopology = OpenMesh::PolyMesh_ArrayKernelT<ZoneTopologyTraits>;
 
 ZoneTopology make_zone_topology(const ZoneMesh& mesh, double crease_angle_deg);

@@ -106,6 +106,19 @@ TEST(HardRooms, FloorUnderAWallIsLitOnOneSideOnly) {
       EXPECT_GT(data.irradiance[v], 0) << p.transpose();
     }
   }
+  // Those of the line itself belong to one side each.
+  std::size_t dark = 0;
+  for (const auto& t : data.triangles) {
+    const auto on_floor = [&](std::uint32_t v) {
+      return !data.on_back[v] && data.positions[v].y() == 0 && data.normals[v].y() > 0.9;
+    };
+    if (!std::all_of(t.begin(), t.end(), on_floor)) continue;
+    const Vec3 middle = (data.positions[t[0]] + data.positions[t[1]] + data.positions[t[2]]) / 3;
+    if (depth(middle) < 0) continue;
+    ++dark;
+    for (const std::uint32_t v : t) EXPECT_EQ(data.irradiance[v], 0) << data.positions[v].transpose();
+  }
+  EXPECT_GT(dark, 10U);
 }
 
 TEST(HardRooms, LampInTheCeilingPlaneSendsItsPowerOnceIntoTheRoom) {
