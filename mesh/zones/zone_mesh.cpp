@@ -156,14 +156,6 @@ void ZoneMesh::add_groups() {
   for (std::uint32_t g = 0; g < groups_.count; ++g) zone_side_.push_back(members_[first_member_[g]]);
 }
 
-SidePoint cell_point(const SideCell& cell, float a, float b) {
-  const auto corner = zone_corners(cell.divisions, cell.number);
-  const auto inside = [&](double Barycentric::*k) {
-    return (1 - a - b) * corner[0].*k + a * corner[1].*k + b * corner[2].*k;
-  };
-  return {cell.triangle, {inside(&Barycentric::u), inside(&Barycentric::v)}, cell.front};
-}
-
 SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
   const std::size_t first = first_member(group);
   const std::size_t last = first + member_count(group) - 1;

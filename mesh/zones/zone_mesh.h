@@ -4,61 +4,17 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/zones/base_mesh.h"
 #include "mesh/zones/cell_splits.h"
 #include "mesh/zones/curved_patch.h"
 #include "mesh/zones/side.h"
+#include "mesh/zones/side_cell.h"
 #include "mesh/zones/zone_groups.h"
 #include "mesh/zones/zone_lookup.h"
 #include "scenes/model/ids.h"
 #include "scenes/model/vec.h"
 
 namespace reemit {
-
-/// What zones are cut from: a triangle of the coarse, repaired room, which rays are traced against, or a
-/// patch of a curved shape.
-struct BaseTriangle {
-  static constexpr std::uint32_t kFlat = 0xffffffff;
-  std::array<std::uint32_t, 3> vertex;  ///< Into BaseMesh::vertices, counter-clockwise from the front.
-  std::array<std::uint32_t, 3> normal{kFlat, kFlat,
-                                      kFlat};  ///< Into BaseMesh::normals, kFlat = geometric normal.
-  SurfaceId surface;
-  std::uint32_t face = 0;       ///< Index of the polygon in its Surface it was cut from.
-  std::uint32_t divisions = 1;  ///< n >= 1: the triangle holds n*n cells on each side that has zones.
-  bool two_sided = false;       ///< The back has zones of its own; else it absorbs.
-  std::uint32_t shape = kFlat;  ///< Into BaseMesh::shapes; kFlat = a flat triangle.
-  std::uint32_t patch = 0;      ///< Of CurvedPatches.
-
-  bool is_curved() const { return shape != kFlat; }
-};
-
-/// The repaired, cut and triangulated room [m]. Plain data: this is what a solution file keeps of the
-/// geometry.
-struct BaseMesh {
-  std::vector<Vec3> vertices;
-  std::vector<Vec3> normals;            ///< Unit shading normals.
-  std::vector<BaseTriangle> triangles;  ///< Flat ones first, then all patches of each shape in order.
-  std::vector<CurvedShape> shapes;
-};
-
-/// A point on one side of a base triangle.
-struct SidePoint {
-  TriangleId triangle;
-  Barycentric at;
-  bool front = true;
-};
-
-/// One of the divisions^2 congruent parts of a side of a base triangle (zone_lookup.h); divisions are those
-/// of the triangle, or a power of 2 times as many (CellSplits).
-struct SideCell {
-  TriangleId triangle;
-  bool front = true;
-  std::uint32_t divisions = 1;
-  std::uint32_t number = 0;
-};
-
-/// The point of a cell that is a and b of its edges away from its first corner: uniform over the cell for
-/// a, b uniform over the triangle a, b >= 0, a + b <= 1.
-SidePoint cell_point(const SideCell& cell, float a, float b);
 
 /// Base triangles and their zones: the one place that knows what a zone is, which zone a point belongs to,
 /// and where the points of a zone are. A zone is one cell of a base triangle seen from one side, a part of a
