@@ -70,6 +70,13 @@ std::optional<std::uint64_t> available_memory() {
   return std::min({*machine, free_of_process(), free_of_container()});
 }
 
+std::uint64_t peak_memory() {
+  rusage used{};
+  if (getrusage(RUSAGE_SELF, &used) != 0) return 0;
+  constexpr std::uint64_t kKilobyte = 1024;  // Linux counts in them
+  return kKilobyte * static_cast<std::uint64_t>(used.ru_maxrss);
+}
+
 void check_memory(const std::string& what, double needed, std::optional<std::uint64_t> available) {
   if (!available || needed <= static_cast<double>(*available)) return;
   constexpr double kGigabyte = 1e9;

@@ -9,6 +9,7 @@
 #include "solver/solution/solution_file.h"
 #include "solver/zoning/build_zones.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/step_note.h"
 
 namespace reemit::cli {
 namespace fs = std::filesystem;
@@ -40,11 +41,13 @@ std::string reading(const std::vector<fs::path>& files) {
 }  // namespace
 
 Scene load_room(const std::vector<fs::path>& files, const ReadOptions& options, const OutputStyle& style) {
+  const StepNote note(reading(files), style);
   const WaitingLine line(reading(files), style_of(style));
   return read_scene(files, options);
 }
 
 MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style) {
+  const StepNote note("meshing", style);
   Progress progress("meshing", style_of(style), kQuietSeconds);
   return build_zones(scene, settings, WorkWatch([&](double done) { progress.update(done); }));
 }
@@ -54,6 +57,7 @@ bool is_meant_as_solution(const fs::path& file) {
 }
 
 Solution load_solution(const fs::path& file, const OutputStyle& style) {
+  const StepNote note(reading({file}), style);
   const WaitingLine line(reading({file}), style_of(style));
   return reemit::load_solution(file);
 }
@@ -61,13 +65,15 @@ Solution load_solution(const fs::path& file, const OutputStyle& style) {
 Scene load_room_of(const Solution& solution, const fs::path& solution_file,
                    const std::vector<fs::path>& override, const OutputStyle& style) {
   const std::vector<std::string> stored = room_files(solution);
-  const WaitingLine line(
-      reading(override.empty() ? std::vector<fs::path>(stored.begin(), stored.end()) : override),
-      style_of(style));
+  const std::string step =
+      reading(override.empty() ? std::vector<fs::path>(stored.begin(), stored.end()) : override);
+  const StepNote note(step, style);
+  const WaitingLine line(step, style_of(style));
   return read_room_of(solution, solution_file, override);
 }
 
 Room build_room(const Scene& scene, const ZoneMesh& mesh, const OutputStyle& style) {
+  const StepNote note("building the tree for rays", style);
   const WaitingLine line("building the tree for rays", style_of(style));
   return Room(scene, mesh);
 }

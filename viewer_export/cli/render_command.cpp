@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
+#include "scenes/model/memory.h"
 #include "solver/progressive_solver.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
@@ -25,6 +26,7 @@
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/step_note.h"
 #include "viewer_export/cli/text_table.h"
 #include "viewer_export/still/eye_place.h"
 #include "viewer_export/still/image_file.h"
@@ -94,6 +96,9 @@ class Renderer {
 
   void render(const Job& job) {
     const auto start = std::chrono::steady_clock::now();
+    const StepNote note(fmt::format("rendering {} ({} x {} pixels)", job.camera.name, options_.still.width,
+                                    options_.still.height),
+                        options_.style);
     if (!options_.style.quiet) warn_of_eye(job.camera);
     Progress progress("rendering " + job.camera.name,
                       progress_style(options_.style.quiet, options_.style.verbose));
@@ -143,10 +148,11 @@ class Renderer {
     const std::string integrator = to_string(options_.still.integrator);
     if (options_.style.json) {
       nlohmann::ordered_json picture{
-          {"file", job.file.string()},        {"camera", job.camera.name},
-          {"width_px", image.width},          {"height_px", image.height},
-          {"integrator", integrator},         {"samples_per_pixel", mean_samples(image)},
-          {"error", known_error(image.info)}, {"seconds", seconds}};
+          {"file", job.file.string()},         {"camera", job.camera.name},
+          {"width_px", image.width},           {"height_px", image.height},
+          {"integrator", integrator},          {"samples_per_pixel", mean_samples(image)},
+          {"error", known_error(image.info)},  {"seconds", seconds},
+          {"peak_memory_bytes", peak_memory()}};
       add_zones(picture, image.info.zones);
       if (written.tone_mapped) picture["exposure_ev"] = written.tone_map.exposure_ev();
       pictures_.push_back(std::move(picture));

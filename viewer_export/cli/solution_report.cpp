@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/model/memory.h"
 #include "solver/solution/zone_summary.h"
 #include "viewer_export/cli/error_text.h"
 #include "viewer_export/cli/text_table.h"
@@ -126,6 +127,7 @@ Json solve_json(const Scene& scene, const Solution& solution, const std::filesys
     for (const std::string& warning : *more) json["warnings"].push_back(warning);
   json["notes"] = scene.notes;
   json["solution"] = file.string();
+  json["peak_memory_bytes"] = peak_memory();
   if (solution.form_factors) json["form_factors"] = form_factor_json(*solution.form_factors);
   return json;
 }

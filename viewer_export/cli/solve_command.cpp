@@ -24,6 +24,7 @@
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/run_log.h"
 #include "viewer_export/cli/solution_report.h"
+#include "viewer_export/cli/step_note.h"
 #include "viewer_export/cli/text_table.h"
 
 namespace reemit::cli {
@@ -175,6 +176,7 @@ bool is_done(const SolveOptions& options, Start& start) {
 
 /// Saves a solution in one piece, with a line about it if that takes long.
 void save(const Solution& solution, const SolveOptions& options) {
+  const StepNote note("saving " + options.output.filename().string(), options.style);
   const WaitingLine saving("saving " + options.output.filename().string(),
                            progress_style(options.style.quiet, options.style.verbose));
   write_output([&] { save_solution(solution, options.output); });
@@ -252,9 +254,14 @@ ExitCode run_solve(const SolveOptions& options) {
       write_output([&] { save_solution(solution, options.output); });
     };
   }
-  const Solution solution = solve(start.scene, std::move(start.solution), watch, interrupt.requested());
-  preparation.reset();
-  progress.finish();
+  const std::string step = fmt::format("solving {} zones", start.solution.mesh.zone_count());
+  const Solution solution = [&] {
+    const StepNote note(step, options.style);
+    Solution solved = solve(start.scene, std::move(start.solution), watch, interrupt.requested());
+    preparation.reset();
+    progress.finish();
+    return solved;
+  }();
   if (log) log->finish(solution);
   save(solution, options);
   report(start.scene, solution, options);

@@ -97,6 +97,7 @@ TEST_F(Pipeline, SolveAsJsonIsOneDocument) {
   EXPECT_EQ(report["seed"], 5);
   EXPECT_TRUE(report["balanced"].get<bool>());
   EXPECT_THAT(report["stopped"].get<std::string>(), HasSubstr("packet"));
+  EXPECT_GT(report["peak_memory_bytes"].get<double>(), 1e6);
 }
 
 TEST_F(Pipeline, ErrorTargetIsReachedAndStated) {
@@ -406,6 +407,16 @@ TEST_F(Pipeline, InfoGivesTheLightOfEverySurfaceAndMaterialWithItsError) {
   const json without = json::parse(output_of({"info", path("room.h5"), "--json"}));
   EXPECT_NE(without["room_status"], "unchanged");
   EXPECT_EQ(without["luminaires"], info["luminaires"]) << "luminous surfaces are in the solution";
+}
+
+TEST_F(Pipeline, VerboseTellsWhatEachStepTookInTimeAndMemory) {
+  const auto err_of = [&](const std::string& option) {
+    return run_reemit({"solve", path("room.json"), "-o", path("v.h5"), "--packets", "1000", option}).err;
+  };
+  for (const char* step : {"reemit: reading room.json took", "meshing took", " zones took",
+                           "saving v.h5 took", "memory so far at most "})
+    EXPECT_THAT(err_of("--verbose"), HasSubstr(step));
+  EXPECT_THAT(err_of("--quiet"), IsEmpty());
 }
 
 TEST_F(Pipeline, WarningsGoToStandardErrorAndQuietSilencesThem) {
