@@ -1,0 +1,139 @@
+// What zones that fit the light bring: the error of zones at points, of light gathered from them and of
+// pictures, against their number and against time, for zones of one size and for those of build_zones.
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/zone_plans/picture_check.h"
+#include "bench/zone_plans/plan_plot.h"
+#include "mesh/build_mesh.h"
+#include "scenes/io/scene_reader.h"
+#include "solver/gather/discretisation.h"
+#include "solver/gather/zone_bias_estimate.h"
+#include "solver/progressive_solver.h"
+#include "solver/zoning/build_zones.h"
+
+namespace {
+
+using namespace reemit;
+using namespace reemit::bench;
+
+constexpr std::size_t kProbes = 16'384;
+const std::atomic<bool> kNever{false};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Plan {
+  bool fitting = false;
+  int zones = 0;
+};
+
+MeshSettings mesh_settings(const Plan& plan) {
+  MeshSettings mesh;
+  mesh.default_zone_count = plan.zones;
+  mesh.share_zones = plan.fitting;
+  return mesh;
+}
+
+PlanRow measure(const Scene& scene, const Plan& plan, const SolverSettings& settings,
+                const PictureCheck& pictures) {
+  PlanRow row;
+  row.fitting = plan.fitting;
+  const auto start = std::chrono::steady_clock::now();
+  MeshResult zones = build_zones(scene, mesh_settings(plan));
+  row.zoning_s = seconds_since(start);
+  const Solution s = solve_zones(scene, std::move(zones), settings, {}, kNever);
+  const Room room(scene, s.mesh);
+  const StopToken stop(kNever);
+  row.zones = s.mesh.zone_count();
+  row.lit = row.zones - s.record.unreached_zones;
+  row.solve_s = s.record.seconds;
+  row.rays_per_s = static_cast<double>(s.record.rays) / s.record.seconds;
+  row.noise = s.record.error;
+  row.points = discretisation_error(room, s, stop, kProbes).value_or(0);
+  if (const auto gathered = estimate_zone_bias(room, s, stop)) row.gathered = gathered->rms;
+  row.picture_zones = pictures.error(room, s, Integrator::kZones);
+  row.picture_gathered = pictures.error(room, s, Integrator::kGather);
+  return row;
+}
+
+std::string percent(double value) {
+  return value > 0 ? fmt::format("{:.2f} %", 100 * value) : "-";
+}
+
+void print(const PlanRow& r) {
+  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.3f} % | {} | {} | {} | {} |\n", r.room,
+             r.fitting ? "fit the light" : "of one size", r.zones, r.lit, r.zoning_s, r.solve_s,
+             r.rays_per_s / 1e6, 100 * r.noise, percent(r.points), percent(r.gathered),
+             percent(r.picture_zones), percent(r.picture_gathered));
+  std::fflush(stdout);
+}
+
+/// The two path-traced pictures are of the room, whatever its zones.
+PictureCheck references(const Scene& scene, int spp) {
+  const Solution unsolved = new_solution(scene, build_zones(scene, mesh_settings({false, 2000})), {});
+  return {Room(scene, unsolved.mesh), unsolved, spp};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Zones of one size against zones that fit the light, by their number or by time");
+  std::vector<std::filesystem::path> rooms;
+  std::vector<int> counts{500, 1000, 2000, 4000, 8000, 16000, 32000};
+  std::vector<double> times;
+  SolverSettings settings;
+  settings.packets = 20'000'000;
+  settings.gather_small_zones = false;
+  bool only_fitting = false;
+  int reference_spp = 1024;
+  std::filesystem::path plot;
+  app.add_option("rooms", rooms, "Room files")->required();
+  app.add_option("--zones", counts, "Numbers of zones to ask for")->capture_default_str();
+  app.add_option("--packets", settings.packets, "Packets of each solve")->capture_default_str();
+  app.add_option("--time", times, "Seconds of each solve instead: each of these for each number of zones");
+  app.add_option("--reference-spp", reference_spp, "Camera rays per pixel of the path-traced pictures")
+      ->capture_default_str();
+  app.add_flag("--only-fitting", only_fitting, "Leave the zones of one size out");
+  app.add_option("--plot", plot, "Draw the errors with gnuplot, as SVG");
+  CLI11_PARSE(app, argc, argv);
+  const bool by_time = !times.empty();
+  if (by_time)
+    settings.packets = 0;
+  else
+    times = {0};
+  try {
+    fmt::print(
+        "| room | zones | number | lit | zoning [s] | solve [s] | Mray/s | noise | points | gathered light | "
+        "picture of zones | gathered picture |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    std::vector<PlanRow> rows;
+    for (const std::filesystem::path& file : rooms) {
+      const Scene scene = read_scene(file);
+      const PictureCheck pictures = references(scene, reference_spp);
+      for (const bool fitting : {false, true}) {
+        if (!fitting && only_fitting) continue;
+        for (const int count : counts)
+          for (const double time : times) {
+            settings.time_limit_s = time;
+            rows.push_back(measure(scene, {fitting, count}, settings, pictures));
+            rows.back().room = file.stem().string();
+            print(rows.back());
+          }
+      }
+    }
+    if (!plot.empty()) draw_plans(rows, by_time, plot);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  }
+  return 0;
+}
