@@ -4,6 +4,8 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -23,9 +25,10 @@ using namespace reemit;
 
 struct Options {
   std::filesystem::path solution;
-  std::uint32_t batch = 0;
+  std::optional<std::uint32_t> batch;
   std::uint32_t packet = 0;
   std::uint32_t sweep = 0;
+  bool lost = false;
 };
 
 /// Packets of a batch of a run.
@@ -49,7 +52,7 @@ std::uint32_t packets_of_batch(const Solution& solution, std::uint32_t batch) {
 }
 
 std::string place_text(const Vec3& p) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+  return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x(), p.y(), p.z());
 }
 
 /// One line for a ray: where it starts and what it meets, second look included.
@@ -69,40 +72,83 @@ std::string ray_text(const Room& room, const Vec3f& origin, const Vec3f& directi
   return text + (zone.valid() ? fmt::format(", zone {}", zone.index()) : ", which absorbs everything");
 }
 
-void replay(const Options& options) {
-  const Solution solution = load_solution(options.solution);
-  if (solution.settings.method == SolveMethod::kMatrix)
-    throw std::invalid_argument("the solution is of the matrix method, which has no packets");
-  const Scene scene = read_room_of(solution, options.solution);
-  const Room room(scene, solution.mesh);
-  const PacketRoom transport(room);
-  const PacketSources emission = collect_packet_sources(transport);
-  const std::uint32_t packets = packets_of_batch(solution, options.batch);
+/// A solution with its room, ready to send its packets once more.
+struct Run {
+  explicit Run(const std::filesystem::path& file)
+      : solution(load_solution(file)),
+        scene(read_room_of(solution, file)),
+        room(scene, solution.mesh),
+        transport(room),
+        emission(collect_packet_sources(transport)) {
+    if (solution.settings.method == SolveMethod::kMatrix)
+      throw std::invalid_argument("the solution is of the matrix method, which has no packets");
+  }
 
+  void send(std::uint32_t batch, std::uint32_t packets, const RayObserver& observer) {
+    BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
+    BatchTask task{transport, emission, solution.settings, batch, packets};
+    task.ray_observer = &observer;
+    if (solution.settings.method == SolveMethod::kShooting)
+      shoot_batch(task, books);
+    else
+      walk_batch(task, books);
+  }
+
+  Solution solution;
+  Scene scene;
+  Room room;
+  PacketRoom transport;
+  PacketSources emission;
+};
+
+/// Whether a ray ends where light should not get: outside, on a side without zones, or on one that is sealed.
+bool is_lost(const Room& room, const Vec3f& origin, const Vec3f& direction) {
+  Hit hit;
+  if (!room.rays().closest(origin, direction, hit)) return true;
+  const ZoneId zone = room.mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+  return !zone.valid() || room.mesh().is_sealed(zone);
+}
+
+/// Prints every ray that is lost, of one batch or of all.
+void list_lost_rays(Run& run, std::optional<std::uint32_t> only) {
+  std::mutex printing;
+  std::size_t lost = 0;
+  const std::uint32_t end = only ? *only + 1 : static_cast<std::uint32_t>(run.solution.sums.batches);
+  for (std::uint32_t batch = only.value_or(0); batch < end; ++batch) {
+    run.send(batch, packets_of_batch(run.solution, batch), [&](const RayBlock& block) {
+      for (int lane = 0; lane < block.count; ++lane) {
+        if (!is_lost(run.room, block.rays.origin(lane), block.rays.direction(lane))) continue;
+        const std::lock_guard<std::mutex> lock(printing);
+        ++lost;
+        fmt::print("batch {}, packet {}, {} {}: {}\n", batch, block.id[lane],
+                   run.solution.settings.method == SolveMethod::kShooting ? "sweep" : "bounce", block.flight,
+                   ray_text(run.room, block.rays.origin(lane), block.rays.direction(lane)));
+      }
+    });
+  }
+  fmt::print("{} rays lost\n", lost);
+}
+
+void replay(Run& run, const Options& options) {
+  const Solution& solution = run.solution;
+  const std::uint32_t batch = options.batch.value_or(0);
+  const std::uint32_t packets = packets_of_batch(solution, batch);
   int found = 0;
   const RayObserver observer = [&](const RayBlock& block) {
     for (int lane = 0; lane < block.count; ++lane) {
       if (block.id[lane] != options.packet) continue;
       if (solution.settings.method == SolveMethod::kShooting && block.flight != options.sweep) continue;
       fmt::print("{:4}  {}\n", block.flight,
-                 ray_text(room, block.rays.origin(lane), block.rays.direction(lane)));
+                 ray_text(run.room, block.rays.origin(lane), block.rays.direction(lane)));
       ++found;
     }
   };
-  BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
-  BatchTask task{transport, emission, solution.settings, options.batch, packets};
-  task.ray_observer = &observer;
   // One thread, so that lines come in order.
   tbb::task_arena arena(1);
-  arena.execute([&] {
-    if (solution.settings.method == SolveMethod::kShooting)
-      shoot_batch(task, books);
-    else
-      walk_batch(task, books);
-  });
+  arena.execute([&] { run.send(batch, packets, observer); });
   if (found == 0)
     throw std::out_of_range(fmt::format("batch {} has no packet {} there; its luminaires send about {}",
-                                        options.batch, options.packet, packets));
+                                        batch, options.packet, packets));
 }
 
 }  // namespace
@@ -117,15 +163,23 @@ int main(int argc, char** argv) {
   app.add_option("solution", options.solution, "Solution file; its room must be where it was")
       ->required()
       ->check(CLI::ExistingFile);
-  app.add_option("--batch", options.batch, "Number of the batch, from 0")->capture_default_str();
+  app.add_option("--batch", options.batch, "Number of the batch, from 0 (default: 0; all with --lost)");
   app.add_option("--packet", options.packet, "Number of the packet within its batch or sweep, from 0")
       ->capture_default_str();
   app.add_option("--sweep", options.sweep,
                  "Shooting: 0 is the light of luminaires, 1 what zones send on first")
       ->capture_default_str();
+  app.add_flag(
+      "--lost", options.lost,
+      "Instead: every ray that ends where light should not get, outside, on a back that absorbs or on a "
+      "side that is sealed");
   CLI11_PARSE(app, argc, argv);
   try {
-    replay(options);
+    Run run(options.solution);
+    if (options.lost)
+      list_lost_rays(run, options.batch);
+    else
+      replay(run, options);
   } catch (const std::exception& e) {
     fmt::print(stderr, "bench_replay_packet: {}\n", e.what());
     return 2;

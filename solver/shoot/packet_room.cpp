@@ -18,8 +18,8 @@ PacketRoom::PacketRoom(const Room& room)
     const Vec3f e1 = rays.corner(t, 1) - p0;
     const Vec3f e2 = rays.corner(t, 2) - p0;
     const auto scale = 1.0F / static_cast<float>(n);
-    patches_.push_back(
-        {p0, scale * e1, scale * e2, p0 + (e1 + e2) / 3.0F, Frame(rays.normal(t)), n, rays.is_foot(t)});
+    patches_.push_back({p0, scale * e1, scale * e2, p0 + (e1 + e2) / 3.0F, Frame(rays.normal(t)), n,
+                        rays.edge_share(t), rays.is_foot(t)});
   }
 }
 

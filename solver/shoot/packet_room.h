@@ -83,6 +83,7 @@ class PacketRoom {
       return;
     }
     const TrianglePatch& p = patches_[triangle];
+    if (std::min({u, v, 1 - u - v}) < p.edge_share) rays_->move_off_edges(TriangleId(triangle), u, v);
     const float un = u * static_cast<float>(p.divisions);
     const float vn = v * static_cast<float>(p.divisions);
     for (int k = 0; k < 3; ++k) lanes.corner[k][lane] = p.corner[k] + un * p.edge1[k] + vn * p.edge2[k];
@@ -138,6 +139,7 @@ class PacketRoom {
     Vec3f corner, edge1, edge2, middle;
     Frame frame;  // about the front normal
     std::uint32_t divisions;
+    float edge_share;  // RayTracer::edge_share
     bool is_foot;
   };
 

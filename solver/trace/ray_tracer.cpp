@@ -164,6 +164,22 @@ Vec3f RayTracer::lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3
   return point + kLift * side_normal + inset_share(inward.norm()) * inward;
 }
 
+void RayTracer::move_off_edges(TriangleId t, float& u, float& v) const {
+  constexpr float kOffEdge = 4 * kLift;
+  float weight[3] = {1 - u - v, u, v};
+  for (int k = 0; k < 3; ++k) {
+    float height = 0;
+    into_triangle(t, k, height);
+    const float wanted = height > 3 * kOffEdge ? kOffEdge / height : 1.0F / 3;
+    if (weight[k] >= wanted) continue;
+    const float rest = (1 - wanted) / (1 - weight[k]);
+    for (float& other : weight) other *= rest;
+    weight[k] = wanted;
+  }
+  u = weight[1];
+  v = weight[2];
+}
+
 Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front) const {
   if (is_curved(t)) {
     // Drawn inwards along the shape, so that the start stays on its side of faces that the shape stands on.
@@ -179,6 +195,7 @@ Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front) const {
     }
     return (p + (front ? kLift : -kLift) * n).cast<float>();
   }
+  if (std::min({u, v, 1 - u - v}) < edge_shares_[t.index()]) move_off_edges(t, u, v);
   const Vec3f& n = normal(t);
   const Vec3f start =
       lifted(point(t, u, v), front ? n : Vec3f(-n), (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0F);

@@ -88,6 +88,11 @@ class RayTracer {
   /// The one self-intersection rule of the program: start of a ray that leaves a triangle with centroid
   /// `middle` at `point` on the side that `side_normal` (unit) points to.
   static Vec3f lifted(const Vec3f& point, const Vec3f& side_normal, const Vec3f& middle);
+  /// Moves (u,v) off the edges of a flat triangle that are nearer than edge_share() says, by 4 kLift within
+  /// the triangle. `lifted` draws starts towards the middle, which on a sliver leads along its long edges: a
+  /// point on such an edge would stay in the plane of the face that the sliver ends at, and the ray start
+  /// beyond it.
+  void move_off_edges(TriangleId t, float& u, float& v) const;
   /// Whether a curved shape stands on a flat triangle, so that rays start clear_of_shapes (ShapeFeet).
   bool is_foot(TriangleId t) const { return feet_.is_foot_at(t.index()); }
   Vec3f clear_of_shapes(TriangleId t, const Vec3f& start) const {

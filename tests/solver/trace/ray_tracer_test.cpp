@@ -1,6 +1,7 @@
 #include "solver/trace/ray_tracer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -42,6 +43,39 @@ TEST(RayTracer, ClosedBoxLosesNoRayAtAnyScaleAndPlace) {
   EXPECT_EQ(leaks(1e-3, Vec3::Zero()), 0);
   EXPECT_EQ(leaks(1e6, Vec3::Zero()), 0);
   EXPECT_EQ(leaks(1, Vec3(1e4, -1e4, 1e4)), 0);
+}
+
+/// A low rail under a ceiling: on the long edges of its slivers a step towards their middle leads nowhere,
+/// and a ray that starts in the plane of the ceiling meets its back.
+TEST(RayTracer, RaysFromSliversThatEndAtACeilingStayBelowIt) {
+  RoomBuilder room;
+  const MaterialId m = room.material("wall", 0.5, 0, true);
+  room.box(Vec3::Zero(), Vec3(16, 4.5, 8), {m, m, m, m, m, m}, 1);
+  room.quad(m, {Vec3(1, 4.49, 5.015), Vec3(15, 4.49, 5.015), Vec3(15, 4.5, 5.015), Vec3(1, 4.5, 5.015)}, 1);
+  const MeshResult built = room.mesh();
+  const RayTracer scene(built.mesh);
+  const CounterRng rng(7, RngPurpose::kProbe);
+  int above = 0;
+  int traced = 0;
+  for (std::size_t i = 0; i < built.mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    const Vec3 middle = built.mesh.point(t, 1.0 / 3, 1.0 / 3);
+    if (std::abs(middle.z() - 5.015) > 1e-9 || middle.y() < 4.4) continue;
+    for (std::uint32_t k = 0; k < 30'000; ++k) {
+      const auto u = rng.uniform4(k, 0, static_cast<std::uint32_t>(i));
+      const bool front = k % 2 == 0;
+      // Each of the three edges in turn.
+      const float a = k % 3 == 0 ? 0 : u[0];
+      const float b = k % 3 == 1 ? 0 : k % 3 == 0 ? u[0] : 1 - u[0];
+      const Vec3f n = front ? scene.normal(t) : Vec3f(-scene.normal(t));
+      const Vec3f d = Frame(n).to_world(sample_cosine_hemisphere(u[2], u[3]));
+      Hit hit;
+      ++traced;
+      if (!scene.closest(scene.ray_origin(t, a, b, front), d, hit) || !hit.front) ++above;
+    }
+  }
+  EXPECT_GT(traced, 0);
+  EXPECT_EQ(above, 0);
 }
 
 TEST(RayTracer, BlocksOfSixteenEqualSingleRays) {
