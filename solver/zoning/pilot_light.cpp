@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <numeric>
 #include <utility>
 
 #include "solver/gather/point_sampler.h"
@@ -40,9 +41,10 @@ Solution solve_pilot(const Scene& scene, MeshResult mesh, const WorkWatch& watch
   return solver.finish({}, Examination::kNone);
 }
 
-double mean_radiance(const RadianceField& field) {
+/// By band, the reflected radiance averaged over all area that is not sealed [W/(m2 sr)].
+std::vector<double> mean_radiances(const RadianceField& field) {
   const ZoneMesh& mesh = field.room().mesh();
-  double power = 0;
+  std::vector<double> mean(field.band_count());
   double area = 0;
   for (std::size_t i = 0; i < mesh.zone_count(); ++i) {
     const ZoneId z(i);
@@ -50,9 +52,10 @@ double mean_radiance(const RadianceField& field) {
     area += mesh.zone_area(z);
     for (std::size_t part = 0; part < field.parts(); ++part)
       for (std::size_t b = 0; b < field.band_count(); ++b)
-        power += mesh.zone_area(z) * static_cast<double>(field.reflected(z, part)[b]);
+        mean[b] += mesh.zone_area(z) * static_cast<double>(field.reflected(z, part)[b]);
   }
-  return area > 0 ? power / (area * static_cast<double>(field.parts())) : 0;
+  for (double& m : mean) m = area > 0 ? m / (area * static_cast<double>(field.parts())) : 0;
+  return mean;
 }
 
 /// A number for each cell of every grid of a side.
@@ -71,7 +74,11 @@ PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& wat
   direct_.emplace(*room_);
   gather_.emplace(*field_, *direct_,
                   GatherSettings{.close_hit = 0, .continue_uneven = false, .seed = kPilotSeed});
-  mean_ = mean_radiance(*field_);
+  const std::vector<double> means = mean_radiances(*field_);
+  mean_ = std::accumulate(means.begin(), means.end(), 0.0);
+  for (const double m : means)
+    band_weight_.push_back(m > 0 ? static_cast<float>(mean_ / (static_cast<double>(means.size()) * m))
+                                 : 0.0F);
 }
 
 PilotLight::Looker::Looker(const PilotLight& pilot) : pilot_(&pilot), batch_(*pilot.gather_) {}
@@ -83,8 +90,10 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& eff
   std::vector<float> direct_weight(bands);
   std::vector<float> ray_weight(bands);
   for (std::size_t b = 0; b < bands; ++b) {
-    direct_weight[b] = lambert_reflected_radiance(reflectance[b], 1.0F / static_cast<float>(effort.shadows));
-    ray_weight[b] = reflectance[b] / static_cast<float>(effort.gathers);
+    const float weight = pilot_->band_weight_[b];
+    direct_weight[b] =
+        lambert_reflected_radiance(weight * reflectance[b], 1.0F / static_cast<float>(effort.shadows));
+    ray_weight[b] = weight * reflectance[b] / static_cast<float>(effort.gathers);
   }
   found_.assign(static_cast<std::size_t>(effort.points * kHalves) * bands, 0.0F);
   const std::uint64_t key = key_of(cell);

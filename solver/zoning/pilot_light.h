@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "mesh/zones/zone_mesh.h"
 #include "scenes/model/work_watch.h"
@@ -18,7 +19,8 @@ struct LookEffort {
 };
 
 /// A quick solution on coarse zones, and what it says about the light on other cells of the same triangles:
-/// reflected radiance at points, by shadow rays and gather rays, all bands together. Nothing in it depends on
+/// reflected radiance at points, by shadow rays and gather rays, all bands together, weighted such that each
+/// has the same mean over the room. Nothing in it depends on
 /// the seed of a solve or on threads.
 class PilotLight {
  public:
@@ -54,6 +56,7 @@ class PilotLight {
   std::optional<DirectLight> direct_;
   std::optional<HemisphereGather> gather_;
   double mean_ = 0;
+  std::vector<float> band_weight_;  ///< Makes the bands' means alike, with the same sum.
 };
 
 }  // namespace reemit
