@@ -3,21 +3,17 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
+#include "bench/contact_sheet.h"
 #include "solver/room/room.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
-#include "viewer_export/output/tone_map.h"
 #include "viewer_export/still/default_cameras.h"
 #include "viewer_export/still/render_still.h"
 
@@ -33,30 +29,6 @@ constexpr int kLabel = 18;
 constexpr int kRoomWidth = kPictures * kWidth + 3 * kGap;
 constexpr int kRoomHeight = kLabel + kHeight;
 
-void require(bool done, const OIIO::ImageBuf& image) {
-  if (!done) throw std::runtime_error(image.geterror());
-}
-
-/// As `reemit render` writes it to PNG: encoded sRGB, exposed by itself.
-OIIO::ImageBuf shown(const StillImage& image) {
-  std::vector<float> rgb;
-  const std::size_t bands = image.bands.count();
-  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
-    Spectrum value(static_cast<Eigen::Index>(bands));
-    for (std::size_t b = 0; b < bands; ++b)
-      value[static_cast<Eigen::Index>(b)] = image.radiance[p * bands + b];
-    for (const double c : image.bands.to_rgb(value)) rgb.push_back(static_cast<float>(c));
-  }
-  const ToneMap tone_map = make_tone_map(rgb);
-  std::vector<std::uint8_t> bytes;
-  for (std::size_t i = 0; i < rgb.size(); i += 3)
-    for (const double c : tone_map({rgb[i], rgb[i + 1], rgb[i + 2]})) bytes.push_back(srgb_byte(c));
-  const OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  OIIO::ImageBuf buffer(spec);
-  require(buffer.set_pixels(OIIO::get_roi(spec), OIIO::TypeDesc::UINT8, bytes.data()), buffer);
-  return buffer;
-}
-
 struct Settings {
   std::vector<std::filesystem::path> solutions;
   std::filesystem::path output = "automatic_cameras.jpg";
@@ -66,7 +38,7 @@ struct Settings {
   int threads = 0;
 };
 
-void add_room(const Settings& settings, std::size_t number, OIIO::ImageBuf& sheet) {
+void add_room(const Settings& settings, std::size_t number, bench::ContactSheet& sheet) {
   const std::filesystem::path& file = settings.solutions[number];
   const int left = static_cast<int>(number) % settings.columns * kRoomWidth + kGap;
   const int top = static_cast<int>(number) / settings.columns * kRoomHeight;
@@ -77,10 +49,7 @@ void add_room(const Settings& settings, std::size_t number, OIIO::ImageBuf& shee
   const std::vector<Camera> cameras = default_cameras(walls);
   fmt::print("{}: {:.3f} s\n", file.stem().string(),
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  constexpr float kBlack[3] = {0, 0, 0};
-  require(OIIO::ImageBufAlgo::render_text(sheet, left, top + kLabel - 5, file.stem().string(), 12,
-                                          settings.font, kBlack),
-          sheet);
+  sheet.label(left, top + kLabel - 5, file.stem().string());
   const std::atomic<bool> no_interrupt{false};
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const Camera& camera = cameras[i];
@@ -93,22 +62,15 @@ void add_room(const Settings& settings, std::size_t number, OIIO::ImageBuf& shee
     still.spp = settings.spp;
     still.threads = settings.threads;
     const StillImage image = render_still(walls, solution, camera, still, {}, no_interrupt);
-    require(OIIO::ImageBufAlgo::paste(sheet, left + static_cast<int>(i) * (kWidth + kGap), top + kLabel, 0, 0,
-                                      shown(image)),
-            sheet);
+    sheet.paste(left + static_cast<int>(i) * (kWidth + kGap), top + kLabel, image, bench::tone_map_of(image));
   }
 }
 
 void write_sheet(const Settings& settings) {
   const int rows = (static_cast<int>(settings.solutions.size()) + settings.columns - 1) / settings.columns;
-  const OIIO::ImageSpec spec(settings.columns * kRoomWidth + kGap, rows * kRoomHeight + kGap, 3,
-                             OIIO::TypeDesc::UINT8);
-  OIIO::ImageBuf sheet(spec);
-  constexpr float kWhite[3] = {1, 1, 1};
-  require(OIIO::ImageBufAlgo::fill(sheet, kWhite), sheet);
+  bench::ContactSheet sheet(settings.columns * kRoomWidth + kGap, rows * kRoomHeight + kGap, settings.font);
   for (std::size_t i = 0; i < settings.solutions.size(); ++i) add_room(settings, i, sheet);
-  sheet.specmod().attribute("Compression", "jpeg:88");
-  require(sheet.write(settings.output.string()), sheet);
+  sheet.write(settings.output);
 }
 
 }  // namespace

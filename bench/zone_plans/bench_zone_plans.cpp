@@ -61,8 +61,7 @@ PlanRow measure(const Scene& scene, const Plan& plan, const SolverSettings& sett
   row.noise = s.record.error;
   row.points = discretisation_error(room, s, stop, kProbes).value_or(0);
   if (const auto gathered = estimate_zone_bias(room, s, stop)) row.gathered = gathered->rms;
-  row.picture_zones = pictures.error(room, s, Integrator::kZones);
-  row.picture_gathered = pictures.error(room, s, Integrator::kGather);
+  row.picture_zones = pictures.error(room, s);
   return row;
 }
 
@@ -71,10 +70,10 @@ std::string percent(double value) {
 }
 
 void print(const PlanRow& r) {
-  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.3f} % | {} | {} | {} | {} |\n", r.room,
+  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.3f} % | {} | {} | {} |\n", r.room,
              r.fitting ? "fit the light" : "of one size", r.zones, r.lit, r.zoning_s, r.solve_s,
              r.rays_per_s / 1e6, 100 * r.noise, percent(r.points), percent(r.gathered),
-             percent(r.picture_zones), percent(r.picture_gathered));
+             percent(r.picture_zones));
   std::fflush(stdout);
 }
 
@@ -114,7 +113,7 @@ int main(int argc, char** argv) {
   try {
     fmt::print(
         "| room | zones | number | lit | zoning [s] | solve [s] | Mray/s | noise | points | gathered light | "
-        "picture of zones | gathered picture |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "picture of zones |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     std::vector<PlanRow> rows;
     for (const std::filesystem::path& file : rooms) {
       const Scene scene = read_scene(file);

@@ -15,10 +15,11 @@ class PictureCheck {
   /// `spp` camera rays per pixel.
   PictureCheck(const Room& room, const Solution& solution, int spp);
 
-  /// Relative rms error of a picture: sqrt(mean d1 d2) / mean r over its pixels, less the brightest 2 %,
-  /// which see luminaires; d1 and d2 are the differences to the two references, whose noise therefore drops
-  /// out, and r is their mean. 0 if noise is all there is.
-  double error(const Room& room, const Solution& solution, Integrator integrator) const;
+  /// Relative rms error of a picture that shows the zones: sqrt(mean d1 d2) / mean r over its pixels, less
+  /// the brightest 2 %, which see luminaires; d1 and d2 are the differences of two such pictures to one
+  /// reference each, so that the noise of pixels drops out, and r is the mean of the references. 0 if noise
+  /// is all there is.
+  double error(const Room& room, const Solution& solution) const;
 
  private:
   std::vector<float> picture(const Room& room, const Solution& solution, StillSettings settings) const;

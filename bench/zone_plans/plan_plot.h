@@ -14,11 +14,10 @@ struct PlanRow {
   double zoning_s = 0;  ///< Meshing and choosing zones.
   double solve_s = 0;
   double rays_per_s = 0;
-  double noise = 0;             ///< Relative standard error of zones.
-  double points = 0;            ///< Points against their zones, relative; 0 = not known.
-  double gathered = 0;          ///< Error that zones leave in gathered light, relative; 0 = not known.
-  double picture_zones = 0;     ///< Error of a picture that shows the zones, relative.
-  double picture_gathered = 0;  ///< Of a gathered one.
+  double noise = 0;          ///< Relative standard error of zones.
+  double points = 0;         ///< Points against their zones, relative; 0 = not known.
+  double gathered = 0;       ///< Error that zones leave in gathered light, relative; 0 = not known.
+  double picture_zones = 0;  ///< Error of a picture that shows the zones, relative.
 };
 
 /// Draws the picture and point errors against zones (`by_time` false) or against seconds of zoning and
