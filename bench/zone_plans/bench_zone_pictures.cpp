@@ -75,7 +75,7 @@ void add_room(const Settings& settings, std::size_t row, bench::ContactSheet& sh
       picture(fitting_room, fitting, camera, Integrator::kGather, settings.spp),
       picture(fitting_room, fitting, camera, Integrator::kPath, settings.path_spp)};
   const std::array<std::string, 5> labels{
-      fmt::format("{}: {} zones of one size", file.stem().string(), even.mesh.zone_count()),
+      fmt::format("{}: {} zones, one size", file.stem().string(), even.mesh.zone_count()),
       fmt::format("{} zones that fit the light", fitting.mesh.zone_count()),
       "gathered from those of one size", "gathered from those that fit", "path traced"};
   const ToneMap tone_map = bench::tone_map_of(pictures[3]);
