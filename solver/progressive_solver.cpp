@@ -343,7 +343,7 @@ std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution
   GatheredZones gathered;
   gathered.keep(solution.sums, bands, solution.gathered.zones);
   solution.gathered.restore(solution.sums, bands);
-  const double bound = zone_error(SurfaceModel(scene, solution.mesh), solution.mesh, solution.sums).bound;
+  const double bound = zone_error(SurfaceModel(scene, solution.mesh, 1), solution.mesh, solution.sums).bound;
   gathered.restore(solution.sums, bands);
 
   const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);

@@ -39,10 +39,10 @@ void draw_plans(const std::vector<PlanRow>& rows, bool by_time, const std::files
     }
   }
   run_gnuplot(fmt::format(
-      "{}set terminal svg size 1100,480 font 'Helvetica,12' background 'white'\nset output '{}'\n"
+      "{}set terminal svg noenhanced size 1100,620 font 'Helvetica,12' background 'white'\nset output '{}'\n"
       "colours = '#2a6f97 #c8553d #5b8c5a #7a5195'\n"
       "set multiplot layout 1,2\nset logscale xy\nset grid xtics ytics lc rgb '#dddddd'\n"
-      "set key bottom left font ',9' samplen 2\nset xlabel '{}'\nset format y '%g %%'\n"
+      "set key below font ',10' samplen 2 maxcols 2\nset xlabel '{}'\nset format y '%g %%'\n"
       "set title 'points against their zones'\n{}\nset title 'picture that shows the zones'\n{}\n"
       "unset multiplot\n",
       data, file.string(), by_time ? "seconds of zoning and solving" : "zones", panels[0], panels[1]));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/common/glass_bodies.h"
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/common/text_parse.h"
 #include "scenes/io/gltf/gltf_reader.h"
@@ -61,6 +62,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
       files.size() > 1 ? read_mgf_files(files) : reader_for(files.front()).read(files.front(), options);
   if (options.force_two_sided)
     for (Material& material : scene.materials) material.two_sided = true;
+  settle_glass_bodies(scene);
   finish_scene(scene);
   return scene;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <iterator>
@@ -44,11 +45,14 @@ class Hasher {
 void add_non_diffuse(Hasher& hash, const NonDiffusePart& part) {
   const NonDiffusePart none;
   const Spectrum* shares[] = {&part.specular_reflectance, &part.diffuse_transmittance,
-                              &part.specular_transmittance};
-  const double numbers[] = {part.roughness, part.transmission_roughness, part.index_of_refraction};
-  const double defaults[] = {none.roughness, none.transmission_roughness, none.index_of_refraction};
+                              &part.specular_transmittance, &part.absorption_per_m};
+  const auto numbers_of = [](const NonDiffusePart& p) {
+    return std::array{p.roughness, p.transmission_roughness, p.index_of_refraction,
+                      static_cast<double>(p.angle_law), p.is_solid ? 1.0 : 0.0};
+  };
+  const auto numbers = numbers_of(part);
   if (std::all_of(std::begin(shares), std::end(shares), [](const Spectrum* s) { return s->size() == 0; }) &&
-      std::equal(std::begin(numbers), std::end(numbers), std::begin(defaults)))
+      numbers == numbers_of(none))
     return;
   for (const Spectrum* share : shares) hash.add(*share);
   for (const double number : numbers) hash.add(number);

@@ -6,18 +6,44 @@
 
 namespace reemit {
 
-/// What of a material the diffuse solver does not model. Kept so that nothing is dropped silently, and later
-/// work finds it.
-struct NonDiffusePart {
-  Spectrum specular_reflectance;    ///< [0,1]; size 0 = none.
-  double roughness = 0;             ///< Ward-like roughness [0,1]; 0 = mirror.
-  Spectrum diffuse_transmittance;   ///< [0,1]; size 0 = none.
-  Spectrum specular_transmittance;  ///< [0,1]; size 0 = none.
-  double transmission_roughness = 0;
-  double index_of_refraction = 1;
+/// How mirror reflection and clear transmission depend on the angle of the light.
+enum class AngleLaw {
+  kConstant,    ///< They do not: the numbers hold at every angle.
+  kSchlick,     ///< R = r + (1-r) (1 - cos)^5, r at normal incidence: metals [SCH94, eq. 15].
+  kDielectric,  ///< Fresnel's equations for the index of refraction; no specular_reflectance is given.
 };
 
-/// Reflection and self-emission of a surface. Behaviour lives in solver/reflect and solver/emit.
+/// What a surface does with light besides reflecting it as Lambert does.
+struct NonDiffusePart {
+  /// A reflected or transmitted beam that is spread no more than this is taken as a sharp one.
+  static constexpr double kSmooth = 0.02;
+
+  Spectrum specular_reflectance;   ///< [0,1]; size 0 = none.
+  double roughness = 0;            ///< RMS slope as Ward's alpha [0,1]; 0 = mirror.
+  Spectrum diffuse_transmittance;  ///< [0,1]; size 0 = none. Not modelled: this light is absorbed.
+  /// [0,1]; size 0 = none. With kDielectric, of the glass alone: of a pane, for one pass across it at normal
+  /// incidence; of a solid, a tint of what crosses the surface. Else of the whole.
+  Spectrum specular_transmittance;
+  double transmission_roughness = 0;  ///< As roughness.
+  double index_of_refraction = 1;     ///< Of what is behind the front to what is before it [1, 100].
+  AngleLaw angle_law = AngleLaw::kConstant;
+  /// The faces bound a body of glass: their backs are its inside, and light is refracted. Else a face is a
+  /// thin pane, which light crosses straight on.
+  bool is_solid = false;
+  Spectrum absorption_per_m;  ///< Of the inside of a solid [1/m], >= 0; size 0 = none.
+
+  bool reflects_specularly() const {
+    return roughness <= kSmooth && (angle_law == AngleLaw::kDielectric ||
+                                    (specular_reflectance.size() > 0 && (specular_reflectance > 0).any()));
+  }
+  bool transmits_specularly() const {
+    return transmission_roughness <= kSmooth && specular_transmittance.size() > 0 &&
+           (specular_transmittance > 0).any();
+  }
+};
+
+/// Reflection, transmission and self-emission of a surface. Behaviour lives in solver/reflect and
+/// solver/emit.
 struct Material {
   std::string name;
   Spectrum reflectance;       ///< Diffuse (Lambertian) reflectance rho [0,1] per band; BRDF = rho/pi.

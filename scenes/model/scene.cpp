@@ -51,7 +51,10 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
   if (scene.bands.kind() != BandKind::kRgb) return;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
-    if (used[i] && !(is_grey(m.reflectance) && is_grey(m.emitted_radiance))) return;
+    const NonDiffusePart& rest = m.non_diffuse;
+    for (const Spectrum* s : {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance,
+                              &rest.specular_transmittance, &rest.absorption_per_m})
+      if (used[i] && s->size() > 0 && !is_grey(*s)) return;
   }
   for (const PunctualLight& light : scene.lights)
     if (!is_grey(power_of(light))) return;
@@ -59,7 +62,7 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
   for (Material& m : scene.materials) {
     NonDiffusePart& rest = m.non_diffuse;
     for (Spectrum* s : {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance,
-                        &rest.diffuse_transmittance, &rest.specular_transmittance})
+                        &rest.diffuse_transmittance, &rest.specular_transmittance, &rest.absorption_per_m})
       reduce(*s, scene.bands);
   }
   for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);
@@ -67,15 +70,23 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
   scene.notes.push_back("No surface or light has a colour: one grey band is transported.");
 }
 
-std::string ignored_parts(const Material& m, const BandSet& bands) {
-  std::string parts;
-  const auto add = [&](const char* what, const Spectrum& s) {
-    if (s.size() == 0 || !(s > 0).any()) return;
-    parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", what, luminous_mean(s, bands));
+/// A part of a material that is read but not modelled.
+struct IgnoredPart {
+  const char* kind;
+  std::string text;
+};
+
+std::vector<IgnoredPart> ignored_parts(const Material& m, const BandSet& bands) {
+  const NonDiffusePart& rest = m.non_diffuse;
+  std::vector<IgnoredPart> parts;
+  const auto add = [&](const char* kind, const char* what, const Spectrum& s) {
+    if (s.size() > 0 && (s > 0).any())
+      parts.push_back({kind, fmt::format("{} {:.3g}", what, luminous_mean(s, bands))});
   };
-  add("specular reflectance", m.non_diffuse.specular_reflectance);
-  add("diffuse transmittance", m.non_diffuse.diffuse_transmittance);
-  add("specular transmittance", m.non_diffuse.specular_transmittance);
+  if (rest.roughness > NonDiffusePart::kSmooth) add("gloss", "glossy reflectance", rest.specular_reflectance);
+  add("diffuse_transmittance", "diffuse transmittance", rest.diffuse_transmittance);
+  if (rest.transmission_roughness > NonDiffusePart::kSmooth)
+    add("glossy_transmittance", "glossy transmittance", rest.specular_transmittance);
   return parts;
 }
 
@@ -83,17 +94,14 @@ void warn_of_ignored_parts(Scene& scene, const std::vector<bool>& used) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
     if (!used[i]) continue;
-    const std::string parts = ignored_parts(m, scene.bands);
-    if (parts.empty()) continue;
-    const NonDiffusePart& rest = m.non_diffuse;
-    for (const auto& [kind, part] : {std::pair("specular_reflectance", &rest.specular_reflectance),
-                                     std::pair("diffuse_transmittance", &rest.diffuse_transmittance),
-                                     std::pair("specular_transmittance", &rest.specular_transmittance)})
-      if (part->size() > 0 && (*part > 0).any()) ++scene.not_modelled[kind];
-    scene.warnings.push_back(
-        fmt::format("Material '{}': only its diffuse reflectance {:.3g} is modelled; ignored (this light is "
-                    "absorbed): {}.",
-                    m.name, luminous_mean(m.reflectance, scene.bands), parts));
+    std::string text;
+    for (const IgnoredPart& part : ignored_parts(m, scene.bands)) {
+      ++scene.not_modelled[part.kind];
+      text += (text.empty() ? "" : ", ") + part.text;
+    }
+    if (!text.empty())
+      scene.warnings.push_back(
+          fmt::format("Material '{}': not modelled (this light is absorbed): {}.", m.name, text));
   }
 }
 

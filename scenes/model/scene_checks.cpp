@@ -63,6 +63,54 @@ void check_near_room(const Vec3& place, const char* what, const Box& room, const
     throw InputError(where, problem, "Move it nearer; for light from afar use a directional light.");
 }
 
+/// Takes from the specular parts what all parts together have more than 1.
+void limit_to_all_light(Material& m, Scene& scene, const std::string& where) {
+  constexpr double kRounding = 1e-9;
+  NonDiffusePart& rest = m.non_diffuse;
+  Spectrum sum = m.reflectance;
+  for (const Spectrum* s : {&rest.specular_reflectance, &rest.diffuse_transmittance})
+    if (s->size() > 0) sum += *s;
+  // The tint of glass is a share of what its surfaces let through.
+  const bool is_share = rest.angle_law != AngleLaw::kDielectric && rest.specular_transmittance.size() > 0;
+  if (is_share) sum += rest.specular_transmittance;
+  if (sum.maxCoeff() <= 1 + kRounding) return;
+  scene.warnings.push_back(fmt::format(
+      "{}: it reflects and transmits {:.4g} of the light, more than it gets; its mirror and glass "
+      "parts are made less until nothing is gained.",
+      where, sum.maxCoeff()));
+  Spectrum excess = (sum - 1).max(0);
+  const auto take = [&](Spectrum& s) {
+    if (s.size() == 0) return;
+    const Spectrum taken = excess.min(s);
+    s -= taken;
+    excess -= taken;
+  };
+  if (is_share) take(rest.specular_transmittance);
+  take(rest.specular_reflectance);
+  take(rest.diffuse_transmittance);
+}
+
+void check_specular(Material& m, Scene& scene, const std::string& where) {
+  NonDiffusePart& rest = m.non_diffuse;
+  for (const double roughness : {rest.roughness, rest.transmission_roughness})
+    if (!(roughness >= 0 && roughness <= 1))
+      throw InputError(where, fmt::format("roughness {} is outside [0, 1]", roughness),
+                       "Give 0 (a mirror) to 1.");
+  constexpr double kLargestIndex = 100;
+  if (!(rest.index_of_refraction >= 1 && rest.index_of_refraction <= kLargestIndex))
+    throw InputError(where, fmt::format("index of refraction {}", rest.index_of_refraction),
+                     "Give 1 (no refraction) to 100; window glass has 1.52, water 1.33.");
+  if (rest.absorption_per_m.size() > 0) {
+    check_size(rest.absorption_per_m, scene, where, "absorption");
+    if (!rest.absorption_per_m.isFinite().all() || (rest.absorption_per_m < 0).any())
+      throw InputError(where, fmt::format("absorption {} per metre", listed(rest.absorption_per_m)),
+                       "Give a finite value of 0 or more in every band.");
+  }
+  limit_to_all_light(m, scene, where);
+  // Light that crosses a face meets its back on the way out.
+  if (rest.transmits_specularly()) m.two_sided = true;
+}
+
 void check_material(Material& m, Scene& scene, const std::string& where) {
   check_size(m.reflectance, scene, where, "reflectance");
   check_size(m.emitted_radiance, scene, where, "emitted radiance");
@@ -77,10 +125,7 @@ void check_material(Material& m, Scene& scene, const std::string& where) {
   check_rest(rest.specular_reflectance, "specular reflectance");
   check_rest(rest.diffuse_transmittance, "diffuse transmittance");
   check_rest(rest.specular_transmittance, "specular transmittance");
-  for (const double value : {rest.roughness, rest.transmission_roughness, rest.index_of_refraction})
-    if (!std::isfinite(value) || value < 0)
-      throw InputError(where, "roughness or index of refraction is negative or not a number",
-                       "Give 0 or more.");
+  check_specular(m, scene, where);
   constexpr double kNarrowest = 1e4;
   if (!(m.emission_exponent >= 0 && m.emission_exponent <= kNarrowest))
     throw InputError(where, fmt::format("emission exponent {}", m.emission_exponent),

@@ -1,6 +1,15 @@
 #include "solver/gather/direct_light.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace reemit {
+namespace {
+
+/// Shadow rays end after so many panes.
+constexpr int kMostPanes = 256;
+
+}  // namespace
 
 DirectLight::DirectLight(const Room& room, const DirectLightSettings& settings)
     : rays_(&room.rays()),
@@ -26,10 +35,36 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
   if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return {};
   const Vec3f towards = sample.towards(origin);
   if (!(towards.dot(side_normal(*rays_, x)) > 0)) return {};
+  Arrival light{table_.strength(entry), sample.factor * inverse_probability, towards, {}};
+  if (!passes(origin, sample, light.panes)) return {};
+  return light;
+}
+
+bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample, BandValues& panes) const {
   const bool visible =
       sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
-  if (!visible) return {};
-  return {table_.strength(entry), sample.factor * inverse_probability, towards};
+  if (visible || !surfaces_->any_transmits()) return visible;
+  SpecularStep step(band_count());
+  panes.assign(band_count(), 1.0F);
+  Vec3f from = origin;
+  for (int crossed = 0; crossed < kMostPanes; ++crossed) {
+    const Vec3f way = sample.towards(from);
+    const float distance = sample.at_infinity ? std::numeric_limits<float>::infinity() : way.norm();
+    if (!(distance > 0)) return true;
+    const Vec3f direction = sample.at_infinity ? way : Vec3f(way / distance);
+    Hit hit;
+    if (!rays_->closest(from, direction, hit)) return true;
+    if (!(hit.distance < distance)) return true;
+    if (!surfaces_->is_specular(hit.triangle, hit.front) || !surfaces_->specular(hit.triangle).is_pane())
+      return false;
+    const SurfacePoint x = surface_point(*rays_, hit, direction);
+    surfaces_->specular(hit.triangle).shares(x.normal.dot(x.towards), x.front, step);
+    float most = 0;
+    for (std::size_t b = 0; b < band_count(); ++b) most = std::max(most, panes[b] *= step.transmitted[b]);
+    if (!(most > 0)) return false;
+    from = rays_->ray_origin(hit.triangle, hit.u, hit.v, !hit.front);
+  }
+  return false;
 }
 
 void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
@@ -37,7 +72,8 @@ void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDim
   if (empty()) return;
   const Arrival light = estimate(x, ray_origin(*rays_, x), u);
   if (light.strength == nullptr) return;
-  for (std::size_t b = 0; b < band_count(); ++b) sum[b] += weight[b] * light.factor * light.strength[b];
+  for (std::size_t b = 0; b < band_count(); ++b)
+    sum[b] += weight[b] * light.factor * light.strength[b] * light.pane(b);
 }
 
 void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
@@ -47,7 +83,7 @@ void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<f
   if (light.strength == nullptr) return;
   const BrdfValue brdf = surfaces_->value(x, light.towards.normalized());
   for (std::size_t b = 0; b < band_count(); ++b)
-    sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.strength[b];
+    sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.strength[b] * light.pane(b);
 }
 
 void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first,
@@ -61,7 +97,8 @@ void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequen
     const Arrival light = estimate(x, origin, u);
     if (light.strength == nullptr) continue;
     for (std::size_t b = 0; b < band_count(); ++b) {
-      const double e = static_cast<double>(light.factor) * static_cast<double>(light.strength[b]);
+      const double e = static_cast<double>(light.factor) * static_cast<double>(light.strength[b]) *
+                       static_cast<double>(light.pane(b));
       sum[b] += e;
       if (sum_of_squares != nullptr) sum_of_squares[b] += e * e;
     }

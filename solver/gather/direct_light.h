@@ -18,7 +18,8 @@ struct DirectLightSettings {
 };
 
 /// Irradiance straight from the luminaires at a point, by shadow rays to sampled luminaire points [SWZ96].
-/// Const members may be called from any thread.
+/// They cross panes, which light passes straight on; what comes over mirrors or is bent by glass they do not
+/// find. Const members may be called from any thread.
 class DirectLight {
  public:
   static constexpr int kDimensions =
@@ -49,12 +50,18 @@ class DirectLight {
                    double* sum, double* sum_of_squares = nullptr) const;
 
  private:
-  /// What arrives at a point: the irradiance is estimated as factor * strength[b].
+  /// What arrives at a point: the irradiance is estimated as factor * strength[b] * pane(b).
   struct Arrival {
     const float* strength = nullptr;  ///< Null if nothing arrives.
     float factor = 0;
     Vec3f towards{0, 0, 0};  ///< The luminaire; of any length.
+    /// By band, what panes on the way leave of it; empty where there are none.
+    BandValues panes;
+
+    float pane(std::size_t b) const { return panes.empty() ? 1.0F : panes[b]; }
   };
+  /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival.
+  bool passes(const Vec3f& origin, const LuminaireSample& sample, BandValues& panes) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
 
   const RayTracer* rays_;

@@ -24,6 +24,10 @@ std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight&
   return reach;
 }
 
+float largest_of(const float* values, std::size_t count) {
+  return *std::max_element(values, values + count);
+}
+
 }  // namespace
 
 HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight& direct,
@@ -32,7 +36,8 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
       direct_(&direct),
       reach_(reach_of_zones(field, direct, settings, stop)),
       most_bounces_(settings.most_bounces),
-      rng_(settings.seed, RngPurpose::kHemisphere) {}
+      rng_(settings.seed, RngPurpose::kHemisphere),
+      specular_(settings.seed, RngPurpose::kSpecular) {}
 
 void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
                                      float* sum) const {
@@ -41,31 +46,66 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
   const std::size_t bands = band_count();
   Hit hit = y;
   Vec3f along = direction;
-  for (int bounce = 0;; ++bounce) {
+  float way = 0;              // from the last surface that scattered the light
+  bool is_bent = false;       // that way is, so shadow rays from there did not find what it meets
+  std::uint32_t crossed = 0;  // mirrors and panes in all
+  SpecularStep step(bands);
+  for (int bounce = 0;;) {
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
-    if (bounce == most_bounces_ || !continues(zone, hit.distance)) {
+    way += hit.distance;
+    surfaces.attenuate(hit.triangle, hit.front, hit.distance, weight);
+    const SurfacePoint point = surface_point(rays, hit, along);
+    if (is_bent) add_emission(surfaces, point, weight, sum);
+    const bool is_read = bounce == most_bounces_ || !continues(zone, way);
+    if (is_read) {
       const float* radiance = field_->reflected(zone, key.part);
       for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
-      return;
     }
-    const auto number = static_cast<std::uint32_t>(2 * bounce);
-    const std::array<float, 4> u = rng_.uniform4(key.index, key.batch, key.step(number));
-    const std::array<float, 4> u_ray = rng_.uniform4(key.index, key.batch, key.step(number + 1));
-    const SurfacePoint point = surface_point(rays, hit, along);
+    float scattered = is_read ? 0 : 1;  // chance that the ray goes on from here as scattered light
+    if (surfaces.is_specular(hit.triangle, hit.front)) {
+      if (crossed == SpecularNumbers::kMostSteps) return;
+      const SpecularSurface& surface = surfaces.specular(hit.triangle);
+      const float on = surface.shares(point.normal.dot(point.towards), point.front, step);
+      if (!is_read) scattered = largest_of(surfaces.reflectance(hit.triangle, hit.front), bands);
+      if (scattered + on > 1) scattered /= scattered + on;
+      const float u = specular_.at(key, crossed++);
+      if (!(u < scattered)) {
+        if (scattered > 0) add_direct(point, bounce, key, weight, sum);
+        if (!surface.choose(point, u - scattered, Survival::kRoulette, step, 1 - scattered)) return;
+        for (std::size_t b = 0; b < bands; ++b) weight[b] *= step.share()[b] / step.chance;
+        is_bent = is_bent || step.bends;
+        along = step.direction;
+        if (!rays.closest(rays.ray_origin(hit.triangle, hit.u, hit.v, step.front), along, hit)) return;
+        continue;
+      }
+    }
+    if (is_read) return;
+    const auto number = static_cast<std::uint32_t>(2 * bounce + 1);
+    const std::array<float, 4> u_ray = rng_.uniform4(key.index, key.batch, key.step(number));
     const ScatterSample next = surfaces.sample(point, u_ray[0], u_ray[1]);
     const BrdfValue brdf = surfaces.value(point, next.direction);
     bool dark = true;
     for (std::size_t b = 0; b < bands; ++b) dark = dark && weight[b] * brdf(b) == 0;
     if (dark) return;
-    direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, 1, weight, sum);
+    add_direct(point, bounce, key, weight, sum);
     for (std::size_t b = 0; b < bands; ++b) {
-      weight[b] *= brdf(b);
+      weight[b] *= brdf(b) / scattered;
       weight[b] *= next.cosine_over_pdf;
     }
     along = next.direction;
     if (!rays.closest(ray_origin(rays, point), along, hit)) return;
+    way = 0;
+    is_bent = false;
+    ++bounce;
   }
+}
+
+void HemisphereGather::add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
+                                  float* sum) const {
+  const std::array<float, 4> u =
+      rng_.uniform4(key.index, key.batch, key.step(static_cast<std::uint32_t>(2 * bounce)));
+  direct_->add_reflected_sample(y, {u[0], u[1], u[2]}, 1, weight, sum);
 }
 
 GatherBatch::GatherBatch(const HemisphereGather& gather)
@@ -74,6 +114,8 @@ GatherBatch::GatherBatch(const HemisphereGather& gather)
 void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
                       float* sum) {
   const RayTracer& rays = gather_->room().rays();
+  // Inside a body of glass most rays would go round for ever, and no one asks for light there.
+  if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return;
   const Vec3f direction = sample_lambert(x.normal, u0, u1);
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(side_normal(rays, x)) > 0)) return;
@@ -107,6 +149,7 @@ void GatherBatch::trace() {
   const RadianceField& field = gather_->field();
   const RayTracer& rays = gather_->room().rays();
   const ZoneMesh& mesh = gather_->room().mesh();
+  const SurfaceModel& surfaces = gather_->room().surfaces();
   Hit16 hits;
   rays.closest16(rays_, count_, hits);
   const auto count = static_cast<std::size_t>(std::exchange(count_, 0));
@@ -120,7 +163,7 @@ void GatherBatch::trace() {
     float* weight = &weights_[i * bands_];
     const ZoneId zone = mesh.zone_at(TriangleId(t), hits.u[i], hits.v[i], hits.front[i]);
     if (!zone.valid()) continue;
-    if (gather_->continues(zone, hits.distance[i])) {
+    if (gather_->continues(zone, hits.distance[i]) || surfaces.is_specular(TriangleId(t), hits.front[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
       gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], weight, sums_[i]);
       continue;

@@ -7,6 +7,7 @@
 #include "solver/gather/direct_light.h"
 #include "solver/gather/path_key.h"
 #include "solver/gather/radiance_field.h"
+#include "solver/gather/specular_path.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/trace/surface_point.h"
 
@@ -27,7 +28,8 @@ struct GatherSettings {
 /// ([GI98] final gather). Self-emission of what they hit is not read: DirectLight has counted it.
 /// A hit y closer than about the size of its zone, or on a zone whose light is uneven (uneven_zones.h), is
 /// not read; its radiance is taken as rho_y/pi (E_direct(y) + pi L_reflected(z)) with its own shadow ray and
-/// one more cosine-distributed ray to z. Const members may be called from any thread.
+/// one more cosine-distributed ray to z. Rays go on from mirrors and glass; a luminaire that they meet over a
+/// bent way counts, because no shadow ray finds it. Const members may be called from any thread.
 class HemisphereGather {
  public:
   /// When `stop` (may be null) is requested, the look for uneven zones ends early, and what is gathered means
@@ -41,17 +43,22 @@ class HemisphereGather {
   bool continues(ZoneId zone, float distance) const { return distance < reach_[zone.index()]; }
   const RadianceField& field() const { return *field_; }
 
-  /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued,
-  /// sends back along it to sum[b]. `weight` is used up.
+  /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
+  /// on a mirror or glass, sends back along it to sum[b]. `weight` is used up.
   void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
                      float* sum) const;
 
  private:
+  /// One sample of what y reflects of the luminaires along the path.
+  void add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
+                  float* sum) const;
+
   const RadianceField* field_;
   const DirectLight* direct_;
   std::vector<float> reach_;  // by zone: hits nearer than this are continued
   int most_bounces_;
   CounterRng rng_;
+  SpecularNumbers specular_;
 };
 
 /// Gather rays of any points in packets of 16. One per thread; the order of the calls decides the order of

@@ -4,6 +4,7 @@
 
 #include "solver/gather/direct_light.h"
 #include "solver/gather/path_key.h"
+#include "solver/gather/specular_path.h"
 #include "solver/room/room.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/trace/surface_point.h"
@@ -12,7 +13,8 @@ namespace reemit {
 
 /// Unbiased path tracer, the reference of every still: it uses the room and its materials only, no zone
 /// value. Next-event estimation at every bounce, cosine-distributed bounces, Russian roulette by the largest
-/// reflectance after kSafeBounces [KRI08]. Const members may be called from any thread.
+/// reflectance after kSafeBounces [KRI08]; from mirrors and glass it goes on as HemisphereGather does. Const
+/// members may be called from any thread.
 class PathTracer {
  public:
   static constexpr int kSafeBounces = 3;
@@ -30,6 +32,7 @@ class PathTracer {
   const Room* room_;
   const DirectLight* direct_;
   CounterRng rng_;
+  SpecularNumbers specular_;
 };
 
 }  // namespace reemit

@@ -4,13 +4,16 @@
 
 namespace reemit {
 
-SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh)
+SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, double metres_per_unit)
     : bands_(scene.bands.count()), zero_(bands_, 0.0F) {
   std::vector<bool> emits_both_sides;
   for (const Surface& surface : scene.surfaces) {
     const Material& m = scene.material_of(surface);
     surfaces_.push_back(
         {m.emitted_radiance, m.exitance(), m.reflectance.maxCoeff(), m.emission_exponent, m.emits()});
+    specular_.emplace_back(m, metres_per_unit);
+    any_specular_ = any_specular_ || specular_.back().exists();
+    any_transmits_ = any_transmits_ || specular_.back().transmits();
     emits_both_sides.push_back(m.emits_both_sides);
     reflectance_.insert(reflectance_.end(), m.reflectance.begin(), m.reflectance.end());
     for (const double x : m.reflectance) side_reflectance_.push_back(static_cast<float>(x));

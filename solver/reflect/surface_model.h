@@ -8,16 +8,19 @@
 #include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 #include "solver/reflect/lobe.h"
+#include "solver/reflect/specular.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
 
 /// What the surfaces of a room do with light: the one reader of materials in the solver. Zones hold the
-/// Lambertian part of it, reflectance(); paths ask for all of it, value() and sample(). Values per band,
-/// double for books and float for rays. Const members may be called from any thread.
+/// Lambertian part of it, reflectance(); what is spread over directions is value() and sample(); what goes on
+/// as a ray is specular(). Values per band, double for books and float for rays. Const members may be called
+/// from any thread.
 class SurfaceModel {
  public:
-  SurfaceModel(const Scene& scene, const ZoneMesh& mesh);
+  /// `metres_per_unit`: of the space of the rays (RayTracer::metres_per_unit).
+  SurfaceModel(const Scene& scene, const ZoneMesh& mesh, double metres_per_unit);
 
   std::size_t band_count() const { return bands_; }
   std::size_t surface_count() const { return surfaces_.size(); }
@@ -37,6 +40,21 @@ class SurfaceModel {
   /// A direction from which light seen from x.towards comes, for two uniform numbers.
   ScatterSample sample(const SurfacePoint& x, float u0, float u1) const {
     return std::visit([&](const auto& lobe) { return lobe.sample(x, u0, u1); }, lobe_at(x));
+  }
+
+  /// Whether any surface of the room has a part that is carried on by rays; whether light crosses any.
+  bool any_specular() const { return any_specular_; }
+  bool any_transmits() const { return any_transmits_; }
+  /// That part of a triangle; it holds for both sides, but backs that absorb have none.
+  const SpecularSurface& specular(TriangleId t) const { return specular_[surface_of(t)]; }
+  bool is_specular(TriangleId t, bool front) const {
+    return any_specular_ && specular(t).exists() && side(t, front).reflects;
+  }
+  /// Takes from `light`, per band, what the body absorbs that a ray of this length was in when it met the
+  /// back of its surface.
+  void attenuate(TriangleId t, bool front, float way, float* light) const {
+    if (!any_transmits_ || front || !specular(t).absorbs_inside()) return;
+    for (std::size_t b = 0; b < bands_; ++b) light[b] *= specular(t).left_inside(b, way);
   }
 
   /// Whether a side of a triangle, or any side of a surface, emits.
@@ -76,7 +94,10 @@ class SurfaceModel {
   Lobe lobe_at(const SurfacePoint& x) const { return LambertLobe{reflectance(x.triangle, x.front)}; }
 
   std::size_t bands_;
+  bool any_specular_ = false;
+  bool any_transmits_ = false;
   std::vector<OfSurface> surfaces_;
+  std::vector<SpecularSurface> specular_;  // by surface
   std::vector<double> reflectance_;
   std::vector<float> side_reflectance_;  // by surface, as reflectance_
   std::vector<float> emitted_;           // by surface

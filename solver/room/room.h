@@ -12,7 +12,7 @@ class Room {
  public:
   /// Builds the tree for rays. Scene and mesh must outlive the room.
   Room(const Scene& scene, const ZoneMesh& mesh)
-      : scene_(&scene), mesh_(&mesh), rays_(mesh), surfaces_(scene, mesh) {}
+      : scene_(&scene), mesh_(&mesh), rays_(mesh), surfaces_(scene, mesh, rays_.metres_per_unit()) {}
   Room(const Scene&&, const ZoneMesh&) = delete;
   Room(const Scene&, const ZoneMesh&&) = delete;
   Room(const Room&) = delete;

@@ -27,6 +27,8 @@ enum class RngPurpose : std::uint32_t {
   kSealedSides,
   kLightOnSides,
   kPilotLight,
+  kSpecular,
+  kSpecularCamera,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

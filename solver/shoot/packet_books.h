@@ -47,51 +47,98 @@ class LocalBooks {
   std::vector<std::int64_t> escaped_;
 };
 
+/// How a packet came since it was last sent out by a source or a zone: over so many mirrors and panes.
+struct SpecularWay {
+  std::uint32_t steps = 0;
+  bool bent = false;  ///< Not straight on over panes alone.
+};
+
 /// 16 rays with what their packets carry.
 struct PacketBlock {
   explicit PacketBlock(std::size_t bands) : power(16 * bands) {}
   int count = 0;
   Ray16 rays{};
   std::uint32_t id[16] = {};
+  SpecularWay way[16] = {};
   std::vector<std::int64_t> power;  ///< [lane * bands + band]
 };
 
-/// Packets whose rays ended in doubt (RayTracer::is_doubtful), waiting for their second look until there are
-/// enough for a block: traced one by one beside others, they would cost as much as a whole block.
-class DoubtfulPackets {
+/// Packets that wait until there are enough for a block: those whose rays ended in doubt
+/// (RayTracer::is_doubtful), for their second look, and those that go on from mirrors and panes. Traced one
+/// by one beside others, they would cost as much as a whole block.
+class WaitingPackets {
  public:
-  explicit DoubtfulPackets(std::size_t bands) : bands_(bands) {}
+  explicit WaitingPackets(std::size_t bands) : bands_(bands) {}
 
   std::size_t count() const { return id_.size(); }
 
-  void add(const RayTracer& scene, const Ray16& rays, const Hit16& hits, int lane, std::uint32_t id,
+  void add(const Vec3f& origin, const Vec3f& direction, std::uint32_t id, const SpecularWay& way,
            const std::int64_t* power) {
-    origin_.push_back(rays.origin(lane));
-    direction_.push_back(scene.second_direction(rays.direction(lane), hits, lane));
+    origin_.push_back(origin);
+    direction_.push_back(direction);
     id_.push_back(id);
+    way_.push_back(way);
     power_.insert(power_.end(), power, power + bands_);
   }
+  /// Adds a packet of a block for its second look.
+  void add_doubtful(const RayTracer& scene, const PacketBlock& block, const Hit16& hits, int lane) {
+    add(block.rays.origin(lane), scene.second_direction(block.rays.direction(lane), hits, lane),
+        block.id[lane], block.way[lane], &block.power[static_cast<std::size_t>(lane) * bands_]);
+  }
+  void append(const WaitingPackets& more) {
+    for (std::size_t i = 0; i < more.count(); ++i)
+      add(more.origin_[i], more.direction_[i], more.id_[i], more.way_[i], &more.power_[i * bands_]);
+  }
 
-  /// Moves the last 16 packets, or as many as there are, into `block`, with the rays of their second look.
+  /// Moves those on a bent way into `other`.
+  void move_bent(WaitingPackets& other) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (way_[i].bent) {
+        other.add(origin_[i], direction_[i], id_[i], way_[i], &power_[i * bands_]);
+        continue;
+      }
+      origin_[kept] = origin_[i];
+      direction_[kept] = direction_[i];
+      id_[kept] = id_[i];
+      way_[kept] = way_[i];
+      std::copy_n(&power_[i * bands_], bands_, &power_[kept * bands_]);
+      ++kept;
+    }
+    resize(kept);
+  }
+  /// Moves the last 16 packets, or as many as there are, into `block`.
   void take(PacketBlock& block) {
-    block.count = static_cast<int>(std::min<std::size_t>(16, count()));
+    const std::size_t left = count() - std::min<std::size_t>(16, count());
+    copy(left, block);
+    resize(left);
+  }
+  /// Copies packets `first` .. first+15, or as many as there are, into `block`.
+  void copy(std::size_t first, PacketBlock& block) const {
+    block.count = static_cast<int>(std::min<std::size_t>(16, count() - first));
     for (int lane = 0; lane < block.count; ++lane) {
-      block.rays.set(lane, origin_.back(), direction_.back());
-      block.id[lane] = id_.back();
-      std::copy(power_.end() - static_cast<std::ptrdiff_t>(bands_), power_.end(),
-                block.power.begin() + lane * static_cast<std::ptrdiff_t>(bands_));
-      origin_.pop_back();
-      direction_.pop_back();
-      id_.pop_back();
-      power_.resize(power_.size() - bands_);
+      const std::size_t i = first + static_cast<std::size_t>(lane);
+      block.rays.set(lane, origin_[i], direction_[i]);
+      block.id[lane] = id_[i];
+      block.way[lane] = way_[i];
+      std::copy_n(&power_[i * bands_], bands_, &block.power[static_cast<std::size_t>(lane) * bands_]);
     }
   }
 
  private:
+  void resize(std::size_t count) {
+    origin_.resize(count);
+    direction_.resize(count);
+    id_.resize(count);
+    way_.resize(count);
+    power_.resize(count * bands_);
+  }
+
   std::size_t bands_;
   std::vector<Vec3f> origin_;
   std::vector<Vec3f> direction_;
   std::vector<std::uint32_t> id_;
+  std::vector<SpecularWay> way_;
   std::vector<std::int64_t> power_;
 };
 

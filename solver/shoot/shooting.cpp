@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "solver/shoot/flight.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/shoot/packet_books.h"
+#include "solver/shoot/specular_packets.h"
 
 namespace reemit {
 namespace {
@@ -63,59 +65,144 @@ void find_accounts(const PacketRoom& transport, const Hit16& hits, int count,
   }
 }
 
-/// Traces the flight of sweep `number` and books every packet where it ends; sweep.incident receives what
-/// zones catch, and `arrivals`, if given, where. False if it was cut off: packets that have not set out are
-/// unshot.
+/// Traces packets of one sweep and books each where it ends. One per task.
+class SweepTracer {
+ public:
+  /// `sweep.incident` receives what zones catch, and `arrivals`, if given, where.
+  SweepTracer(const BatchTask& batch, std::uint32_t number, ArrivalPoints* arrivals, SweepAccounts& sweep,
+              BatchBooks& books)
+      : transport_(batch.transport),
+        bands_(batch.transport.bands()),
+        batch_(batch.batch),
+        number_(number),
+        shared_(accounts_are_shared(sweep.incident.size())),
+        choice_(batch.settings.seed, RngPurpose::kArrival),
+        arrivals_(arrivals),
+        books_(books),
+        incident_(sweep.mine()),
+        local_(books),
+        specular_(batch, books),
+        doubtful_(bands_),
+        carried_(bands_),
+        bent_(bands_),
+        waiting_(bands_) {}
+
+  /// Packets whose way was bent by a mirror or by glass are kept in bent() instead of traced on.
+  void keep_bent() { keeps_bent_ = true; }
+  const WaitingPackets& bent() const { return bent_; }
+  std::uint64_t carried_rays() const { return carried_rays_; }
+
+  void trace(PacketBlock& block) {
+    trace_and_book(block, false, false);
+    if (doubtful_.count() >= 16) look_again();
+    if (carried_.count() >= 16) trace_carried();
+  }
+  /// Traces what waits. Call it last.
+  void finish() {
+    while (doubtful_.count() + carried_.count() > 0) {
+      if (doubtful_.count() > 0) look_again();
+      if (carried_.count() > 0) trace_carried();
+    }
+  }
+  /// Traces packets that were carried on from a surface.
+  void trace_on(PacketBlock& block) {
+    carried_rays_ += static_cast<std::uint64_t>(block.count);
+    trace_and_book(block, false, true);
+    if (doubtful_.count() >= 16) look_again();
+  }
+
+ private:
+  void look_again() {
+    doubtful_.take(waiting_);
+    trace_and_book(waiting_, true, true);
+  }
+  void trace_carried() {
+    carried_.take(waiting_);
+    trace_on(waiting_);
+  }
+
+  /// Random bits of the packets' arrivals; those of packets that were carried on differ from arrival to
+  /// arrival.
+  void draw_bits(const PacketBlock& block, bool may_be_carried) {
+    if (!may_be_carried || !specular_.any()) {
+      choice_.bits4x16(block.id, batch_, number_, bits_);
+      return;
+    }
+    for (int lane = 0; lane < block.count; ++lane)
+      bits_.word[0][lane] =
+          choice_.bits4(std::uint64_t{block.way[lane].steps} << 32 | block.id[lane], batch_, number_)[0];
+  }
+
+  void trace_and_book(PacketBlock& block, bool second_look, bool may_be_carried) {
+    transport_.rays().closest16(block.rays, block.count, hits_);
+    if (arrivals_ != nullptr) draw_bits(block, may_be_carried);
+    find_accounts(transport_, hits_, block.count, incident_, shared_, second_look, arrivals_, bits_.word[0],
+                  books_, accounts_);
+    std::int64_t* quanta = block.power.data();
+    for (int lane = 0; lane < block.count; ++lane, quanta += bands_) {
+      const Account& account = accounts_[lane];
+      if (account.quanta == nullptr && !second_look) {
+        doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
+        count_event(books_.events.second_looks);
+        continue;
+      }
+      if (specular_.any()) specular_.attenuate(hits_, lane, quanta);
+      if (account.place != nullptr) {
+        if (account.member == Account::kNoMember)
+          arrivals_->add(account.place, bits_.word[0][lane], hits_.u[lane], hits_.v[lane]);
+        else
+          arrivals_->add_in_group(account.place, bits_.word[0][lane], account.member, hits_.u[lane],
+                                  hits_.v[lane]);
+      }
+      for (std::size_t b = 0; b < bands_; ++b)
+        if (account.quanta != nullptr)
+          book(account.quanta[b], quanta[b], account.shared);
+        else
+          local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], b, quanta[b]);
+      if (account.quanta != nullptr && specular_.any())
+        specular_.carry_on(block, hits_, lane, number_, carried_);
+    }
+    if (keeps_bent_) carried_.move_bent(bent_);
+  }
+
+  const PacketRoom& transport_;
+  std::size_t bands_;
+  std::uint32_t batch_;
+  std::uint32_t number_;
+  bool shared_;
+  CounterRng choice_;
+  ArrivalPoints* arrivals_;
+  BatchBooks& books_;
+  SweepAccounts::Incident& incident_;
+  LocalBooks local_;
+  SpecularPackets specular_;
+  WaitingPackets doubtful_;
+  WaitingPackets carried_;
+  WaitingPackets bent_;
+  PacketBlock waiting_;
+  bool keeps_bent_ = false;
+  std::uint64_t carried_rays_ = 0;
+  Hit16 hits_;
+  Account accounts_[16];
+  BitLanes bits_;
+};
+
+/// Traces the flight of sweep `number` and books every packet where it ends. In the first sweep, packets that
+/// mirrors and glass sent another way are left in `bent`: their light is not direct. False if it was cut off:
+/// packets that have not set out are unshot.
 bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t number, ArrivalPoints* arrivals,
-                  SweepAccounts& sweep, BatchBooks& books) {
+                  SweepAccounts& sweep, WaitingPackets& bent, BatchBooks& books) {
   const PacketRoom& transport = batch.transport;
-  const std::size_t bands = transport.bands();
-  const bool shared = accounts_are_shared(sweep.incident.size());
   const FlightNumbers numbers(batch.settings.sampling, batch.settings.seed, batch.batch, number);
-  const CounterRng choice(batch.settings.seed, RngPurpose::kArrival);
   const ArrivalPoints* points = number == 0 ? nullptr : arrivals;  // luminaires have none
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   std::atomic<std::uint64_t> started{0};
+  std::atomic<std::uint64_t> carried{0};
+  std::mutex bent_mutex;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
-    LocalBooks local(books);
-    SweepAccounts::Incident& incident = sweep.mine();
-    DoubtfulPackets doubtful(bands);
-    PacketBlock second(bands);
-    std::vector<std::int64_t> power(16 * bands);
-    Hit16 hits;
-    Account accounts[16];
-    BitLanes bits;
-    const auto trace_and_book = [&](const Ray16& rays, int count, const std::uint32_t* id,
-                                    const std::int64_t* quanta, bool second_look) {
-      transport.rays().closest16(rays, count, hits);
-      if (arrivals != nullptr) choice.bits4x16(id, batch.batch, number, bits);
-      find_accounts(transport, hits, count, incident, shared, second_look, arrivals, bits.word[0], books,
-                    accounts);
-      for (int lane = 0; lane < count; ++lane, quanta += bands) {
-        const Account& account = accounts[lane];
-        if (account.quanta == nullptr && !second_look) {
-          doubtful.add(transport.rays(), rays, hits, lane, id[lane], quanta);
-          count_event(books.events.second_looks);
-          continue;
-        }
-        if (account.place != nullptr) {
-          if (account.member == Account::kNoMember)
-            arrivals->add(account.place, bits.word[0][lane], hits.u[lane], hits.v[lane]);
-          else
-            arrivals->add_in_group(account.place, bits.word[0][lane], account.member, hits.u[lane],
-                                   hits.v[lane]);
-        }
-        for (std::size_t b = 0; b < bands; ++b)
-          if (account.quanta != nullptr)
-            book(account.quanta[b], quanta[b], account.shared);
-          else
-            local.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
-      }
-    };
-    const auto look_again = [&] {
-      doubtful.take(second);
-      trace_and_book(second.rays, second.count, second.id, second.power.data(), true);
-    };
+    SweepTracer tracer(batch, number, arrivals, sweep, books);
+    if (number == 0) tracer.keep_bent();
+    PacketBlock block(transport.bands());
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
       const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
@@ -125,21 +212,41 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
       }
       started += end - begin;
       FlightCursor cursor(transport, flight, begin, points);
-      Ray16 rays;
-      std::uint32_t id[16];
       for (std::uint32_t first = begin; first < end; first += 16) {
-        const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-        cursor.start16(first, count, numbers, rays, power.data());
-        std::iota(id, id + 16, first);
-        if (batch.ray_observer != nullptr) (*batch.ray_observer)({rays, count, id, number});
-        trace_and_book(rays, count, id, power.data(), false);
-        if (doubtful.count() >= 16) look_again();
+        block.count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
+        cursor.start16(first, block.count, numbers, block.rays, block.power.data());
+        std::iota(block.id, block.id + 16, first);
+        if (batch.ray_observer != nullptr) (*batch.ray_observer)({block.rays, block.count, block.id, number});
+        tracer.trace(block);
       }
     }
-    look_again();
+    tracer.finish();
+    carried += tracer.carried_rays();
+    if (tracer.bent().count() > 0) {
+      const std::lock_guard lock(bent_mutex);
+      bent.append(tracer.bent());
+    }
   });
-  books.rays += started;
+  books.rays += started + carried;
   return started == flight.packets();
+}
+
+/// Traces packets of the first sweep that trace_flight left. Their light goes into sweep.incident.
+void trace_bent(const BatchTask& batch, const WaitingPackets& bent, ArrivalPoints* arrivals,
+                SweepAccounts& sweep, BatchBooks& books) {
+  std::atomic<std::uint64_t> carried{0};
+  const std::size_t blocks = (bent.count() + 15) / 16;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, kPacketsPerTask / 16), [&](const auto& range) {
+    SweepTracer tracer(batch, 0, arrivals, sweep, books);
+    PacketBlock block(batch.transport.bands());
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      bent.copy(16 * i, block);
+      tracer.trace_on(block);
+    }
+    tracer.finish();
+    carried += tracer.carried_rays();
+  });
+  books.rays += carried;
 }
 
 /// Moves what a sweep brought in into `part` of the books; the reflected share becomes unshot power.
@@ -209,8 +316,14 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   bool whole = true;
   for (std::uint32_t sweep = 0;; ++sweep) {
     if (arrivals) arrivals->begin(sweep);
-    whole = trace_flight(task, flight, sweep, arrivals ? &*arrivals : nullptr, accounts, books);
+    ArrivalPoints* points = arrivals ? &*arrivals : nullptr;
+    WaitingPackets bent(bands);
+    whole = trace_flight(task, flight, sweep, points, accounts, bent, books);
     reflect(transport, accounts, sweep == 0 ? books.direct : books.indirect, books);
+    if (bent.count() > 0) {
+      trace_bent(task, bent, points, accounts, books);
+      reflect(transport, accounts, books.indirect, books);
+    }
     const auto left = static_cast<double>(allocation.measure(accounts));
     if (!whole || left <= task.settings.stop_share * emitted || sweep + 1 == kMostSweeps) break;
     whole = task.stop == nullptr || !task.stop->requested();

@@ -10,6 +10,7 @@
 #include "solver/shoot/flight.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/shoot/packet_books.h"
+#include "solver/shoot/specular_packets.h"
 
 namespace reemit {
 namespace {
@@ -19,8 +20,8 @@ constexpr std::uint32_t kWalksPerTask = 1024;
 /// power is unshot.
 constexpr std::uint32_t kMostBounces = 200'000;
 
-/// Packets that wait to leave what they met.
-struct WaitingPackets {
+/// Packets that wait to leave what they met and were scattered by.
+struct ScatteredPackets {
   struct Packet {
     std::uint32_t triangle;  ///< That it met,
     float at_u, at_v;        ///< where
@@ -66,11 +67,14 @@ class WalkTask {
         observer_(task.ray_observer),
         books_(books),
         local_(books),
+        specular_(task, books),
         doubtful_(bands_),
-        second_(bands_),
+        carried_(bands_),
+        again_(bands_),
         zones_(zones),
         absorbed_(absorbed),
-        shared_(shared) {}
+        shared_(shared),
+        block_(bands_) {}
 
   /// False if it was cut off: packets that have not ended, or not set out, are unshot.
   bool run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
@@ -98,77 +102,103 @@ class WalkTask {
   void start(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
     waiting_.clear();
     FlightCursor cursor(transport_, flight, begin);
-    std::vector<std::int64_t> power(16 * bands_);
-    std::uint32_t id[16] = {};
     for (std::uint32_t first = begin; first < end; first += 16) {
-      const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-      cursor.start16(first, count, numbers, rays_, power.data());
-      std::iota(id, id + count, first);
-      trace(count, id, power.data(), zones_.direct, 0);
+      block_.count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
+      cursor.start16(first, block_.count, numbers, block_.rays, block_.power.data());
+      std::iota(block_.id, block_.id + block_.count, first);
+      trace(zones_.direct, 0);
     }
-    look_again(zones_.direct, 0);
+    finish(zones_.direct, 0);
   }
 
   void trace_on(std::uint32_t bounce) {
     std::swap(waiting_, leaving_);
     waiting_.clear();
     UniformLanes numbers{};
-    std::uint32_t id[16] = {};
     for (std::size_t first = 0; first < leaving_.packets.size(); first += 16) {
-      const int count = static_cast<int>(std::min<std::size_t>(16, leaving_.packets.size() - first));
-      for (int lane = 0; lane < count; ++lane) {
-        const WaitingPackets::Packet& p = leaving_.packets[first + static_cast<std::size_t>(lane)];
+      block_.count = static_cast<int>(std::min<std::size_t>(16, leaving_.packets.size() - first));
+      for (int lane = 0; lane < block_.count; ++lane) {
+        const ScatteredPackets::Packet& p = leaving_.packets[first + static_cast<std::size_t>(lane)];
         for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = p.u[d];
-        id[lane] = p.id;
+        block_.id[lane] = p.id;
         if (from_hits_)
           transport_.put_hit(p.triangle, p.at_u, p.at_v, p.front, lanes_, lane);
         else
           transport_.put_zone(transport_.zone_of(p.triangle, p.at_u, p.at_v, p.front), lanes_, lane,
                               lane + 1);
       }
-      transport_.start(lanes_, numbers, rays_);
-      trace(count, id, &leaving_.quanta[first * bands_], zones_.indirect, bounce);
+      transport_.start(lanes_, numbers, block_.rays);
+      std::copy_n(&leaving_.quanta[first * bands_], static_cast<std::size_t>(block_.count) * bands_,
+                  block_.power.begin());
+      trace(zones_.indirect, bounce);
     }
-    look_again(zones_.indirect, bounce);
+    finish(zones_.indirect, bounce);
   }
 
-  void trace(int count, const std::uint32_t id[16], const std::int64_t* power,
-             std::vector<std::int64_t>& incident, std::uint32_t bounce) {
-    if (observer_ != nullptr) (*observer_)({rays_, count, id, bounce});
-    ray_count_ += static_cast<std::uint64_t>(count);
-    arrive(rays_, count, id, power, incident, bounce, false);
+  /// Traces block_. What arrives is booked into `incident`, or as indirect if it comes over mirrors.
+  void trace(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+    if (observer_ != nullptr) (*observer_)({block_.rays, block_.count, block_.id, bounce});
+    ray_count_ += static_cast<std::uint64_t>(block_.count);
+    arrive(block_, incident, bounce, false);
     if (doubtful_.count() >= 16) look_again(incident, bounce);
+    if (carried_.count() >= 16) trace_carried(incident, bounce);
   }
 
   void look_again(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
-    doubtful_.take(second_);
-    arrive(second_.rays, second_.count, second_.id, second_.power.data(), incident, bounce, true);
+    doubtful_.take(again_);
+    arrive(again_, incident, bounce, true);
+  }
+
+  void trace_carried(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+    carried_.take(again_);
+    ray_count_ += static_cast<std::uint64_t>(again_.count);
+    arrive(again_, incident, bounce, false);
+    if (doubtful_.count() >= 16) look_again(incident, bounce);
+  }
+
+  void finish(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+    while (doubtful_.count() + carried_.count() > 0) {
+      if (doubtful_.count() > 0) look_again(incident, bounce);
+      if (carried_.count() > 0) trace_carried(incident, bounce);
+    }
+  }
+
+  /// Random bits of the reflections of a block; those of packets that were carried on differ from one to the
+  /// next.
+  void draw_bits(const PacketBlock& block, std::uint32_t bounce, BitLanes& bits) const {
+    rng_.bits4x16(block.id, batch_, bounce, bits);
+    for (int lane = 0; lane < block.count; ++lane) {
+      if (block.way[lane].steps == 0) continue;
+      const std::array<std::uint32_t, 4> own =
+          rng_.bits4(std::uint64_t{block.way[lane].steps} << 32 | block.id[lane], batch_, bounce);
+      for (std::size_t k = 0; k < 4; ++k) bits.word[k][lane] = own[k];
+    }
   }
 
   /// Traces a block, books where each packet comes to, and keeps those that survive.
-  void arrive(const Ray16& rays, int count, const std::uint32_t id[16], const std::int64_t* power,
-              std::vector<std::int64_t>& incident, std::uint32_t bounce, bool second_look) {
-    transport_.rays().closest16(rays, count, hits_);
+  void arrive(PacketBlock& block, std::vector<std::int64_t>& incident, std::uint32_t bounce,
+              bool second_look) {
+    transport_.rays().closest16(block.rays, block.count, hits_);
     ZoneId zone[16];
-    for (int lane = 0; lane < count; ++lane) {
+    for (int lane = 0; lane < block.count; ++lane) {
       if (hits_.triangle[lane] == RayTracer::kMiss) continue;
       zone[lane] = transport_.zone_of(hits_.triangle[lane], hits_.u[lane], hits_.v[lane], hits_.front[lane]);
       // With many zones the books are larger than the caches.
       if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * bands_], 1);
     }
     BitLanes bits;
-    rng_.bits4x16(id, batch_, bounce, bits);
-    for (int lane = 0; lane < count; ++lane) {
-      const std::int64_t* quanta = &power[static_cast<std::size_t>(lane) * bands_];
+    draw_bits(block, bounce, bits);
+    for (int lane = 0; lane < block.count; ++lane) {
+      std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * bands_];
       if (!second_look && (!zone[lane].valid() || transport_.rays().is_at_edge(
                                                       hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
-        doubtful_.add(transport_.rays(), rays, hits_, lane, id[lane], quanta);
+        doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
         count_event(books_.events.second_looks);
         continue;
       }
       if (hits_.triangle[lane] == RayTracer::kMiss) {
         for (std::size_t b = 0; b < bands_; ++b)
-          local_.escape(rays.dx[lane], rays.dy[lane], rays.dz[lane], b, quanta[b]);
+          local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], b, quanta[b]);
         continue;
       }
       const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits_.triangle[lane])).surface;
@@ -178,19 +208,29 @@ class WalkTask {
           book(books_.absorbed_on_backs[surface.index() * bands_ + b], quanta[b]);
         continue;
       }
+      if (specular_.any()) specular_.attenuate(hits_, lane, quanta);
+      std::vector<std::int64_t>& part = block.way[lane].bent ? zones_.indirect : incident;
       for (std::size_t b = 0; b < bands_; ++b)
-        book(incident[zone[lane].index() * bands_ + b], quanta[b], shared_);
-      reflect(surface, id[lane], quanta, bits, static_cast<std::size_t>(lane));
+        book(part[zone[lane].index() * bands_ + b], quanta[b], shared_);
+      reflect(surface, block, lane, bits);
     }
   }
 
-  void reflect(SurfaceId surface, std::uint32_t id, const std::int64_t* quanta, const BitLanes& bits,
-               std::size_t lane) {
-    const double survival = transport_.surface_model().largest_reflectance(surface);
+  /// Absorbs a packet, scatters it, or sends it on as a ray.
+  void reflect(SurfaceId surface, const PacketBlock& block, int lane, const BitLanes& bits) {
+    const auto k = static_cast<std::size_t>(lane);
+    const std::int64_t* quanta = &block.power[k * bands_];
     const double* rho = transport_.surface_model().reflectance(surface);
+    double survival = transport_.surface_model().largest_reflectance(surface);
     std::int64_t* absorbed = &absorbed_[surface.index() * bands_];
-    if (!(low_bytes_to_unit(bits, lane) < survival)) {
+    const float u = low_bytes_to_unit(bits, k);
+    const double on = specular_.any() ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;
+    if (survival + on > 1) survival /= survival + on;
+    if (!(u < survival)) {
       for (std::size_t b = 0; b < bands_; ++b) absorbed[b] += quanta[b];
+      if (on > 0)
+        specular_.carry_on(block, hits_, lane, u - static_cast<float>(survival),
+                           1 - static_cast<float>(survival), carried_);
       return;
     }
     waiting_.packets.push_back(
@@ -198,9 +238,9 @@ class WalkTask {
          hits_.u[lane],
          hits_.v[lane],
          hits_.front[lane],
-         id,
-         {CounterRng::to_unit(bits.word[0][lane]), CounterRng::to_unit(bits.word[1][lane]),
-          CounterRng::to_unit(bits.word[2][lane]), CounterRng::to_unit(bits.word[3][lane])}});
+         block.id[lane],
+         {CounterRng::to_unit(bits.word[0][k]), CounterRng::to_unit(bits.word[1][k]),
+          CounterRng::to_unit(bits.word[2][k]), CounterRng::to_unit(bits.word[3][k])}});
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::int64_t kept = share_of(quanta[b], rho[b] / survival);
       waiting_.quanta.push_back(kept);
@@ -222,17 +262,19 @@ class WalkTask {
   const RayObserver* observer_;
   BatchBooks& books_;
   LocalBooks local_;
-  DoubtfulPackets doubtful_;
-  PacketBlock second_;
+  SpecularPackets specular_;
+  WaitingPackets doubtful_;
+  WaitingPackets carried_;
+  PacketBlock again_;
   WalkAccounts& zones_;
   std::vector<std::int64_t>& absorbed_;  // of this thread alone
   bool shared_;
   std::uint64_t ray_count_ = 0;
   ZoneLanes lanes_{};
-  Ray16 rays_{};
+  PacketBlock block_;
   Hit16 hits_{};
-  WaitingPackets waiting_;
-  WaitingPackets leaving_;
+  ScatteredPackets waiting_;
+  ScatteredPackets leaving_;
 };
 
 /// Adds the accounts of a thread, which may have none.

@@ -37,8 +37,14 @@ class Reach {
         sides_(mesh_.side_count()),
         light_(sides_),
         sets_(sides_ + 1) {
-    for (std::uint32_t s = 0; s < sides_; ++s)
-      if (room.surfaces().emits(triangle_of(SideId(s)), is_front(SideId(s)))) sets_.join(s, light_);
+    for (std::uint32_t s = 0; s < sides_; ++s) {
+      const TriangleId t = triangle_of(SideId(s));
+      if (room.surfaces().emits(t, is_front(SideId(s)))) sets_.join(s, light_);
+      // Light comes through glass to what lies behind.
+      if (is_front(SideId(s)) && has_zones(s) && room.surfaces().any_transmits() &&
+          room.surfaces().specular(t).transmits())
+        sets_.join(s, side_of(t, false).index());
+    }
     join_lights(room.scene());
   }
 

@@ -40,7 +40,8 @@ TileRenderer::TileRenderer(const Room& room, const Solution& solution, const Pin
               GatherSettings{.close_hit = settings.integrator == Integrator::kGather ? settings.close_hit : 0,
                              .seed = settings.seed},
               &stop),
-      path_(room, direct_, settings.seed) {}
+      path_(room, direct_, settings.seed),
+      specular_(settings.seed, RngPurpose::kSpecularCamera) {}
 
 void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
   const std::size_t bands = field_.band_count();
@@ -138,29 +139,68 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
   sums.found.depth += (ray.skipped + static_cast<double>(hit.distance)) * rays.metres_per_unit();
   ++sums.found.seen;
 
-  const float* emitted = surfaces.emitted(hit.triangle, hit.front);
   const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
-  const float towards_eye = std::fabs(rays.normal(hit.triangle, hit.u, hit.v).dot(ray.direction));
-  const float emission = sums.share * surfaces.emission_shape(hit.triangle, towards_eye);
-  for (std::size_t b = 0; b < bands; ++b) {
-    sums.direct[b] += emission * emitted[b];
-    sums.albedo[b] += sums.share * reflectance[b];
+  for (std::size_t b = 0; b < bands; ++b) sums.albedo[b] += sums.share * reflectance[b];
+  BandValues through(bands, 1.0F);
+  add_seen(point, through.data(), sample, sums, batch);
+  if (surfaces.is_specular(hit.triangle, hit.front))
+    add_over_mirrors(point, hit.distance, sample, sums, batch);
+}
+
+void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums,
+                                    GatherBatch& batch) const {
+  // Both ways on from glass are of interest near the eye; further on, roulette ends what is faint.
+  constexpr std::uint32_t kCertainSteps = 4;
+  const RayTracer& rays = room_->rays();
+  const SurfaceModel& surfaces = room_->surfaces();
+  const PathKey key{sums.index, sums.batch, static_cast<std::uint32_t>(sample - sums.found.earlier), 0};
+  BandValues through(field_.band_count(), 1.0F);
+  SpecularStep step(field_.band_count());
+  surfaces.attenuate(x.triangle, x.front, way, through.data());
+  for (std::uint32_t k = 0; k < SpecularNumbers::kMostSteps; ++k) {
+    if (!(x.normal.dot(x.towards) > 0)) x.normal = side_normal(rays, x);
+    const Survival survival = k < kCertainSteps ? Survival::kCertain : Survival::kRoulette;
+    if (!surfaces.specular(x.triangle).choose(x, specular_.at(key, k), survival, step)) return;
+    if (!(step.direction.dot(side_normal(rays, x)) * (step.crosses ? -1.0F : 1.0F) > 0)) {
+      // Over a shading normal the mirror direction may point into the surface.
+      x.normal = side_normal(rays, x);
+      if (!surfaces.specular(x.triangle).choose(x, specular_.at(key, k), survival, step)) return;
+    }
+    for (std::size_t b = 0; b < through.size(); ++b) through[b] *= step.share()[b] / step.chance;
+    Hit hit;
+    if (!rays.closest(rays.ray_origin(x.triangle, x.u, x.v, step.front), step.direction, hit)) return;
+    surfaces.attenuate(hit.triangle, hit.front, hit.distance, through.data());
+    x = seen_point(hit, step.direction);
+    add_seen(x, through.data(), sample, sums, batch);
+    if (!surfaces.is_specular(hit.triangle, hit.front)) return;
   }
+}
+
+void TileRenderer::add_seen(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
+                            GatherBatch& batch) const {
+  const std::size_t bands = field_.band_count();
+  const SurfaceModel& surfaces = room_->surfaces();
+  const float* emitted = surfaces.emitted(x.triangle, x.front);
+  const float towards_eye = std::fabs(room_->rays().normal(x.triangle, x.u, x.v).dot(x.towards));
+  const float emission = sums.share * surfaces.emission_shape(x.triangle, towards_eye);
+  for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += emission * emitted[b] * through[b];
   if (sums.integrator != Integrator::kZones) {
-    add_light(point, sample, sums, batch);
+    add_light(x, through, sample, sums, batch);
     return;
   }
-  const ZoneId zone = room_->mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+  const ZoneId zone = room_->mesh().zone_at(x.triangle, x.u, x.v, x.front);
   const float* direct = field_.reflected_direct(zone);
   const float share_of_part = sums.share / static_cast<float>(sums.parts);
   for (std::uint32_t part = sums.part; part < sums.part + sums.parts; ++part) {
     const float* all = field_.reflected(zone, part);
-    for (std::size_t b = 0; b < bands; ++b) sums.indirect[b] += share_of_part * (all[b] - direct[b]);
+    for (std::size_t b = 0; b < bands; ++b)
+      sums.indirect[b] += share_of_part * (all[b] - direct[b]) * through[b];
   }
-  for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += sums.share * direct[b];
+  for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += sums.share * direct[b] * through[b];
 }
 
-void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums, GatherBatch& batch) const {
+void TileRenderer::add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
+                             GatherBatch& batch) const {
   const std::size_t bands = field_.band_count();
   const float* reflectance = room_->surfaces().reflectance(x.triangle, x.front);
   if (std::all_of(reflectance, reflectance + bands, [](float rho) { return rho == 0; })) return;
@@ -168,7 +208,8 @@ void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums,
 
   const int shadow_rays = settings_->light_samples;
   for (std::size_t b = 0; b < bands; ++b)
-    weight[b] = lambert_brdf_per_sr(reflectance[b]) * sums.share / static_cast<float>(shadow_rays);
+    weight[b] =
+        lambert_brdf_per_sr(reflectance[b]) * sums.share / static_cast<float>(shadow_rays) * through[b];
   for (int i = 0; i < shadow_rays; ++i)
     direct_.add_sample(x, sums.sampler.light(sample, i, shadow_rays), weight.data(), sums.direct);
 
@@ -180,7 +221,7 @@ void TileRenderer::add_light(const SurfacePoint& x, int sample, PixelSums& sums,
     const auto ray = static_cast<std::uint32_t>((sample - sums.found.earlier) * gathers + i);
     const PathKey key{sums.index, sums.batch, ray, sums.part};
     for (std::size_t b = 0; b < bands; ++b)
-      weight[b] = reflectance[b] * sums.share / static_cast<float>(gathers);
+      weight[b] = reflectance[b] * sums.share / static_cast<float>(gathers) * through[b];
     if (path)
       path_.add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect);
     else

@@ -58,7 +58,13 @@ class TileRenderer {
   struct PixelSums;
 
   void add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const;
-  void add_light(const SurfacePoint& x, int sample, PixelSums& sums, GatherBatch& batch) const;
+  /// What scatters or emits at x, of which the film gets `through` per band.
+  void add_seen(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
+                GatherBatch& batch) const;
+  void add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
+                 GatherBatch& batch) const;
+  /// What is seen over x, a mirror or glass that a ray of length `way` met.
+  void add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums, GatherBatch& batch) const;
   SurfacePoint seen_point(const Hit& hit, const Vec3f& direction) const;
 
   const Room* room_;
@@ -69,6 +75,7 @@ class TileRenderer {
   DirectLight direct_;
   HemisphereGather gather_;
   PathTracer path_;
+  SpecularNumbers specular_;
 };
 
 }  // namespace reemit

@@ -1,5 +1,6 @@
 #include "scenes/io/gltf/gltf_materials.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -17,6 +18,8 @@ using Rgb = Eigen::Array3d;
 
 constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
+constexpr const char* kVolume = "KHR_materials_volume";
+
 /// Reads the materials of one file.
 class MaterialReader {
  public:
@@ -32,7 +35,7 @@ class MaterialReader {
       if (scene_.materials.back().name.empty()) scene_.materials.back().name = fmt::format("material {}", i);
       for (const auto& [name, value] : source.extensions) {
         static const std::set<std::string> known{"KHR_materials_emissive_strength",
-                                                 "KHR_materials_transmission", "KHR_materials_ior",
+                                                 "KHR_materials_transmission", "KHR_materials_ior", kVolume,
                                                  kSpecularGlossiness};
         if (!known.contains(name)) ignored.insert(name);
       }
@@ -130,15 +133,35 @@ class MaterialReader {
     const Rgb packed = mean(pbr.metallicRoughnessTexture.index, TextureEncoding::kLinear,
                             "metallic-roughness", material.name);
     const double metallic = checked(pbr.metallicFactor, 1, within + "metallicFactor") * packed[2];
-    material.non_diffuse.roughness = checked(pbr.roughnessFactor, 1, within + "roughnessFactor") * packed[1];
+    const double roughness = checked(pbr.roughnessFactor, 1, within + "roughnessFactor") * packed[1];
+    material.non_diffuse.roughness = roughness * roughness;  // alpha, by the definition of the format
     const double transmitted = number(source, "KHR_materials_transmission", "transmissionFactor", 0, 1);
     material.reflectance = base * ((1 - metallic) * (1 - transmitted));
-    if (metallic > 0) material.non_diffuse.specular_reflectance = base * metallic;
+    if (metallic > 0) {
+      material.non_diffuse.specular_reflectance = base * metallic;
+      material.non_diffuse.angle_law = AngleLaw::kSchlick;
+    }
     if (transmitted > 0) {
       material.non_diffuse.specular_transmittance = base * ((1 - metallic) * transmitted);
       material.non_diffuse.transmission_roughness = material.non_diffuse.roughness;
-      material.non_diffuse.index_of_refraction = number(source, "KHR_materials_ior", "ior", 1.5, 100);
+      material.non_diffuse.index_of_refraction =
+          std::max(1.0, number(source, "KHR_materials_ior", "ior", 1.5, 100));
+      if (metallic == 0) material.non_diffuse.angle_law = AngleLaw::kDielectric;
+      read_volume(source, material.non_diffuse);
     }
+  }
+
+  /// Without a thickness the surface is a thin pane.
+  void read_volume(const tinygltf::Material& source, NonDiffusePart& part) const {
+    constexpr double kMost = 1e30;
+    part.is_solid = number(source, kVolume, "thicknessFactor", 0, kMost) > 0;
+    const double distance = number(source, kVolume, "attenuationDistance", kMost, kMost);
+    const Rgb colour = triple(source, kVolume, "attenuationColor");
+    if (!part.is_solid || !(distance < kMost) || !(colour < 1).any()) return;
+    if (!(distance > 0) || !(colour > 0).all())
+      fail(in_extension(kVolume, distance > 0 ? "attenuationColor" : "attenuationDistance"),
+           "glass that lets nothing through", "Give more than 0.");
+    part.absorption_per_m = -colour.log() / distance;
   }
 
   void read_specular_glossiness(const tinygltf::Material& source, Material& material) {
@@ -158,7 +181,8 @@ class MaterialReader {
     // back.
     const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor").min(1 - diffuse);
     if ((specular > 0).any()) material.non_diffuse.specular_reflectance = specular;
-    material.non_diffuse.roughness = 1 - number(source, kSpecularGlossiness, "glossinessFactor", 1, 1);
+    const double roughness = 1 - number(source, kSpecularGlossiness, "glossinessFactor", 1, 1);
+    material.non_diffuse.roughness = roughness * roughness;
   }
 
   void read_emission(const tinygltf::Material& source, Material& material) {

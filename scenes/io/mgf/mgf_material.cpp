@@ -58,17 +58,22 @@ Material convert_mgf_material(const MgfMaterial& m, const std::string& name, con
   if (m.ts.value > 0) rest.specular_transmittance = fitted(m.ts, 1, changed);
   rest.roughness = m.rs_roughness;
   rest.transmission_roughness = m.ts_roughness;
-  rest.index_of_refraction = m.ir_real;
+  if (m.ir_real > 1 && m.ir_imaginary == 0) rest.index_of_refraction = m.ir_real;
+  if (m.sides == 1 && rest.index_of_refraction > 1 && m.ts.value > 0 && rest.transmits_specularly()) {
+    // One-sided and refracting: the surface of a body of glass. rs and ts are those of one passage through it
+    // at normal incidence, so the tint is what Fresnel's equations leave to explain.
+    const double n = rest.index_of_refraction;
+    const double normal = (n - 1) * (n - 1) / ((n + 1) * (n + 1));
+    rest.angle_law = AngleLaw::kDielectric;
+    rest.is_solid = true;
+    rest.specular_reflectance.resize(0);
+    rest.specular_transmittance = (rest.specular_transmittance / (1 - normal)).min(1);
+  }
 
   if (changed)
     warnings.push_back(fmt::format(
         "{}: material '{}' has a colour outside Rec.709; it was made paler, its luminance was kept.", where,
         name));
-  const double sum = m.rd.value + m.rs.value + m.td.value + m.ts.value;
-  if (sum > 1 + 1e-9)
-    warnings.push_back(
-        fmt::format("{}: material '{}' reflects and transmits {:.4g} of the light, more than it gets.", where,
-                    name, sum));
   if (m.ir_imaginary != 0)
     warnings.push_back(fmt::format(
         "{}: material '{}' is a metal; the imaginary part of its index of refraction is not kept.", where,

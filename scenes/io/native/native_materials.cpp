@@ -47,6 +47,46 @@ void read_sides(const JsonCursor& at, Material& material) {
   }
 }
 
+/// The keys of what goes on as a ray: "mirror" or "metal", "transmittance", or "glass" alone.
+void read_specular(const JsonCursor& at, const BandSet& bands, Material& material) {
+  NonDiffusePart& part = material.non_diffuse;
+  const auto mirror = at.find("mirror");
+  const auto metal = at.find("metal");
+  const auto clear = at.find("transmittance");
+  const auto glass = at.find("glass");
+  if (mirror && metal)
+    metal->fail("the material is already a mirror", "Keep one of \"mirror\" and \"metal\".");
+  if (glass && (mirror || metal || clear))
+    glass->fail("glass already says what it reflects and lets through",
+                "Remove \"mirror\", \"metal\" and \"transmittance\", or \"glass\".");
+  if (metal) part.angle_law = AngleLaw::kSchlick;
+  if (mirror || metal) part.specular_reflectance = read_reflectance(mirror ? *mirror : *metal, bands);
+  if (clear) part.specular_transmittance = read_reflectance(*clear, bands);
+  Spectrum sum = material.reflectance;
+  for (const Spectrum* share : {&part.specular_reflectance, &part.specular_transmittance})
+    if (share->size() > 0) sum += *share;
+  constexpr double kRounding = 1e-9;
+  if (sum.maxCoeff() > 1 + kRounding)
+    at.fail(fmt::format("the surface reflects and transmits {:.6g} of the light in one band", sum.maxCoeff()),
+            "Make its \"reflectance\", \"mirror\" or \"metal\", and \"transmittance\" add up to at most 1.");
+  if (!glass) return;
+  glass->expect_object({"ior", "transmittance", "solid", "transmittance_per_m"});
+  part.angle_law = AngleLaw::kDielectric;
+  constexpr double kLargestIndex = 100;
+  part.index_of_refraction = glass->at("ior").number_in(1, kLargestIndex);
+  part.specular_transmittance = Spectrum::Ones(static_cast<Eigen::Index>(bands.count()));
+  if (const auto tint = glass->find("transmittance"))
+    part.specular_transmittance = read_reflectance(*tint, bands);
+  if (const auto solid = glass->find("solid")) part.is_solid = solid->boolean();
+  if (const auto inside = glass->find("transmittance_per_m")) {
+    if (!part.is_solid)
+      inside->fail("a pane has no thickness", "Give its \"transmittance\", or set \"solid\": true.");
+    const Spectrum left = read_reflectance(*inside, bands);
+    if (!(left > 0).all()) inside->fail("glass that lets nothing through", "Give more than 0 in every band.");
+    part.absorption_per_m = -left.log();
+  }
+}
+
 /// Radiance along the normal; of a Lambertian surface, M / pi.
 Spectrum radiance_of_exitance(const Spectrum& exitance, const Material& material) {
   return (material.emission_exponent + 2) / (2 * std::numbers::pi) * exitance;
@@ -58,7 +98,7 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
   for (const auto& [name, at] : materials.members()) {
     at.expect_object({"reflectance", "radiance", "exitance", "luminance_cd_m2", "exitance_lm_m2",
                       "total_power", "total_flux_lm", "emission_color", "emission_exponent", "sides",
-                      "emission_sides"});
+                      "emission_sides", "mirror", "metal", "transmittance", "glass"});
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;
     material.name = name;
@@ -67,6 +107,7 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
     if (const auto reflectance = at.find("reflectance")) {
       material.reflectance = read_reflectance(*reflectance, scene.bands);
     }
+    read_specular(at, scene.bands, material);
     read_sides(at, material);
     const MaterialId id(scene.materials.size());
     const char* emission = emission_key(at);

@@ -16,7 +16,10 @@ ObjLightShares obj_light_shares(const MtlLight& light) {
                                : Spectrum::Constant(light.kd.size(), 1 - light.opacity);
   ObjLightShares shares;
   shares.transmitted = opaque ? open : Spectrum(open * filter);
-  shares.specular = light.ks;
+  shares.is_sharp = mirrors || refracts || glass_on;
+  shares.is_glass = refracts && light.refraction > 1 && (shares.transmitted > 0).any();
+  shares.is_metal = model == 5;
+  shares.specular = shares.is_glass ? Spectrum(Spectrum::Zero(light.kd.size())) : light.ks;
   shares.diffuse = (1 - open) * light.kd;
   if (mirrors) shares.diffuse = shares.diffuse.min((1 - light.ks).max(0));
   if (mirrors && !(light.ks > 0).any() && (light.kd > 0).any())

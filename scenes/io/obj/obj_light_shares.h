@@ -17,6 +17,9 @@ struct MtlLight {
 /// Where the light goes that meets the material: shares per band [0,1]. The rest is absorbed.
 struct ObjLightShares {
   Spectrum diffuse, specular, transmitted;
+  bool is_sharp = false;  ///< Mirror or glass, whatever the exponent of its highlights.
+  bool is_glass = false;  ///< Of the index of refraction: Fresnel's equations say what it reflects.
+  bool is_metal = false;  ///< Its mirror follows Schlick's law.
   std::string doubt;  ///< What the file calls for that the shares do not show, or empty; begins with "it is".
 };
 

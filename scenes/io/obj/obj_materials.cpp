@@ -160,8 +160,14 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tel
     ++tell.not_modelled["glass_and_mirrors_as_paint"];
     tell.warnings.push_back(fmt::format("{}: {}.", where, shares.doubt));
   }
-  rest.roughness = std::sqrt(2 / (m.shininess + 2));  // Phong exponent to microfacet roughness [WAL07]
-  rest.index_of_refraction = m.ior;
+  // Phong exponent to microfacet roughness [WAL07].
+  rest.roughness = shares.is_sharp ? 0 : std::sqrt(2 / (m.shininess + 2));
+  if (shares.is_metal) rest.angle_law = AngleLaw::kSchlick;
+  if (shares.is_glass) {
+    rest.angle_law = AngleLaw::kDielectric;
+    rest.is_solid = true;
+  }
+  rest.index_of_refraction = std::max(1.0, static_cast<double>(m.ior));
   if (const std::string maps = ignored_maps(m); !maps.empty()) {
     ++tell.not_modelled["other_maps"];
     tell.warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));

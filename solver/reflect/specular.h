@@ -1,0 +1,77 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include <boost/container/small_vector.hpp>
+
+#include "scenes/model/material.h"
+#include "solver/trace/surface_point.h"
+
+namespace reemit {
+
+/// One value per band; of few bands, without a call for memory.
+using BandValues = boost::container::small_vector<float, 8>;
+
+/// How light goes on from a surface as one ray: into the mirror direction, or across.
+struct SpecularStep {
+  explicit SpecularStep(std::size_t bands) : reflected(bands), transmitted(bands) {}
+
+  BandValues reflected;      ///< By band, share of the arriving light [0,1].
+  BandValues transmitted;    ///< Likewise.
+  Vec3f direction{0, 0, 1};  ///< Of the way that was chosen; unit.
+  bool front = true;         ///< Side of the surface that it leaves from.
+  bool crosses = false;      ///< It is the transmitted one.
+  bool bends = true;         ///< It is not the straight way on, so shadow rays do not find it.
+  float chance = 0;          ///< Of this choice (0,1].
+
+  /// By band, the share of the arriving light that goes this way.
+  const BandValues& share() const { return crosses ? transmitted : reflected; }
+};
+
+/// How often the ways on from a surface are chosen.
+enum class Survival {
+  kRoulette,  ///< Each with its largest share over the bands; else the ray ends.
+  kCertain,   ///< In proportion to these; the ray always goes on.
+};
+
+/// What of a material is carried on by rays: mirror reflection and clear transmission of smooth surfaces.
+/// With the Lambertian part it never adds up to more than the light that arrives. Light that goes on and back
+/// along the same way meets the same shares, so a ray may be followed from either end; radiance is meant as
+/// that of vacuum, L/n^2.
+class SpecularSurface {
+ public:
+  SpecularSurface() = default;
+  /// `metres_per_unit`: of the space in which distances are given.
+  SpecularSurface(const Material& material, double metres_per_unit);
+
+  bool exists() const { return reflects_ || transmits_; }
+  bool transmits() const { return transmits_; }
+  /// Light crosses it straight on.
+  bool is_pane() const { return transmits_ && !solid_; }
+  /// Light is bent where it crosses; the back is the inside of a body.
+  bool is_body() const { return transmits_ && solid_; }
+  bool absorbs_inside() const { return !absorption_.empty(); }
+
+  /// Shares of the light that arrives at `cosine` (0,1] to the normal of a side. Returns the sum of the
+  /// chances that the ways would have by roulette; it may be above 1 where bands differ.
+  float shares(float cosine, bool front, SpecularStep& step) const;
+  /// Chooses a way for light seen from x.towards by a number that is uniform in [0,most); 0 < most <= 1 is
+  /// what all chances may add up to. False if it ends here.
+  bool choose(const SurfacePoint& x, float u, Survival survival, SpecularStep& step, float most = 1) const;
+  /// What is left of light after a way inside the body that ended on this surface, of one band; the way is in
+  /// the units of the constructor.
+  float left_inside(std::size_t band, float way) const;
+
+ private:
+  bool reflects_ = false;
+  bool transmits_ = false;
+  bool solid_ = false;
+  AngleLaw law_ = AngleLaw::kConstant;
+  double ior_ = 1;
+  std::vector<float> most_;           // by band: what the Lambertian part leaves
+  std::vector<float> reflectance_;    // by band
+  std::vector<float> transmittance_;  // by band
+  std::vector<float> absorption_;     // by band, per unit; empty = none
+};
+
+}  // namespace reemit

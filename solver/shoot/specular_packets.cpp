@@ -1,0 +1,67 @@
+#include "solver/shoot/specular_packets.h"
+
+namespace reemit {
+
+SpecularPackets::SpecularPackets(const BatchTask& task, BatchBooks& books)
+    : rays_(task.transport.rays()),
+      surfaces_(task.transport.surface_model()),
+      mesh_(task.transport.mesh()),
+      books_(books),
+      rng_(task.settings.seed, RngPurpose::kSpecular),
+      batch_(task.batch),
+      any_(surfaces_.any_specular()),
+      way_(task.transport.bands()),
+      power_(task.transport.bands()) {}
+
+void SpecularPackets::attenuate(const Hit16& hits, int lane, std::int64_t* power) const {
+  if (hits.triangle[lane] == RayTracer::kMiss || hits.front[lane]) return;
+  const TriangleId t(hits.triangle[lane]);
+  const SpecularSurface& surface = surfaces_.specular(t);
+  if (!surface.absorbs_inside()) return;
+  const std::size_t bands = power_.size();
+  for (std::size_t b = 0; b < bands; ++b) {
+    const std::int64_t left =
+        share_of(power[b], static_cast<double>(surface.left_inside(b, hits.distance[lane])));
+    book(books_.absorbed[mesh_.triangle(t).surface.index() * bands + b], power[b] - left);
+    power[b] = left;
+  }
+}
+
+float SpecularPackets::chances(const PacketBlock& block, const Hit16& hits, int lane) {
+  const TriangleId t(hits.triangle[lane]);
+  if (!surfaces_.is_specular(t, hits.front[lane])) return 0;
+  const float cosine =
+      -side_normal(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]).dot(block.rays.direction(lane));
+  return cosine > 0 ? surfaces_.specular(t).shares(cosine, hits.front[lane], way_) : 0;
+}
+
+bool SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
+                               WaitingPackets& next) {
+  if (!any_ || !surfaces_.is_specular(TriangleId(hits.triangle[lane]), hits.front[lane])) return false;
+  const std::uint64_t packet = std::uint64_t{block.way[lane].steps} << 32 | block.id[lane];
+  return carry_on(block, hits, lane, rng_.uniform4(packet, batch_, step)[0], 1, next);
+}
+
+bool SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u, float most,
+                               WaitingPackets& next) {
+  const TriangleId t(hits.triangle[lane]);
+  SurfacePoint x = surface_point(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]);
+  x.towards = -block.rays.direction(lane);
+  if (!surfaces_.specular(t).choose(x, u, Survival::kRoulette, way_, most)) return false;
+  const std::size_t bands = power_.size();
+  const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * bands];
+  const std::size_t surface = mesh_.triangle(t).surface.index();
+  const bool ends = block.way[lane].steps + 1 == kMostSteps;
+  for (std::size_t b = 0; b < bands; ++b) {
+    power_[b] = share_of(power[b], static_cast<double>(way_.share()[b]) / static_cast<double>(way_.chance));
+    if (power_[b] == 0) continue;
+    book(books_.absorbed[surface * bands + b], -power_[b]);
+    if (ends) book(books_.unshot[b], power_[b]);
+  }
+  if (!ends)
+    next.add(rays_.ray_origin(t, x.u, x.v, way_.front), way_.direction, block.id[lane],
+             {block.way[lane].steps + 1, block.way[lane].bent || way_.bends}, power_.data());
+  return true;
+}
+
+}  // namespace reemit
