@@ -12,6 +12,7 @@
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include "scenes/model/error.h"
 #include "solver/matrix/matrix_solve.h"
 #include "solver/run/examination.h"
 #include "solver/run/prepared_room.h"
@@ -93,6 +94,10 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
                       const std::atomic<bool>& interrupt, Examination examination) {
   const auto start = Clock::now();
   const PreparedRoom room(scene, solution, watch.preparing);
+  if (room.room.surfaces().any_specular())
+    throw InputError(scene.source,
+                     "the room has mirrors or glass, and the matrix method is that of Lambertian surfaces",
+                     "Solve it with --method shooting or walk.");
   if (room.is_dark()) return solution;
   tbb::task_arena arena(thread_count(solution.settings));
   arena.execute([&] {

@@ -40,7 +40,8 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
   return light;
 }
 
-bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample, BandValues& panes) const {
+bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample,
+                         std::vector<float>& panes) const {
   const bool visible =
       sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
   if (visible || !surfaces_->any_transmits()) return visible;

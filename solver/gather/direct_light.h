@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "solver/emit/luminaire_choice.h"
 #include "solver/emit/luminaire_table.h"
@@ -56,12 +57,12 @@ class DirectLight {
     float factor = 0;
     Vec3f towards{0, 0, 0};  ///< The luminaire; of any length.
     /// By band, what panes on the way leave of it; empty where there are none.
-    BandValues panes;
+    std::vector<float> panes;
 
     float pane(std::size_t b) const { return panes.empty() ? 1.0F : panes[b]; }
   };
   /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival.
-  bool passes(const Vec3f& origin, const LuminaireSample& sample, BandValues& panes) const;
+  bool passes(const Vec3f& origin, const LuminaireSample& sample, std::vector<float>& panes) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
 
   const RayTracer* rays_;

@@ -49,12 +49,13 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
   float way = 0;              // from the last surface that scattered the light
   bool is_bent = false;       // that way is, so shadow rays from there did not find what it meets
   std::uint32_t crossed = 0;  // mirrors and panes in all
-  SpecularStep step(bands);
+  TriangleId body;            // of glass that the ray was sent into
+  SpecularStep step(surfaces.any_specular() ? bands : 0);
   for (int bounce = 0;;) {
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
     way += hit.distance;
-    surfaces.attenuate(hit.triangle, hit.front, hit.distance, weight);
+    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, weight);
     const SurfacePoint point = surface_point(rays, hit, along);
     if (is_bent) add_emission(surfaces, point, weight, sum);
     const bool is_read = bounce == most_bounces_ || !continues(zone, way);
@@ -75,6 +76,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
         if (!surface.choose(point, u - scattered, Survival::kRoulette, step, 1 - scattered)) return;
         for (std::size_t b = 0; b < bands; ++b) weight[b] *= step.share()[b] / step.chance;
         is_bent = is_bent || step.bends;
+        body = surfaces.body_beyond(hit.triangle, step.front, body);
         along = step.direction;
         if (!rays.closest(rays.ray_origin(hit.triangle, hit.u, hit.v, step.front), along, hit)) return;
         continue;

@@ -20,12 +20,13 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
   Vec3f origin = ray_origin(rays, x);
   bool is_bent = false;  // since light was scattered last, so shadow rays did not find what the ray meets
   std::uint32_t crossed = 0;  // mirrors and panes in all
-  SpecularStep step(bands);
+  TriangleId body;            // of glass that the ray was sent into
+  SpecularStep step(surfaces.any_specular() ? bands : 0);
   for (std::uint32_t bounce = 0;;) {
     Hit hit;
     if (!rays.closest(origin, direction, hit)) return;
     point = surface_point(rays, hit, direction);
-    surfaces.attenuate(hit.triangle, hit.front, hit.distance, weight);
+    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, weight);
     if (is_bent) add_emission(surfaces, point, weight, sum);
     const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
     const float largest = *std::max_element(reflectance, reflectance + bands);
@@ -49,6 +50,7 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
         if (!surface.choose(point, v - survival, Survival::kRoulette, step, 1 - survival)) return;
         for (std::size_t b = 0; b < bands; ++b) weight[b] *= step.share()[b] / step.chance;
         is_bent = is_bent || step.bends;
+        body = surfaces.body_beyond(hit.triangle, step.front, body);
         direction = step.direction;
         origin = rays.ray_origin(hit.triangle, hit.u, hit.v, step.front);
         continue;

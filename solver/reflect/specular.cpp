@@ -15,7 +15,7 @@ std::vector<float> by_band(const Spectrum& s, bool used, std::size_t bands) {
   return values;
 }
 
-float largest(const BandValues& values) {
+float largest(const std::vector<float>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
@@ -87,6 +87,23 @@ bool SpecularSurface::choose(const SurfacePoint& x, float u, Survival survival, 
   step.crosses = across > 0 && u >= scale * mirror;
   step.chance = scale * (step.crosses ? across : mirror);
   if (!(step.chance > 0)) return false;
+  turn(x, step);
+  return true;
+}
+
+bool SpecularSurface::take(const SurfacePoint& x, bool crosses, SpecularStep& step) const {
+  const float cosine = x.normal.dot(x.towards);
+  if (!(cosine > 0)) return false;
+  shares(cosine, x.front, step);
+  step.crosses = crosses;
+  step.chance = 1;
+  if (!(largest(step.share()) > 0)) return false;
+  turn(x, step);
+  return true;
+}
+
+void SpecularSurface::turn(const SurfacePoint& x, SpecularStep& step) const {
+  const float cosine = x.normal.dot(x.towards);
   step.bends = !step.crosses || solid_;
   step.front = step.crosses != x.front;
   if (!step.crosses)
@@ -100,7 +117,6 @@ bool SpecularSurface::choose(const SurfacePoint& x, float u, Survival survival, 
     const Vec3 d = -x.towards.cast<double>() / eta + (static_cast<double>(cosine) / eta - beyond) * n;
     step.direction = d.normalized().cast<float>();
   }
-  return true;
 }
 
 float SpecularSurface::left_inside(std::size_t band, float way) const {

@@ -2,30 +2,26 @@
 #include <cstddef>
 #include <vector>
 
-#include <boost/container/small_vector.hpp>
-
 #include "scenes/model/material.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
 
-/// One value per band; of few bands, without a call for memory.
-using BandValues = boost::container::small_vector<float, 8>;
-
-/// How light goes on from a surface as one ray: into the mirror direction, or across.
+/// How light goes on from a surface as one ray: into the mirror direction, or across. To be used from hit to
+/// hit, so that memory is asked for once; a room without such surfaces needs one of no bands.
 struct SpecularStep {
   explicit SpecularStep(std::size_t bands) : reflected(bands), transmitted(bands) {}
 
-  BandValues reflected;      ///< By band, share of the arriving light [0,1].
-  BandValues transmitted;    ///< Likewise.
-  Vec3f direction{0, 0, 1};  ///< Of the way that was chosen; unit.
-  bool front = true;         ///< Side of the surface that it leaves from.
-  bool crosses = false;      ///< It is the transmitted one.
-  bool bends = true;         ///< It is not the straight way on, so shadow rays do not find it.
-  float chance = 0;          ///< Of this choice (0,1].
+  std::vector<float> reflected;    ///< By band, share of the arriving light [0,1].
+  std::vector<float> transmitted;  ///< Likewise.
+  Vec3f direction{0, 0, 1};        ///< Of the way that was chosen; unit.
+  bool front = true;               ///< Side of the surface that it leaves from.
+  bool crosses = false;            ///< It is the transmitted one.
+  bool bends = true;               ///< It is not the straight way on, so shadow rays do not find it.
+  float chance = 0;                ///< Of this choice (0,1].
 
   /// By band, the share of the arriving light that goes this way.
-  const BandValues& share() const { return crosses ? transmitted : reflected; }
+  const std::vector<float>& share() const { return crosses ? transmitted : reflected; }
 };
 
 /// How often the ways on from a surface are chosen.
@@ -58,11 +54,16 @@ class SpecularSurface {
   /// Chooses a way for light seen from x.towards by a number that is uniform in [0,most); 0 < most <= 1 is
   /// what all chances may add up to. False if it ends here.
   bool choose(const SurfacePoint& x, float u, Survival survival, SpecularStep& step, float most = 1) const;
+  /// Takes one of the two ways for certain. False if nothing goes there.
+  bool take(const SurfacePoint& x, bool crosses, SpecularStep& step) const;
   /// What is left of light after a way inside the body that ended on this surface, of one band; the way is in
   /// the units of the constructor.
   float left_inside(std::size_t band, float way) const;
 
  private:
+  /// Finds the direction of the way that `step` crosses or does not.
+  void turn(const SurfacePoint& x, SpecularStep& step) const;
+
   bool reflects_ = false;
   bool transmits_ = false;
   bool solid_ = false;

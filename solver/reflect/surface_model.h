@@ -50,11 +50,22 @@ class SurfaceModel {
   bool is_specular(TriangleId t, bool front) const {
     return any_specular_ && specular(t).exists() && side(t, front).reflects;
   }
-  /// Takes from `light`, per band, what the body absorbs that a ray of this length was in when it met the
-  /// back of its surface.
-  void attenuate(TriangleId t, bool front, float way, float* light) const {
-    if (!any_transmits_ || front || !specular(t).absorbs_inside()) return;
-    for (std::size_t b = 0; b < bands_; ++b) light[b] *= specular(t).left_inside(b, way);
+  /// The body of glass that absorbed light on a way that ended on a side of a triangle: `known`, where a ray
+  /// has been sent into one, else the one whose inside that side is. Not valid if there is none.
+  TriangleId body_around(TriangleId t, bool front, TriangleId known) const {
+    if (!any_transmits_) return {};
+    const TriangleId body = known.valid() || front ? known : t;
+    return body.valid() && specular(body).absorbs_inside() ? body : TriangleId();
+  }
+  /// The body that a ray is in when it goes on from a side of a triangle, for the one that it came through.
+  TriangleId body_beyond(TriangleId t, bool leaves_front, TriangleId around) const {
+    if (!specular(t).is_body()) return around;
+    return leaves_front ? TriangleId() : t;
+  }
+  /// Takes from `light`, per band, what a body (which need not be valid) absorbs along a way.
+  void attenuate(TriangleId body, float way, float* light) const {
+    if (!body.valid()) return;
+    for (std::size_t b = 0; b < bands_; ++b) light[b] *= specular(body).left_inside(b, way);
   }
 
   /// Whether a side of a triangle, or any side of a surface, emits.

@@ -65,16 +65,35 @@ class WayOut {
         const ZoneId zone =
             transport_.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], hits.front[lane]);
         if (!zone.valid() || open_[zone.index()]) return true;
-        if (transport_.surface_model().reflectance(transport_.mesh().zone_surface(zone))[band_] < 1)
-          return true;
-        met_.push_back(zone);
         const auto x = rng_.uniform4(first + static_cast<std::uint32_t>(lane), 0, bounce);
+        ZoneId next = zone;
+        if (takes_light(hits, lane, x[0] < 0.5F, next)) return true;
+        met_.push_back(zone);
         for (std::size_t d = 0; d < 4; ++d) numbers.u[d][lane] = x[d];
-        transport_.put_zone(zone, lanes, lane, lane + 1);
+        transport_.put_zone(next, lanes, lane, lane + 1);
       }
       transport_.start(lanes, numbers, rays);
     }
     return false;
+  }
+
+  /// Whether what a lane met keeps some of the light; else `next` is the zone that it goes on from, as if the
+  /// surface scattered it: mirrors and glass send it elsewhere, but nothing that this light can reach is out
+  /// of reach of that. `crosses` chooses between the two sides where light may go to either.
+  bool takes_light(const Hit16& hits, int lane, bool crosses, ZoneId& next) {
+    const SurfaceModel& surfaces = transport_.surface_model();
+    const TriangleId t(hits.triangle[lane]);
+    const double kept = surfaces.reflectance(transport_.mesh().triangle(t).surface)[band_];
+    if (!surfaces.is_specular(t, hits.front[lane])) return kept < 1;
+    SpecularStep at_normal(transport_.bands());
+    surfaces.specular(t).shares(1, hits.front[lane], at_normal);
+    const auto mirrored = static_cast<double>(at_normal.reflected[band_]);
+    const auto crossing = static_cast<double>(at_normal.transmitted[band_]);
+    constexpr double kRounding = 1e-6;
+    if (surfaces.specular(t).absorbs_inside() || kept + mirrored + crossing < 1 - kRounding) return true;
+    if (crossing > 0 && crosses)
+      next = transport_.zone_of(hits.triangle[lane], hits.u[lane], hits.v[lane], !hits.front[lane]);
+    return !next.valid();
   }
 
   const PacketRoom& transport_;
@@ -113,6 +132,7 @@ void refuse_closed_perfect_reflector(const PacketRoom& transport, const PacketSo
     bool any_perfect = false;
     for (std::size_t s = 0; s < transport.surfaces(); ++s)
       any_perfect = any_perfect || transport.surface_model().reflectance(SurfaceId(s))[b] >= 1;
+    any_perfect = any_perfect || transport.surface_model().any_specular();
     if (!any_perfect) continue;
     WayOut way_out(transport, b, seed);
     for (std::size_t s = 0; s < emission.sources.size(); ++s) {

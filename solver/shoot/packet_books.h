@@ -51,6 +51,7 @@ class LocalBooks {
 struct SpecularWay {
   std::uint32_t steps = 0;
   bool bent = false;  ///< Not straight on over panes alone.
+  TriangleId body;    ///< A face of the body of glass that it was sent into; not valid in air.
 };
 
 /// 16 rays with what their packets carry.

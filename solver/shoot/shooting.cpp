@@ -146,7 +146,7 @@ class SweepTracer {
         count_event(books_.events.second_looks);
         continue;
       }
-      if (specular_.any()) specular_.attenuate(hits_, lane, quanta);
+      if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       if (account.place != nullptr) {
         if (account.member == Account::kNoMember)
           arrivals_->add(account.place, bits_.word[0][lane], hits_.u[lane], hits_.v[lane]);

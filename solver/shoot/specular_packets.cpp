@@ -13,16 +13,17 @@ SpecularPackets::SpecularPackets(const BatchTask& task, BatchBooks& books)
       way_(task.transport.bands()),
       power_(task.transport.bands()) {}
 
-void SpecularPackets::attenuate(const Hit16& hits, int lane, std::int64_t* power) const {
-  if (hits.triangle[lane] == RayTracer::kMiss || hits.front[lane]) return;
-  const TriangleId t(hits.triangle[lane]);
-  const SpecularSurface& surface = surfaces_.specular(t);
-  if (!surface.absorbs_inside()) return;
+void SpecularPackets::attenuate(const SpecularWay& way, const Hit16& hits, int lane,
+                                std::int64_t* power) const {
+  if (hits.triangle[lane] == RayTracer::kMiss) return;
+  const TriangleId body = surfaces_.body_around(TriangleId(hits.triangle[lane]), hits.front[lane], way.body);
+  if (!body.valid()) return;
   const std::size_t bands = power_.size();
+  const std::size_t account = mesh_.triangle(body).surface.index() * bands;
   for (std::size_t b = 0; b < bands; ++b) {
     const std::int64_t left =
-        share_of(power[b], static_cast<double>(surface.left_inside(b, hits.distance[lane])));
-    book(books_.absorbed[mesh_.triangle(t).surface.index() * bands + b], power[b] - left);
+        share_of(power[b], static_cast<double>(surfaces_.specular(body).left_inside(b, hits.distance[lane])));
+    book(books_.absorbed[account + b], power[b] - left);
     power[b] = left;
   }
 }
@@ -60,7 +61,9 @@ bool SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
   }
   if (!ends)
     next.add(rays_.ray_origin(t, x.u, x.v, way_.front), way_.direction, block.id[lane],
-             {block.way[lane].steps + 1, block.way[lane].bent || way_.bends}, power_.data());
+             {block.way[lane].steps + 1, block.way[lane].bent || way_.bends,
+              surfaces_.body_beyond(t, way_.front, block.way[lane].body)},
+             power_.data());
   return true;
 }
 

@@ -22,7 +22,7 @@ class SpecularPackets {
   bool any() const { return any_; }
   /// Takes from a packet's power, per band, what a body of glass absorbed on the way to where it met the
   /// room.
-  void attenuate(const Hit16& hits, int lane, std::int64_t* power) const;
+  void attenuate(const SpecularWay& way, const Hit16& hits, int lane, std::int64_t* power) const;
   /// Sends the packet of a lane on from what it met, into `next`, if it met such a surface and is chosen.
   /// `step` tells the flights of a batch apart. True if it went on; it ends after kMostSteps as unshot.
   bool carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,

@@ -208,7 +208,7 @@ class WalkTask {
           book(books_.absorbed_on_backs[surface.index() * bands_ + b], quanta[b]);
         continue;
       }
-      if (specular_.any()) specular_.attenuate(hits_, lane, quanta);
+      if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       std::vector<std::int64_t>& part = block.way[lane].bent ? zones_.indirect : incident;
       for (std::size_t b = 0; b < bands_; ++b)
         book(part[zone[lane].index() * bands_ + b], quanta[b], shared_);

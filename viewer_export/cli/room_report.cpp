@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -83,6 +85,50 @@ std::string materials_text(const Scene& scene) {
          rest_text(scene.materials.size(), "materials");
 }
 
+/// What a material does with light besides reflecting it as Lambert does, in a word; and what of it is not
+/// modelled.
+std::vector<std::string> models_of(const Material& material) {
+  const NonDiffusePart& part = material.non_diffuse;
+  const bool crosses = part.transmits_specularly();
+  std::vector<std::string> models;
+  if (crosses && part.angle_law == AngleLaw::kDielectric)
+    models.emplace_back(part.is_solid ? "solid glass" : "glass pane");
+  else if (crosses)
+    models.emplace_back("clear sheet");
+  if (part.reflects_specularly() && part.angle_law != AngleLaw::kDielectric)
+    models.emplace_back(part.angle_law == AngleLaw::kSchlick ? "metal" : "mirror");
+  const auto given = [](const Spectrum& s) { return s.size() > 0 && (s > 0).any(); };
+  if (part.roughness > NonDiffusePart::kSmooth && given(part.specular_reflectance))
+    models.emplace_back("gloss (not modelled)");
+  if (part.transmission_roughness > NonDiffusePart::kSmooth && given(part.specular_transmittance))
+    models.emplace_back("glossy transmission (not modelled)");
+  if (given(part.diffuse_transmittance)) models.emplace_back("diffuse transmission (not modelled)");
+  return models;
+}
+
+/// Share of the area of the room whose material has each of these, in order of area.
+std::vector<std::pair<std::string, double>> model_areas(const Scene& scene, const MeshReport& report) {
+  std::map<std::string, double> areas;
+  double all = 0;
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    const double area = report.surfaces[s].input;
+    all += area;
+    for (const std::string& model : models_of(scene.material_of(scene.surfaces[s]))) areas[model] += area;
+  }
+  std::vector<std::pair<std::string, double>> shares(areas.begin(), areas.end());
+  for (auto& [model, area] : shares) area = all > 0 ? area / all : 0;
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  return shares;
+}
+
+std::string models_text(const Scene& scene, const MeshReport& report) {
+  std::string text;
+  for (const auto& [model, share] : model_areas(scene, report))
+    text += fmt::format("; {} {:.3g} % of the area", model, 100 * share);
+  return fmt::format("surfaces are  Lambertian{}\n", text);
+}
+
 std::string surfaces_text(const Scene& scene, const MeshReport& report) {
   TextTable table;
   table.row({"surface", "faces", "area [m2]", "removed [m2]", "material"});
@@ -148,6 +194,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
   text += fmt::format("repairs       {}\n", counts_text(repairs(meshed.report)));
   text += fmt::format("refused       {}\n", counts_text(scene.refused));
   text += fmt::format("not modelled  {}\n", counts_text(scene.not_modelled));
+  text += models_text(scene, meshed.report);
   text += '\n' + materials_text(scene) + '\n' + surfaces_text(scene, meshed.report) + '\n' +
           luminaires_text(list_luminaires(scene, meshed.report), scene.bands) + '\n' + cameras_text(scene);
   for (const std::string& note : scene.notes) text += "note: " + note + '\n';
@@ -186,12 +233,19 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
   for (const auto& [name, count] : repairs(meshed.report)) json["repairs"][name] = count;
   json["materials"] = Json::array();
   for (const Material& material : scene.materials) {
-    json["materials"].push_back({{"name", material.name},
-                                 {"reflectance", spectrum_json(material.reflectance)},
-                                 {"emitted_radiance_W_sr_m2", spectrum_json(material.emitted_radiance)},
-                                 {"two_sided", material.two_sided},
-                                 {"emits_both_sides", material.emits_both_sides}});
+    json["materials"].push_back(
+        {{"name", material.name},
+         {"reflectance", spectrum_json(material.reflectance)},
+         {"specular_reflectance", spectrum_json(material.non_diffuse.specular_reflectance)},
+         {"specular_transmittance", spectrum_json(material.non_diffuse.specular_transmittance)},
+         {"emitted_radiance_W_sr_m2", spectrum_json(material.emitted_radiance)},
+         {"two_sided", material.two_sided},
+         {"emits_both_sides", material.emits_both_sides},
+         {"models", models_of(material)}});
   }
+  json["model_area_shares"] = Json::object();
+  for (const auto& [model, share] : model_areas(scene, meshed.report))
+    json["model_area_shares"][model] = share;
   json["surfaces"] = Json::array();
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     json["surfaces"].push_back({{"name", scene.surfaces[s].name},

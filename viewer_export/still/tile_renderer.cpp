@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "solver/gather/point_sampler.h"
@@ -41,7 +42,8 @@ TileRenderer::TileRenderer(const Room& room, const Solution& solution, const Pin
                              .seed = settings.seed},
               &stop),
       path_(room, direct_, settings.seed),
-      specular_(settings.seed, RngPurpose::kSpecularCamera) {}
+      specular_(settings.seed, RngPurpose::kSpecularCamera),
+      all_(room.band_count(), 1.0F) {}
 
 void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
   const std::size_t bands = field_.band_count();
@@ -141,38 +143,59 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
 
   const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
   for (std::size_t b = 0; b < bands; ++b) sums.albedo[b] += sums.share * reflectance[b];
-  BandValues through(bands, 1.0F);
-  add_seen(point, through.data(), sample, sums, batch);
+  add_seen(point, all_.data(), sample, sums, batch);
   if (surfaces.is_specular(hit.triangle, hit.front))
     add_over_mirrors(point, hit.distance, sample, sums, batch);
 }
 
 void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums,
                                     GatherBatch& batch) const {
-  // Both ways on from glass are of interest near the eye; further on, roulette ends what is faint.
-  constexpr std::uint32_t kCertainSteps = 4;
+  // Both ways on from glass are seen where the eye looks at it; further on one of them is chosen, and what is
+  // faint ends by roulette.
+  constexpr std::uint32_t kSplitSteps = 2;
+  constexpr std::uint32_t kCertainSteps = 5;
+  struct Look {
+    SurfacePoint x;
+    std::vector<float> through;
+    std::uint32_t steps;
+    TriangleId body;  // of glass that was looked into
+  };
   const RayTracer& rays = room_->rays();
   const SurfaceModel& surfaces = room_->surfaces();
   const PathKey key{sums.index, sums.batch, static_cast<std::uint32_t>(sample - sums.found.earlier), 0};
-  BandValues through(field_.band_count(), 1.0F);
   SpecularStep step(field_.band_count());
-  surfaces.attenuate(x.triangle, x.front, way, through.data());
-  for (std::uint32_t k = 0; k < SpecularNumbers::kMostSteps; ++k) {
-    if (!(x.normal.dot(x.towards) > 0)) x.normal = side_normal(rays, x);
-    const Survival survival = k < kCertainSteps ? Survival::kCertain : Survival::kRoulette;
-    if (!surfaces.specular(x.triangle).choose(x, specular_.at(key, k), survival, step)) return;
-    if (!(step.direction.dot(side_normal(rays, x)) * (step.crosses ? -1.0F : 1.0F) > 0)) {
-      // Over a shading normal the mirror direction may point into the surface.
-      x.normal = side_normal(rays, x);
-      if (!surfaces.specular(x.triangle).choose(x, specular_.at(key, k), survival, step)) return;
-    }
-    for (std::size_t b = 0; b < through.size(); ++b) through[b] *= step.share()[b] / step.chance;
+  std::uint32_t numbers = 0;
+  std::vector<Look> looks;
+  looks.push_back({x, all_, 0, {}});
+  surfaces.attenuate(surfaces.body_around(x.triangle, x.front, {}), way, looks.back().through.data());
+  const auto follow = [&](const Look& from) {
     Hit hit;
-    if (!rays.closest(rays.ray_origin(x.triangle, x.u, x.v, step.front), step.direction, hit)) return;
-    surfaces.attenuate(hit.triangle, hit.front, hit.distance, through.data());
-    x = seen_point(hit, step.direction);
-    add_seen(x, through.data(), sample, sums, batch);
-    if (!surfaces.is_specular(hit.triangle, hit.front)) return;
+    if (!rays.closest(rays.ray_origin(from.x.triangle, from.x.u, from.x.v, step.front), step.direction, hit))
+      return;
+    Look next{seen_point(hit, step.direction), from.through, from.steps + 1,
+              surfaces.body_beyond(from.x.triangle, step.front, from.body)};
+    for (std::size_t b = 0; b < next.through.size(); ++b) next.through[b] *= step.share()[b] / step.chance;
+    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, next.body), hit.distance,
+                       next.through.data());
+    add_seen(next.x, next.through.data(), sample, sums, batch);
+    if (surfaces.is_specular(hit.triangle, hit.front)) looks.push_back(std::move(next));
+  };
+  while (!looks.empty() && numbers < SpecularNumbers::kMostSteps) {
+    Look look = std::move(looks.back());
+    looks.pop_back();
+    const SpecularSurface& surface = surfaces.specular(look.x.triangle);
+    // Over a shading normal the mirror direction may point into the surface, or the eye lie below.
+    const Vec3f normal = side_normal(rays, look.x);
+    const Vec3f& n = look.x.normal;
+    const Vec3f mirrored = 2 * n.dot(look.x.towards) * n - look.x.towards;
+    if (!(n.dot(look.x.towards) > 0 && mirrored.dot(normal) > 0)) look.x.normal = normal;
+    if (look.steps < kSplitSteps) {
+      for (const bool crosses : {false, true})
+        if (surface.take(look.x, crosses, step)) follow(look);
+      continue;
+    }
+    const Survival survival = look.steps < kCertainSteps ? Survival::kCertain : Survival::kRoulette;
+    if (surface.choose(look.x, specular_.at(key, numbers++), survival, step)) follow(look);
   }
 }
 

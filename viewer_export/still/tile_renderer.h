@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "solver/gather/direct_light.h"
 #include "solver/gather/hemisphere_gather.h"
@@ -76,6 +77,7 @@ class TileRenderer {
   HemisphereGather gather_;
   PathTracer path_;
   SpecularNumbers specular_;
+  std::vector<float> all_;  // by band: nothing is lost on the way to the eye
 };
 
 }  // namespace reemit

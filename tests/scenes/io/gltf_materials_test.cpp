@@ -33,7 +33,8 @@ TEST(GltfMaterials, MetallicPartIsNotDiffuse) {
         {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.3}}}});
   EXPECT_NEAR(m.reflectance[0], 0.6, 1e-12);
   EXPECT_NEAR(m.non_diffuse.specular_reflectance[1], 0.1, 1e-12);
-  EXPECT_EQ(m.non_diffuse.roughness, 0.3);
+  EXPECT_NEAR(m.non_diffuse.roughness, 0.09, 1e-12) << "alpha is the square of the factor";
+  EXPECT_EQ(m.non_diffuse.angle_law, AngleLaw::kSchlick);
   const Material by_default = read_material(json::object());
   EXPECT_TRUE((by_default.reflectance == 0).all());  // glTF materials are metallic unless they say otherwise.
   EXPECT_TRUE((by_default.non_diffuse.specular_reflectance == 1).all());
@@ -47,6 +48,17 @@ TEST(GltfMaterials, TransmissionAndSpecularGlossiness) {
   EXPECT_NEAR(glass.reflectance[0], 0.1, 1e-12);
   EXPECT_NEAR(glass.non_diffuse.specular_transmittance[0], 0.9, 1e-12);
   EXPECT_EQ(glass.non_diffuse.index_of_refraction, 1.4);
+  EXPECT_EQ(glass.non_diffuse.angle_law, AngleLaw::kDielectric);
+  EXPECT_FALSE(glass.non_diffuse.is_solid);
+  const Material body = read_material(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+       {"extensions",
+        {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 0.1}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.25, 0.5, 1}}}}}}});
+  EXPECT_TRUE(body.non_diffuse.is_solid);
+  EXPECT_NEAR(body.non_diffuse.absorption_per_m[0], 2 * std::log(4.0), 1e-12);
+  EXPECT_NEAR(body.non_diffuse.absorption_per_m[2], 0, 1e-12);
   const Material old = read_material({{"extensions",
                                        {{"KHR_materials_pbrSpecularGlossiness",
                                          {{"diffuseFactor", {0.3, 0.4, 0.5, 1}},
@@ -54,7 +66,7 @@ TEST(GltfMaterials, TransmissionAndSpecularGlossiness) {
                                           {"glossinessFactor", 0.75}}}}}});
   EXPECT_NEAR(old.reflectance[2], 0.5, 1e-12);
   EXPECT_NEAR(old.non_diffuse.specular_reflectance[0], 0.6, 1e-12);
-  EXPECT_NEAR(old.non_diffuse.roughness, 0.25, 1e-12);
+  EXPECT_NEAR(old.non_diffuse.roughness, 0.0625, 1e-12);
 }
 
 TEST(GltfMaterials, EmissionAndItsUnits) {

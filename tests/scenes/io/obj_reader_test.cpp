@@ -145,9 +145,15 @@ TEST_F(ObjReader, NonDiffusePartsAreKept) {
       read_with("newmtl wall\nKd 0.1\nKs 0.2 0.2 0.2\nNs 98\nNi 1.5\nd 0.25\nTf 1 0.5 1\nillum 7\n")
           .materials.at(0);
   EXPECT_TRUE(glass.reflectance.isApproxToConstant(0.025, 1e-15)) << "one number stands for three";
-  EXPECT_TRUE(glass.non_diffuse.specular_reflectance.isApproxToConstant(0.2, 1e-15));
+  EXPECT_EQ(glass.non_diffuse.angle_law, AngleLaw::kDielectric) << "its Ni says what it reflects";
+  EXPECT_TRUE(glass.non_diffuse.is_solid);
+  EXPECT_EQ(glass.non_diffuse.roughness, 0);
   EXPECT_TRUE(glass.non_diffuse.specular_transmittance.isApprox(Eigen::Array3d(0.75, 0.375, 0.75)));
-  EXPECT_NEAR(glass.non_diffuse.roughness, std::sqrt(0.02), 1e-15);
+  const Material gloss = read_with("newmtl wall\nKd 0.1\nKs 0.2 0.2 0.2\nNs 98\n").materials.at(0);
+  EXPECT_NEAR(gloss.non_diffuse.roughness, std::sqrt(0.02), 1e-15);
+  const Material metal = read_with("newmtl wall\nKs 0.2 0.2 0.2\nNs 98\nillum 5\n").materials.at(0);
+  EXPECT_EQ(metal.non_diffuse.angle_law, AngleLaw::kSchlick);
+  EXPECT_EQ(metal.non_diffuse.roughness, 0);
   EXPECT_EQ(glass.non_diffuse.index_of_refraction, 1.5);
   const Material opaque =
       read_with("newmtl wall\nKd 0.1 0.1 0.1\nd 1\nTf 1 1 1\nillum 2\nKs 0 0 0\n").materials.at(0);

@@ -152,10 +152,14 @@ TEST(FinishScene, SaysWhatItIgnoresOncePerMaterial) {
   Scene scene = small_room();
   scene.materials[0].non_diffuse.specular_reflectance = Eigen::Array3d(0.25, 0.25, 0.25);
   scene.surfaces.push_back(scene.surfaces[0]);
+  Scene smooth = scene;
+  finish_scene(smooth);
+  EXPECT_TRUE(smooth.warnings.empty()) << "a mirror is modelled";
+  scene.materials[0].non_diffuse.roughness = 0.1;
   finish_scene(scene);
   ASSERT_EQ(scene.warnings.size(), 1U);
   EXPECT_THAT(scene.warnings[0], HasSubstr("wall"));
-  EXPECT_THAT(scene.warnings[0], HasSubstr("specular reflectance 0.25"));
+  EXPECT_THAT(scene.warnings[0], HasSubstr("glossy reflectance 0.25"));
 }
 
 TEST(FinishScene, WarnsOfDarknessAndUnits) {
@@ -303,6 +307,9 @@ TEST(ContentHash, DependsOnWhatLightSeesAndNothingElse) {
       changed([](Scene& s) { s.materials[0].non_diffuse.roughness = 0.1; }),
       changed([](Scene& s) { s.materials[0].non_diffuse.transmission_roughness = 0.1; }),
       changed([](Scene& s) { s.materials[0].non_diffuse.index_of_refraction = 1.5; }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.angle_law = AngleLaw::kSchlick; }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.is_solid = true; }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.absorption_per_m = Spectrum::Ones(3); }),
       changed([](Scene& s) { s.surfaces[0].material = MaterialId(1); }),
       changed([](Scene& s) { std::swap(s.surfaces[0].faces[0].outer[0], s.surfaces[0].faces[0].outer[1]); }),
       changed([](Scene& s) {

@@ -1,0 +1,102 @@
+// What cameras see of mirrors and glass.
+
+#include <atomic>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "solver/room/room.h"
+#include "tests/support/hand_made_solution.h"
+#include "tests/support/mean_test.h"
+#include "tests/support/specular_furnace.h"
+#include "viewer_export/still/render_still.h"
+
+namespace reemit {
+namespace {
+
+using test::MeanTest;
+using test::RoomBuilder;
+using test::SpecularFurnace;
+
+TEST(SpecularStills, FurnaceIsEvenlyBright) {
+  const SpecularFurnace furnace;
+  // Zones are right by construction, so only rays are tested.
+  const Solution solution = test::uniform_solution(furnace.room(), 0, SpecularFurnace::kIrradiance);
+  const Room walls(furnace.room().scene(), solution.mesh);
+  for (const Integrator integrator : {Integrator::kZones, Integrator::kGather, Integrator::kPath}) {
+    StillSettings settings;
+    settings.width = 32;
+    settings.height = 24;
+    settings.integrator = integrator;
+    settings.spp = 64;
+    settings.threads = 2;
+    const std::atomic<bool> interrupt{false};
+    const StillImage image =
+        render_still(walls, solution, SpecularFurnace::camera(), settings, {}, interrupt);
+    // Rows are independent estimates of the one radiance that there is.
+    MeanTest mean;
+    for (std::size_t half = 0; half < 48; ++half) {
+      double sum = 0;
+      for (std::size_t p = 0; p < 16; ++p) {
+        const std::size_t pixel = half * 16 + p;
+        sum += static_cast<double>(image.direct[pixel] + image.indirect[pixel]) / 16;
+      }
+      mean.add(sum);
+    }
+    const double truth = SpecularFurnace::kIrradiance / std::numbers::pi;
+    EXPECT_TRUE(mean.agrees_with(truth)) << to_string(integrator);
+    EXPECT_TRUE(mean.would_notice(0.05, truth)) << to_string(integrator);
+  }
+}
+
+/// A lamp of radiance 1 above the eye, and what the eye looks down at: `below`, then a black floor.
+StillImage look_down(const NonDiffusePart& below, Integrator integrator) {
+  RoomBuilder room;
+  const MaterialId lamp = room.material("lamp", 0, std::numbers::pi);
+  const MaterialId black = room.material("black", 0);
+  const MaterialId seen = room.material("seen", 0, 0, true);
+  room.scene().materials[seen.index()].non_diffuse = below;
+  const auto level = [&](MaterialId m, double z, bool down) {
+    const Vec3 a(-9, -9, z), b(9, -9, z), c(9, 9, z), d(-9, 9, z);
+    room.quad(m, down ? std::array{a, d, c, b} : std::array{a, b, c, d}, 1);
+  };
+  level(lamp, 2, true);
+  level(seen, 0, false);
+  level(black, -1, false);
+  const Solution solution = test::dark_solution(room);
+  const Room walls(room.scene(), solution.mesh);
+  Camera camera;
+  camera.eye = {0, 0, 1};
+  camera.look_at = {0, 0, 0};
+  camera.up = {0, 1, 0};
+  camera.vertical_fov_deg = 4;
+  StillSettings settings;
+  settings.width = settings.height = 4;
+  settings.integrator = integrator;
+  settings.spp = 16;
+  const std::atomic<bool> interrupt{false};
+  return render_still(walls, solution, camera, settings, {}, interrupt);
+}
+
+TEST(SpecularStills, LampsAreSeenInMirrorsAndPanesWithTheirShare) {
+  NonDiffusePart mirror;
+  mirror.specular_reflectance = Spectrum::Constant(1, 0.7);
+  NonDiffusePart pane;
+  pane.angle_law = AngleLaw::kDielectric;
+  pane.index_of_refraction = 1.5;
+  pane.specular_transmittance = Spectrum::Constant(1, 1);
+  NonDiffusePart surface = pane;
+  surface.is_solid = true;
+  for (const Integrator integrator : {Integrator::kZones, Integrator::kGather, Integrator::kPath}) {
+    const auto brightness = [&](const NonDiffusePart& part) {
+      const StillImage image = look_down(part, integrator);
+      return image.direct[5] + image.indirect[5];
+    };
+    EXPECT_NEAR(brightness(mirror), 0.7, 1e-5) << to_string(integrator);
+    EXPECT_NEAR(brightness(pane), 1 / 13.0, 1e-4) << to_string(integrator);
+    EXPECT_NEAR(brightness(surface), 0.04, 1e-4) << to_string(integrator);
+  }
+}
+
+}  // namespace
+}  // namespace reemit
