@@ -20,16 +20,21 @@ constexpr double kCreasePackets = 1.2e7;
 constexpr double kPlatePackets = 1e6;
 /// Standard error aimed at for the share that a pipe lets through.
 constexpr double kPipeTarget = 1.5e-3;
-/// As for the continuous rooms.
+/// As for the continuous rooms. Less work takes fewer, as larger errors hide more of what their size does.
 constexpr double kZones = 60000;
-constexpr GatherEffort kAtPoint{256, 2048};
-constexpr GatherEffort kOverFace{1024, 8192};
-/// Of 256 shadow rays at a point: few of the rays that look for a luminaire in a mirror find it.
-constexpr double kRaysPerShadowRay = 256;
+/// Rays per shadow ray at a point, and over a face. Few of the rays that look for a luminaire in a mirror
+/// find it.
+constexpr double kRaysForImages = 256;
+constexpr double kRaysForLight = 8;
+constexpr int kShadowRaysAtPoint = 256;
+constexpr int kShadowRaysOverFace = 1024;
 
-GatherEffort image_effort(const Effort& effort) {
-  constexpr int kShadowRays = 256;
-  return {kShadowRays, kShadowRays * std::max(1, static_cast<int>(kRaysPerShadowRay * effort.work))};
+GatherEffort gather_effort(int shadow_rays, double rays_each, const Effort& effort) {
+  return {shadow_rays, shadow_rays * std::max(1, static_cast<int>(rays_each * effort.work))};
+}
+
+double zones_for(const Effort& effort) {
+  return kZones * std::min(1.0, effort.work);
 }
 
 /// Mirrors and whatever else a point sees are black but for the luminaire, so that the solution of the room
@@ -47,7 +52,7 @@ void add_lit_point(const ReferenceCase& c, CodeRoom& room, const Vec3& point, co
   constexpr double kAnyPackets = 4096;
   const SolvedRoom solved(room.scene(), room.exact_zones(), SolveMethod::kShooting, kAnyPackets, c.name);
   const PointGather gather(solved, seed_of(c.name));
-  const GatherEffort rays = image_effort(effort);
+  const GatherEffort rays = gather_effort(kShadowRaysAtPoint, kRaysForImages, effort);
   rows.push_back(make_row(c, v, "gathered point", gather.at(point, normal, rays), kPointBound));
   const SurfacePoint x = point_on(solved.rays(), point, normal);
   rows.push_back(make_row(c, v, "path tracing",
@@ -132,7 +137,8 @@ void add_plates(const ReferenceCase& c, const Effort& effort, std::vector<Valida
     add_rows(to_string(method), {solved.mean(plates[0]), solved.mean(plates[1])}, kSolveBound);
     if (method != SolveMethod::kShooting) continue;
     const PointGather gather(solved, seed_of(c.name));
-    add_rows("gathered mean", {gather.mean({plates[0]}, kOverFace), gather.mean({plates[1]}, kOverFace)},
+    const GatherEffort over_face = gather_effort(kShadowRaysOverFace, kRaysForLight, effort);
+    add_rows("gathered mean", {gather.mean({plates[0]}, over_face), gather.mean({plates[1]}, over_face)},
              kPointBound);
   }
 }
@@ -141,7 +147,6 @@ void add_plates(const ReferenceCase& c, const Effort& effort, std::vector<Valida
 struct MirrorRoom {
   CodeRoom room;
   double area = 0;  ///< Of all surfaces [m2].
-  double packets = 0;
   /// Surface whose mean a quantity is.
   std::function<std::string(const std::string&)> surface_of;
   /// Relative numerical bound of a value at a point.
@@ -149,18 +154,22 @@ struct MirrorRoom {
 };
 
 /// Means by zones and by the final gather, points by the final gather and by paths.
-void add_room_rows(const ReferenceCase& c, const MirrorRoom& r, std::vector<ValidationRow>& rows) {
+void add_room_rows(const ReferenceCase& c, const MirrorRoom& r, double packets, const Effort& effort,
+                   std::vector<ValidationRow>& rows) {
   const Scene& scene = r.room.scene();
-  const SolvedRoom shot(scene, r.room.meshed(r.area / kZones), SolveMethod::kShooting, r.packets, c.name);
-  const SolvedRoom walked(scene, r.room.exact_zones(4), SolveMethod::kWalk, r.packets, c.name);
+  const SolvedRoom shot(scene, r.room.meshed(r.area / zones_for(effort)), SolveMethod::kShooting,
+                        effort.work * packets, c.name);
+  const SolvedRoom walked(scene, r.room.exact_zones(4), SolveMethod::kWalk, effort.work * packets, c.name);
   const PointGather gather(shot, seed_of(c.name));
+  const GatherEffort at_point = gather_effort(kShadowRaysAtPoint, kRaysForLight, effort);
+  const GatherEffort over_face = gather_effort(kShadowRaysOverFace, kRaysForLight, effort);
   for (const ReferenceValue& v : c.values) {
     if (v.point) {
       const double bound = r.bound_at(*v.point);
-      rows.push_back(make_row(c, v, "gathered point", gather.at(*v.point, v.normal, kAtPoint), bound));
+      rows.push_back(make_row(c, v, "gathered point", gather.at(*v.point, v.normal, at_point), bound));
       const SurfacePoint x = point_on(shot.rays(), *v.point, v.normal);
       rows.push_back(
-          make_row(c, v, "path tracing", traced_irradiance(shot.room(), x, kAtPoint, seed_of(v.id)), bound));
+          make_row(c, v, "path tracing", traced_irradiance(shot.room(), x, at_point, seed_of(v.id)), bound));
       continue;
     }
     const std::string surface = r.surface_of(v.quantity);
@@ -168,7 +177,7 @@ void add_room_rows(const ReferenceCase& c, const MirrorRoom& r, std::vector<Vali
       rows.push_back(make_row(c, v, to_string(solved == &shot ? SolveMethod::kShooting : SolveMethod::kWalk),
                               solved->mean(solved->surface(surface)), kSolveBound));
     rows.push_back(
-        make_row(c, v, "gathered mean", gather.mean({shot.surface(surface)}, kOverFace), kPointBound));
+        make_row(c, v, "gathered mean", gather.mean({shot.surface(surface)}, over_face), kPointBound));
   }
 }
 
@@ -200,7 +209,7 @@ void add_crease(ReferenceCase c, const Effort& effort, std::vector<ValidationRow
   const auto bound_at = [](const Vec3& point) {
     return std::max(point.x(), point.z()) < 2 * kAtEdge ? kEdgeBound : kPointBound;
   };
-  add_room_rows(c, {room, kArea, effort.work * kCreasePackets, surface_of, bound_at}, rows);
+  add_room_rows(c, {room, kArea, surface_of, bound_at}, kCreasePackets, effort, rows);
 }
 
 /// A box with one face a mirror.
@@ -221,7 +230,7 @@ void add_mirror_room(const ReferenceCase& c, const Effort& effort, std::vector<V
     return quantity.substr(quantity.rfind(' ') + 1);
   };
   const auto bound_at = [](const Vec3& /*point*/) { return kPointBound; };
-  add_room_rows(c, {room, area, effort.work * kRoomPackets, surface_of, bound_at}, rows);
+  add_room_rows(c, {room, area, surface_of, bound_at}, kRoomPackets, effort, rows);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST(Validation, glass) {
   expect_valid("glass",
                {"slab.direct", "slab.1.5.0", "slab.1.5.60", "slab.1.5.85", "slab.abs.0", "slab.abs.80",
                 "slab.hemi", "slab.hemi.abs"},
-               0.3);
+               0.2);
 }
 
 TEST(Validation, zonal_systems) {
