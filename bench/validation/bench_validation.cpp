@@ -1,4 +1,4 @@
-// Measures every reference case that applies to diffuse rooms and writes the validation page.
+// Measures every reference case and writes the validation page.
 
 #include <chrono>
 #include <cmath>

@@ -27,6 +27,33 @@ MaterialId CodeRoom::paint(double reflectance, double exitance) {
                Spectrum(Spectrum::Constant(bands, exitance)));
 }
 
+MaterialId CodeRoom::mirror(double reflectance) {
+  const MaterialId id = paint(0);
+  scene_.materials.back().non_diffuse.specular_reflectance =
+      Spectrum::Constant(static_cast<Eigen::Index>(scene_.bands.count()), reflectance);
+  return id;
+}
+
+MaterialId CodeRoom::pane(double index_of_refraction, double once) {
+  return glass(index_of_refraction, once, false);
+}
+
+MaterialId CodeRoom::glass_body(double index_of_refraction) {
+  return glass(index_of_refraction, 1, true);
+}
+
+MaterialId CodeRoom::glass(double index_of_refraction, double transmittance, bool is_solid) {
+  const MaterialId id = paint(0);
+  Material& m = scene_.materials.back();
+  m.two_sided = true;
+  m.non_diffuse.angle_law = AngleLaw::kDielectric;
+  m.non_diffuse.index_of_refraction = index_of_refraction;
+  m.non_diffuse.specular_transmittance =
+      Spectrum::Constant(static_cast<Eigen::Index>(scene_.bands.count()), transmittance);
+  m.non_diffuse.is_solid = is_solid;
+  return id;
+}
+
 SurfaceId CodeRoom::add(const std::string& name, MaterialId material, const Body& body) {
   Surface& s = scene_.surfaces.emplace_back();
   s.name = name;

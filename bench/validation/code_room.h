@@ -16,6 +16,12 @@ class CodeRoom {
   /// Reflectance [1] and exitance pi L [W/m2], one number per band, or the same in all.
   MaterialId paint(const Spectrum& reflectance, const Spectrum& exitance);
   MaterialId paint(double reflectance, double exitance = 0);
+  /// A mirror of this reflectance at every angle, else black; its back absorbs.
+  MaterialId mirror(double reflectance);
+  /// A clear thin pane by Fresnel's equations; `once`: left by one pass across it at normal incidence.
+  MaterialId pane(double index_of_refraction, double once = 1);
+  /// The surface of a body of clear glass that lies behind its faces.
+  MaterialId glass_body(double index_of_refraction);
 
   /// Adds a surface of convex polygons or of one round shape.
   SurfaceId add(const std::string& name, MaterialId material, const Body& body);
@@ -33,6 +39,8 @@ class CodeRoom {
   MeshResult meshed(double zone_area) const;
 
  private:
+  MaterialId glass(double index_of_refraction, double transmittance, bool is_solid);
+
   Scene scene_;
 };
 

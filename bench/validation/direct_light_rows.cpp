@@ -45,11 +45,6 @@ Vec3 middle_of(const Surface& luminaire) {
   return sum / static_cast<double>(luminaire.positions.size());
 }
 
-Polygon turned_towards(const Polygon& p, const Vec3& point) {
-  const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
-  return normal.dot(point - p[0]) < 0 ? flipped(p) : p;
-}
-
 Body luminaire(const json& l, const Vec3& receiver) {
   const std::string type = l.at("type");
   if (type == "rect")
@@ -69,23 +64,10 @@ Body luminaire(const json& l, const Vec3& receiver) {
   throw std::invalid_argument("unknown luminaire " + type);
 }
 
-/// A black triangle around a point that a luminaire lights.
-class Receiver {
- public:
-  Receiver(CodeRoom& room, const Vec3& point, const Vec3& normal, double size) {
-    const Vec3 n = normal.normalized();
-    const Vec3 u = n.unitOrthogonal();
-    const Vec3 v = n.cross(u);
-    // The centroid is the point.
-    room.add("receiver", room.paint(0),
-             Polygon{point + size * u, point + size * (-0.5 * u + v), point + size * (-0.5 * u - v)});
-  }
-};
-
 ValidationRow lit_point(const ReferenceCase& c, const ReferenceValue& v, CodeRoom& room, const Vec3& point,
                         const Vec3& normal, const Effort& effort) {
   const double distance = (middle_of(room.scene().surfaces.front()) - point).norm();
-  const Receiver receiver(room, point, normal, 1e-3 * distance);
+  room.add("receiver", room.paint(0), triangle_around(point, normal, 1e-3 * distance));
   const MeshResult mesh = room.exact_zones();
   const Room walls(room.scene(), mesh.mesh);
   constexpr float kThird = 1.0F / 3;

@@ -173,14 +173,26 @@ void add_energy(const ReferenceCase& c, const Effort& effort, std::vector<Valida
   }
 }
 
-/// Concentric spheres: every zone of one sees as much of the other.
-void add_concentric_spheres(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
+/// Concentric spheres, or cylinders between mirrors: every zone of one sees as much of the other.
+void add_concentric(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
   const auto& p = c.parameters;
   const std::array<double, 2> rho{p.at("rho1"), p.at("rho2")};
   const std::array<double, 2> emission{p.at("E1"), p.at("E2")};
   CodeRoom room;
-  room.add("1", room.paint(rho[0], emission[0]), Sphere{{0, 0, 0}, p.at("R1"), false});
-  room.add("2", room.paint(rho[1], emission[1]), Sphere{{0, 0, 0}, p.at("R2"), true});
+  const MaterialId inner_paint = room.paint(rho[0], emission[0]);
+  const MaterialId outer_paint = room.paint(rho[1], emission[1]);
+  if (p.at("shape") == "cylinders") {
+    constexpr double kHeight = 1;  // any: the mirrors make it endless
+    const double outer_radius = p.at("R2");
+    room.add("1", inner_paint, Cylinder{{0, 0, 0}, {0, 0, kHeight}, p.at("R1"), false});
+    room.add("2", outer_paint, Cylinder{{0, 0, 0}, {0, 0, kHeight}, outer_radius, true});
+    const MaterialId mirror = room.mirror(1);
+    room.add("base", mirror, Disk{{0, 0, 0}, {0, 0, 1}, outer_radius, 0});
+    room.add("top", mirror, Disk{{0, 0, kHeight}, {0, 0, -1}, outer_radius, 0});
+  } else {
+    room.add("1", inner_paint, Sphere{{0, 0, 0}, p.at("R1"), false});
+    room.add("2", outer_paint, Sphere{{0, 0, 0}, p.at("R2"), true});
+  }
   const auto rows_of = [&](const std::string& method, const std::array<Estimates, 2>& h, double bound) {
     add_rows(
         c, method, bound,
@@ -198,8 +210,8 @@ void add_concentric_spheres(const ReferenceCase& c, const Effort& effort, std::v
     rows_of(to_string(method), {solved.mean(inner), solved.mean(outer)}, kSolveBound);
     if (method != SolveMethod::kShooting) continue;
     const PointGather gather(solved, seed_of(c.name));
-    constexpr GatherEffort kOverSphere{2048, 8192};
-    rows_of("gathered mean", {gather.mean({inner}, kOverSphere), gather.mean({outer}, kOverSphere)},
+    constexpr GatherEffort kOverRound{2048, 8192};
+    rows_of("gathered mean", {gather.mean({inner}, kOverRound), gather.mean({outer}, kOverRound)},
             kPointBound);
   }
 }
@@ -219,7 +231,7 @@ std::vector<ValidationRow> evaluate_enclosures(const std::vector<ReferenceCase>&
     else if (c.kind == "energy_closed")
       add_energy(c, effort, rows);
     else
-      add_concentric_spheres(c, effort, rows);
+      add_concentric(c, effort, rows);
   }
   return rows;
 }

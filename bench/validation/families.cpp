@@ -21,6 +21,11 @@ std::vector<Family> families() {
       {"continuous rooms",
        {"radiosity_continuous", "lroom_continuous", "plates_finite"},
        evaluate_continuous},
+      {"mirrors",
+       {"mirror_images", "mirror_finite", "light_pipe", "plates_infinite", "crease_infinite",
+        "radiosity_mirror_continuous"},
+       evaluate_mirrors},
+      {"glass", {"slab_direct", "fresnel_slab", "fresnel_hemi"}, evaluate_glass},
       {"zonal systems",
        {"zone_box", "zone_cube_NxN", "zone_cube_triangles", "zone_icosphere", "zone_cylinder", "lroom_zone"},
        evaluate_zonal}};

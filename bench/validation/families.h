@@ -32,6 +32,13 @@ std::vector<ValidationRow> evaluate_enclosures(const std::vector<ReferenceCase>&
 /// plates_finite.
 std::vector<ValidationRow> evaluate_continuous(const std::vector<ReferenceCase>& cases, const Effort& effort);
 
+/// Light over mirrors: images of a luminaire at a point, and rooms that mirrors close or make endless.
+/// mirror_images, mirror_finite, light_pipe, plates_infinite, crease_infinite, radiosity_mirror_continuous.
+std::vector<ValidationRow> evaluate_mirrors(const std::vector<ReferenceCase>& cases, const Effort& effort);
+
+/// What thin panes and surfaces of glass reflect and let through: slab_direct, fresnel_slab, fresnel_hemi.
+std::vector<ValidationRow> evaluate_glass(const std::vector<ReferenceCase>& cases, const Effort& effort);
+
 /// Zone values against the exact zonal system: zone_*, lroom_zone.
 std::vector<ValidationRow> evaluate_zonal(const std::vector<ReferenceCase>& cases, const Effort& effort);
 

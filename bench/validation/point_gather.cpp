@@ -152,4 +152,34 @@ Estimates direct_irradiance(const Room& room, const SurfacePoint& x, int samples
   return result;
 }
 
+Estimates traced_irradiance(const Room& room, const SurfacePoint& x, const GatherEffort& effort,
+                            std::uint64_t seed, std::size_t band) {
+  const DirectLight direct(room);
+  const PathTracer tracer(room, direct, seed);
+  const std::size_t bands = room.band_count();
+  const int rays_per_sample = std::max(1, effort.gather_rays / effort.light_samples);
+  Estimates result(SolvedRoom::kReplicates, 0.0);
+  tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t r) {
+    const PointSampler sampler(seed, RngPurpose::kProbe, 0, static_cast<int>(r),
+                               std::countr_zero(static_cast<unsigned>(effort.light_samples)));
+    const std::vector<float> light_weight(bands, 1.0F);
+    double sum = 0;
+    for (int i = 0; i < effort.light_samples; ++i) {
+      std::vector<float> arrived(bands, 0.0F);
+      direct.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), arrived.data());
+      std::vector<float> radiance(bands, 0.0F);
+      for (int j = 0; j < rays_per_sample; ++j) {
+        std::vector<float> weight(bands, 1.0F / static_cast<float>(rays_per_sample));
+        const std::array<float, 2> u = sampler.hemisphere(i, j, rays_per_sample);
+        const PathKey key{0, static_cast<std::uint32_t>(r),
+                          static_cast<std::uint32_t>(i * rays_per_sample + j), 0};
+        tracer.add_indirect(x, u[0], u[1], key, weight.data(), radiance.data());
+      }
+      sum += static_cast<double>(arrived[band]) + std::numbers::pi * static_cast<double>(radiance[band]);
+    }
+    result[r] = sum / effort.light_samples;
+  });
+  return result;
+}
+
 }  // namespace reemit::validation

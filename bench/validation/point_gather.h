@@ -6,6 +6,7 @@
 #include "bench/validation/solved_room.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/hemisphere_gather.h"
+#include "solver/gather/path_tracer.h"
 
 namespace reemit::validation {
 
@@ -50,6 +51,10 @@ class PointGather {
 
 /// Direct irradiance [W/m2] at a point in kReplicates independent estimates of `samples` shadow rays each.
 Estimates direct_irradiance(const Room& room, const SurfacePoint& x, int samples, std::uint64_t seed);
+
+/// Irradiance [W/m2] at a point without zones, by DirectLight and PathTracer; `effort` as for PointGather.
+Estimates traced_irradiance(const Room& room, const SurfacePoint& x, const GatherEffort& effort,
+                            std::uint64_t seed, std::size_t band = 0);
 
 /// Relative bound of what single precision and ray starts 1e-6 of the room off their surface do to light at
 /// points.

@@ -47,6 +47,18 @@ Polygon flipped(const Polygon& polygon) {
   return {polygon.rbegin(), polygon.rend()};
 }
 
+Polygon triangle_around(const Vec3& point, const Vec3& normal, double size) {
+  const Vec3 n = normal.normalized();
+  const Vec3 u = n.unitOrthogonal();
+  const Vec3 v = n.cross(u);
+  return {point + size * u, point + size * (-0.5 * u + v), point + size * (-0.5 * u - v)};
+}
+
+Polygon turned_towards(const Polygon& polygon, const Vec3& point) {
+  const Vec3 normal = (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]);
+  return normal.dot(point - polygon[0]) < 0 ? flipped(polygon) : polygon;
+}
+
 Polygon axis_rectangle(int axis, double height, double a0, double a1, double b0, double b1, bool up) {
   const int a = axis == 0 ? 1 : 0;
   const int b = axis == 2 ? 1 : 2;

@@ -18,6 +18,10 @@ using Body = std::variant<std::vector<Polygon>, CurvedShape>;
 Polygon parallelogram(const Vec3& corner, const Vec3& u, const Vec3& v);
 /// The same polygon seen from behind.
 Polygon flipped(const Polygon& polygon);
+/// A triangle of about `size` whose centroid is the point and whose front looks along `normal`.
+Polygon triangle_around(const Vec3& point, const Vec3& normal, double size);
+/// The polygon, turned over if its front looks away from the point.
+Polygon turned_towards(const Polygon& polygon, const Vec3& point);
 /// Axis-parallel rectangle across axis `axis` at `height`, over [a0,a1] x [b0,b1] of the two other axes in
 /// the order x, y, z; the front looks up or down the axis.
 Polygon axis_rectangle(int axis, double height, double a0, double a1, double b0, double b1, bool up);

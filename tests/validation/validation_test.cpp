@@ -84,7 +84,8 @@ TEST(Validation, measured_luminaires) {
 }
 
 TEST(Validation, enclosures) {
-  expect_valid("enclosures", {"furnace.0.5", "furnace.var", "sphere.0.5", "energy.closed", "conc.spheres"},
+  expect_valid("enclosures",
+               {"furnace.0.5", "furnace.var", "sphere.0.5", "energy.closed", "conc.spheres", "conc.cyl"},
                0.15);
 }
 
@@ -93,6 +94,20 @@ TEST(Validation, continuous_rooms) {
                {"cube1.rho0.5", "goral.R", "goral.G", "goral.B", "ward1990.grey", "cie58.rho0.8",
                 "plates.h0.25", "lroom.rho0.5"},
                0.3);
+}
+
+TEST(Validation, mirrors) {
+  expect_valid("mirrors",
+               {"mirror.one", "mirror.double", "mirror.corner", "mirror.parallel", "mirror.finite", "pipe.1",
+                "pipe.0.5", "plates.inf", "crease.inf.one", "mirrorcube.rs0.9.rho0.5"},
+               0.2);
+}
+
+TEST(Validation, glass) {
+  expect_valid("glass",
+               {"slab.direct", "slab.1.5.0", "slab.1.5.60", "slab.1.5.85", "slab.abs.0", "slab.abs.80",
+                "slab.hemi", "slab.hemi.abs"},
+               0.2);
 }
 
 TEST(Validation, zonal_systems) {
@@ -132,6 +147,18 @@ TEST(ValidationPower, reflectance_2_percent_too_high_is_noticed) {
                 cases.end());
     expect_noticed(family_name, cases, 0.1);
   }
+}
+
+TEST(ValidationPower, mirror_2_percent_too_good_is_noticed) {
+  std::vector<ReferenceCase> cases = pick({"pipe.1", "pipe.0.5"});
+  for (ReferenceCase& c : cases) multiply(c.parameters["rho_s"], kPlanted);
+  expect_noticed("mirrors", cases, 1);
+}
+
+TEST(ValidationPower, index_of_refraction_2_percent_too_high_is_noticed) {
+  std::vector<ReferenceCase> cases = pick({"slab.1.5.30", "slab.hemi"});
+  for (ReferenceCase& c : cases) multiply(c.parameters["n"], kPlanted);
+  expect_noticed("glass", cases, 0.3);
 }
 
 TEST(ValidationPower, luminaire_area_2_percent_too_large_is_noticed) {
