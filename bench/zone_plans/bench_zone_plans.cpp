@@ -13,6 +13,7 @@
 
 #include "bench/zone_plans/picture_check.h"
 #include "bench/zone_plans/plan_plot.h"
+#include "bench/zone_plans/plan_table.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/gather/discretisation.h"
@@ -65,18 +66,6 @@ PlanRow measure(const Scene& scene, const Plan& plan, const SolverSettings& sett
   return row;
 }
 
-std::string percent(double value) {
-  return value > 0 ? fmt::format("{:.2f} %", 100 * value) : "-";
-}
-
-void print(const PlanRow& r) {
-  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.3f} % | {} | {} | {} |\n", r.room,
-             r.fitting ? "fit the light" : "of one size", r.zones, r.lit, r.zoning_s, r.solve_s,
-             r.rays_per_s / 1e6, 100 * r.noise, percent(r.points), percent(r.gathered),
-             percent(r.picture_zones));
-  std::fflush(stdout);
-}
-
 /// The two path-traced pictures are of the room, whatever its zones.
 PictureCheck references(const Scene& scene, int spp) {
   const Solution unsolved = new_solution(scene, build_zones(scene, mesh_settings({false, 2000})), {});
@@ -95,26 +84,34 @@ int main(int argc, char** argv) {
   settings.gather_small_zones = false;
   bool only_fitting = false;
   int reference_spp = 1024;
-  std::filesystem::path plot;
-  app.add_option("rooms", rooms, "Room files")->required();
+  std::filesystem::path plot, table;
+  auto* measured = app.add_option("rooms", rooms, "Room files");
   app.add_option("--zones", counts, "Numbers of zones to ask for")->capture_default_str();
   app.add_option("--packets", settings.packets, "Packets of each solve")->capture_default_str();
   app.add_option("--time", times, "Seconds of each solve instead: each of these for each number of zones");
   app.add_option("--reference-spp", reference_spp, "Camera rays per pixel of the path-traced pictures")
       ->capture_default_str();
   app.add_flag("--only-fitting", only_fitting, "Leave the zones of one size out");
-  app.add_option("--plot", plot, "Draw the errors with gnuplot, as SVG");
+  auto* drawn = app.add_option("--plot", plot, "Draw the errors with gnuplot, as SVG");
+  app.add_option("--from-table", table,
+                 "Measure nothing: draw a table that was printed before (with --time: by time)")
+      ->needs(drawn)
+      ->excludes(measured);
   CLI11_PARSE(app, argc, argv);
+  if (rooms.empty() && table.empty()) return app.exit(CLI::RequiredError("rooms"));
   const bool by_time = !times.empty();
   if (by_time)
     settings.packets = 0;
   else
     times = {0};
   try {
-    fmt::print(
-        "| room | zones | number | lit | zoning [s] | solve [s] | Mray/s | noise | points | gathered light | "
-        "picture of zones |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     std::vector<PlanRow> rows;
+    if (!table.empty()) {
+      rows = read_plan_table(table);
+      draw_plans(rows, by_time, plot);
+      return 0;
+    }
+    fmt::print("{}", plan_table_head());
     for (const std::filesystem::path& file : rooms) {
       const Scene scene = read_scene(file);
       const PictureCheck pictures = references(scene, reference_spp);
@@ -125,7 +122,8 @@ int main(int argc, char** argv) {
             settings.time_limit_s = time;
             rows.push_back(measure(scene, {fitting, count}, settings, pictures));
             rows.back().room = file.stem().string();
-            print(rows.back());
+            fmt::print("{}", row_text(rows.back()));
+            std::fflush(stdout);
           }
       }
     }

@@ -25,9 +25,8 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
   for (std::uint32_t bounce = 0;;) {
     Hit hit;
     if (!rays.closest(origin, direction, hit)) return;
-    point = surface_point(rays, hit, direction);
     surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, weight);
-    if (is_bent) add_emission(surfaces, point, weight, sum);
+    if (is_bent) add_emission(surfaces, surface_point(rays, hit, direction), weight, sum);
     const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
     const float largest = *std::max_element(reflectance, reflectance + bands);
     const bool specular = surfaces.is_specular(hit.triangle, hit.front);
@@ -39,6 +38,7 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
       survival = std::min(largest, kLongestSurvival);
       if (u[3] >= survival) return;
     }
+    point = surface_point(rays, hit, direction);
     if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, weight, sum);
     if (specular) {
       if (crossed == SpecularNumbers::kMostSteps) return;

@@ -138,15 +138,18 @@ class SweepTracer {
     if (arrivals_ != nullptr) draw_bits(block, may_be_carried);
     find_accounts(transport_, hits_, block.count, incident_, shared_, second_look, arrivals_, bits_.word[0],
                   books_, accounts_);
+    // The compiler cannot know that booking leaves the members of this object alone.
+    const std::size_t bands = bands_;
+    const bool any_specular = specular_.any();
     std::int64_t* quanta = block.power.data();
-    for (int lane = 0; lane < block.count; ++lane, quanta += bands_) {
+    for (int lane = 0; lane < block.count; ++lane, quanta += bands) {
       const Account& account = accounts_[lane];
       if (account.quanta == nullptr && !second_look) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
         count_event(books_.events.second_looks);
         continue;
       }
-      if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
+      if (any_specular) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       if (account.place != nullptr) {
         if (account.member == Account::kNoMember)
           arrivals_->add(account.place, bits_.word[0][lane], hits_.u[lane], hits_.v[lane]);
@@ -154,12 +157,12 @@ class SweepTracer {
           arrivals_->add_in_group(account.place, bits_.word[0][lane], account.member, hits_.u[lane],
                                   hits_.v[lane]);
       }
-      for (std::size_t b = 0; b < bands_; ++b)
+      for (std::size_t b = 0; b < bands; ++b)
         if (account.quanta != nullptr)
           book(account.quanta[b], quanta[b], account.shared);
         else
           local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], b, quanta[b]);
-      if (account.quanta != nullptr && specular_.any())
+      if (account.quanta != nullptr && any_specular)
         specular_.carry_on(block, hits_, lane, number_, carried_);
     }
     if (keeps_bent_) carried_.move_bent(bent_);

@@ -167,6 +167,7 @@ class WalkTask {
   /// next.
   void draw_bits(const PacketBlock& block, std::uint32_t bounce, BitLanes& bits) const {
     rng_.bits4x16(block.id, batch_, bounce, bits);
+    if (!specular_.any()) return;
     for (int lane = 0; lane < block.count; ++lane) {
       if (block.way[lane].steps == 0) continue;
       const std::array<std::uint32_t, 4> own =
@@ -188,8 +189,10 @@ class WalkTask {
     }
     BitLanes bits;
     draw_bits(block, bounce, bits);
+    // The compiler cannot know that booking leaves the members of this object alone.
+    const std::size_t bands = bands_;
     for (int lane = 0; lane < block.count; ++lane) {
-      std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * bands_];
+      std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * bands];
       if (!second_look && (!zone[lane].valid() || transport_.rays().is_at_edge(
                                                       hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
@@ -197,21 +200,20 @@ class WalkTask {
         continue;
       }
       if (hits_.triangle[lane] == RayTracer::kMiss) {
-        for (std::size_t b = 0; b < bands_; ++b)
+        for (std::size_t b = 0; b < bands; ++b)
           local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], b, quanta[b]);
         continue;
       }
       const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits_.triangle[lane])).surface;
       if (!zone[lane].valid()) {
         count_event(books_.events.back_hits);
-        for (std::size_t b = 0; b < bands_; ++b)
-          book(books_.absorbed_on_backs[surface.index() * bands_ + b], quanta[b]);
+        for (std::size_t b = 0; b < bands; ++b)
+          book(books_.absorbed_on_backs[surface.index() * bands + b], quanta[b]);
         continue;
       }
       if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       std::vector<std::int64_t>& part = block.way[lane].bent ? zones_.indirect : incident;
-      for (std::size_t b = 0; b < bands_; ++b)
-        book(part[zone[lane].index() * bands_ + b], quanta[b], shared_);
+      for (std::size_t b = 0; b < bands; ++b) book(part[zone[lane].index() * bands + b], quanta[b], shared_);
       reflect(surface, block, lane, bits);
     }
   }
