@@ -158,7 +158,7 @@ int main(int argc, char** argv) {
       "Prints the way of one packet of a solve: for each ray the bounce (walks) or sweep (shooting), where "
       "it\n"
       "starts and what it meets. With shooting, zones send on what many packets brought, so a packet has one "
-      "ray.");
+      "ray, and one more for each mirror and pane that it goes on from.");
   Options options;
   app.add_option("solution", options.solution, "Solution file; its room must be where it was")
       ->required()

@@ -105,6 +105,22 @@ void warn_of_ignored_parts(Scene& scene, const std::vector<bool>& used) {
   }
 }
 
+// Rays from a camera or a vertex cannot meet what has no area.
+void warn_of_light_over_mirrors(Scene& scene, const std::vector<bool>& used) {
+  if (scene.lights.empty()) return;
+  const auto bends = [](const NonDiffusePart& part) {
+    return part.reflects_specularly() || (part.transmits_specularly() && part.is_solid);
+  };
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    if (!used[i] || !bends(scene.materials[i].non_diffuse)) continue;
+    scene.warnings.push_back(fmt::format(
+        "The room has {} light(s) without area and mirrors or bodies of glass ('{}'): zones get what comes "
+        "over these, but stills and gathered vertices lack it where it falls on a surface.",
+        scene.lights.size(), scene.materials[i].name));
+    return;
+  }
+}
+
 void warn_if_dark(Scene& scene, const std::vector<bool>& used) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (used[i] && scene.materials[i].emits()) return;
@@ -137,6 +153,7 @@ void finish_scene(Scene& scene) {
   const std::vector<bool> used = used_materials(scene);
   reduce_to_grey_if_colourless(scene, used);
   warn_of_ignored_parts(scene, used);
+  warn_of_light_over_mirrors(scene, used);
   warn_if_dark(scene, used);
   warn_of_units(scene);
 }

@@ -15,7 +15,8 @@ struct RayBlock {
   const Ray16& rays;
   int count;                ///< <= 16
   const std::uint32_t* id;  ///< Of each ray, the number of its packet: in the batch (walks) or in its sweep.
-  std::uint32_t flight;     ///< Bounce (walks) or sweep, from 0.
+  /// Bounce (walks) or sweep, from 0; mirrors and glass that a packet goes on from do not count.
+  std::uint32_t flight;
 };
 
 /// Is shown every block of rays before it is traced; called from all threads.

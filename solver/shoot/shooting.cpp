@@ -75,6 +75,7 @@ class SweepTracer {
         bands_(batch.transport.bands()),
         batch_(batch.batch),
         number_(number),
+        observer_(batch.ray_observer),
         shared_(accounts_are_shared(sweep.incident.size())),
         choice_(batch.settings.seed, RngPurpose::kArrival),
         arrivals_(arrivals),
@@ -107,6 +108,7 @@ class SweepTracer {
   /// Traces packets that were carried on from a surface.
   void trace_on(PacketBlock& block) {
     carried_rays_ += static_cast<std::uint64_t>(block.count);
+    if (observer_ != nullptr) (*observer_)({block.rays, block.count, block.id, number_});
     trace_and_book(block, false, true);
     if (doubtful_.count() >= 16) look_again();
   }
@@ -172,6 +174,7 @@ class SweepTracer {
   std::size_t bands_;
   std::uint32_t batch_;
   std::uint32_t number_;
+  const RayObserver* observer_;
   bool shared_;
   CounterRng choice_;
   ArrivalPoints* arrivals_;

@@ -151,6 +151,7 @@ class WalkTask {
 
   void trace_carried(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
     carried_.take(again_);
+    if (observer_ != nullptr) (*observer_)({again_.rays, again_.count, again_.id, bounce});
     ray_count_ += static_cast<std::uint64_t>(again_.count);
     arrive(again_, incident, bounce, false);
     if (doubtful_.count() >= 16) look_again(incident, bounce);

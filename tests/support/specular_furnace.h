@@ -1,7 +1,6 @@
 #pragma once
 #include <string>
 
-#include "scenes/model/camera.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit::test {
@@ -9,6 +8,7 @@ namespace reemit::test {
 /// Furnace with mirrors and glass: a surface of diffuse reflectance rho, mirror share s and clear
 /// transmittance t emits (1 - rho - s - t) B0 from each side, so that radiosity without the mirrored part is
 /// (1 - s - t) B0, irradiance B0 and radiance B0/pi in every direction outside of glass, whatever the shape.
+/// As large as VariableFurnace, whose camera looks into it.
 class SpecularFurnace {
  public:
   static constexpr double kIrradiance = 2;  ///< B0 [W/m2].
@@ -33,16 +33,6 @@ class SpecularFurnace {
   }
 
   const RoomBuilder& room() const { return room_; }
-  static Camera camera() {
-    Camera camera;
-    camera.name = "inside";
-    camera.eye = {1.9, 0.1, 0.9};
-    camera.look_at = {0.6, 0.9, 0.2};
-    camera.up = {0, 0, 1};
-    camera.width = 32;
-    camera.height = 24;
-    return camera;
-  }
 
  private:
   void screen(const Vec3& corner, const Vec3& u, const Vec3& v, MaterialId m) {

@@ -162,6 +162,17 @@ TEST(FinishScene, SaysWhatItIgnoresOncePerMaterial) {
   EXPECT_THAT(scene.warnings[0], HasSubstr("glossy reflectance 0.25"));
 }
 
+TEST(FinishScene, WarnsOfLightOverMirrorsThatStillsLack) {
+  Scene scene = small_room();
+  scene.materials[0].non_diffuse.specular_reflectance = Eigen::Array3d(0.25, 0.25, 0.25);
+  Scene without = scene;
+  finish_scene(without);
+  EXPECT_TRUE(without.warnings.empty()) << "rays meet luminaires with an area";
+  scene.lights.emplace_back(PointLight{"bulb", {0, 0, 1}, Eigen::Array3d(2, 2, 2)});
+  finish_scene(scene);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("without area and mirrors or bodies of glass ('wall')")));
+}
+
 TEST(FinishScene, WarnsOfDarknessAndUnits) {
   Scene dark = small_room();
   dark.materials[1].emitted_radiance.setZero();

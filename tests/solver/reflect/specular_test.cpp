@@ -87,21 +87,20 @@ TEST(SpecularSurface, PanesReflectAndTransmitAsTheirTwoSurfacesTogether) {
                                                           {60, 0.8481284097288, 0.1518715902712},
                                                           {75, 0.618148516254709, 0.381851483745291},
                                                           {85, 0.246930580386571, 0.753069419613429}}};
-  for (const auto& [angle, t, r] : clear_truth) {
-    const SpecularStep step = shares_at(clear, angle);
-    EXPECT_NEAR(step.transmitted[0], t, 2e-6) << angle;
-    EXPECT_NEAR(step.reflected[0], r, 2e-6) << angle;
-  }
+  const auto compare = [](const SpecularSurface& pane, const auto& truth) {
+    for (const auto& [angle, t, r] : truth) {
+      const SpecularStep step = shares_at(pane, angle);
+      EXPECT_NEAR(step.transmitted[0], t, 2e-6) << angle;
+      EXPECT_NEAR(step.reflected[0], r, 2e-6) << angle;
+    }
+  };
+  compare(clear, clear_truth);
   const SpecularSurface grey(material_of(0, glass(1.52, false, std::exp(-0.1))), 1);
   const std::array<std::array<double, 3>, 4> grey_truth{{{0, 0.83065502172055, 0.0745834489612865},
                                                          {40, 0.813912941293186, 0.08216999124423},
                                                          {60, 0.744553524027133, 0.142323976036058},
                                                          {80, 0.384797136332192, 0.502359516509637}}};
-  for (const auto& [angle, t, r] : grey_truth) {
-    const SpecularStep step = shares_at(grey, angle);
-    EXPECT_NEAR(step.transmitted[0], t, 2e-6) << angle;
-    EXPECT_NEAR(step.reflected[0], r, 2e-6) << angle;
-  }
+  compare(grey, grey_truth);
 }
 
 TEST(SpecularSurface, NothingIsGainedAtAnyAngle) {

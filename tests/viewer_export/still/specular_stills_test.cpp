@@ -9,6 +9,7 @@
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
 #include "tests/support/specular_furnace.h"
+#include "tests/support/variable_furnace.h"
 #include "viewer_export/still/render_still.h"
 
 namespace reemit {
@@ -32,7 +33,7 @@ TEST(SpecularStills, FurnaceIsEvenlyBright) {
     settings.threads = 2;
     const std::atomic<bool> interrupt{false};
     const StillImage image =
-        render_still(walls, solution, SpecularFurnace::camera(), settings, {}, interrupt);
+        render_still(walls, solution, test::VariableFurnace::camera(), settings, {}, interrupt);
     // Rows are independent estimates of the one radiance that there is.
     MeanTest mean;
     for (std::size_t half = 0; half < 48; ++half) {
