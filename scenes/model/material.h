@@ -17,6 +17,7 @@ enum class AngleLaw {
 struct NonDiffusePart {
   /// A reflected or transmitted beam that is spread no more than this is taken as a sharp one.
   static constexpr double kSmooth = 0.02;
+  static constexpr double kLargestIndex = 100;  ///< Of refraction.
 
   Spectrum specular_reflectance;   ///< [0,1]; size 0 = none.
   double roughness = 0;            ///< RMS slope as Ward's alpha [0,1]; 0 = mirror.
@@ -32,13 +33,18 @@ struct NonDiffusePart {
   bool is_solid = false;
   Spectrum absorption_per_m;  ///< Of the inside of a solid [1/m], >= 0; size 0 = none.
 
+  /// Whether a share is there and not 0 in all bands.
+  static bool is_given(const Spectrum& share) { return share.size() > 0 && (share > 0).any(); }
   bool reflects_specularly() const {
-    return roughness <= kSmooth && (angle_law == AngleLaw::kDielectric ||
-                                    (specular_reflectance.size() > 0 && (specular_reflectance > 0).any()));
+    return roughness <= kSmooth && (angle_law == AngleLaw::kDielectric || is_given(specular_reflectance));
   }
   bool transmits_specularly() const {
-    return transmission_roughness <= kSmooth && specular_transmittance.size() > 0 &&
-           (specular_transmittance > 0).any();
+    return transmission_roughness <= kSmooth && is_given(specular_transmittance);
+  }
+  /// What is not modelled besides diffuse transmission.
+  bool has_gloss() const { return roughness > kSmooth && is_given(specular_reflectance); }
+  bool has_glossy_transmission() const {
+    return transmission_roughness > kSmooth && is_given(specular_transmittance);
   }
 };
 
@@ -54,6 +60,18 @@ struct Material {
   bool emits_both_sides = false;  ///< Else only the front emits. Needs two_sided.
   NonDiffusePart non_diffuse;
 
+  /// Reflected and transmitted by band, all together. The tint of glass (kDielectric) is no share of its own.
+  Spectrum share_of_light() const {
+    Spectrum sum = reflectance;
+    const Spectrum none;
+    const bool is_tint = non_diffuse.angle_law == AngleLaw::kDielectric;
+    for (const Spectrum* s : {&non_diffuse.specular_reflectance, &non_diffuse.diffuse_transmittance,
+                              is_tint ? &none : &non_diffuse.specular_transmittance})
+      if (s->size() > 0) sum += *s;
+    return sum;
+  }
+  /// Above this share_of_light() is more than rounding.
+  static constexpr double kAllLight = 1 + 1e-9;
   bool emits() const { return (emitted_radiance > 0).any(); }
   /// Emitted by a square metre of one side [W/m2] per band: the integral of L_e cos(theta) over the
   /// hemisphere.

@@ -80,12 +80,12 @@ std::vector<IgnoredPart> ignored_parts(const Material& m, const BandSet& bands) 
   const NonDiffusePart& rest = m.non_diffuse;
   std::vector<IgnoredPart> parts;
   const auto add = [&](const char* kind, const char* what, const Spectrum& s) {
-    if (s.size() > 0 && (s > 0).any())
+    if (NonDiffusePart::is_given(s))
       parts.push_back({kind, fmt::format("{} {:.3g}", what, luminous_mean(s, bands))});
   };
-  if (rest.roughness > NonDiffusePart::kSmooth) add("gloss", "glossy reflectance", rest.specular_reflectance);
+  if (rest.has_gloss()) add("gloss", "glossy reflectance", rest.specular_reflectance);
   add("diffuse_transmittance", "diffuse transmittance", rest.diffuse_transmittance);
-  if (rest.transmission_roughness > NonDiffusePart::kSmooth)
+  if (rest.has_glossy_transmission())
     add("glossy_transmittance", "glossy transmittance", rest.specular_transmittance);
   return parts;
 }

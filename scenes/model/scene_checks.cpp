@@ -65,15 +65,9 @@ void check_near_room(const Vec3& place, const char* what, const Box& room, const
 
 /// Takes from the specular parts what all parts together have more than 1.
 void limit_to_all_light(Material& m, Scene& scene, const std::string& where) {
-  constexpr double kRounding = 1e-9;
   NonDiffusePart& rest = m.non_diffuse;
-  Spectrum sum = m.reflectance;
-  for (const Spectrum* s : {&rest.specular_reflectance, &rest.diffuse_transmittance})
-    if (s->size() > 0) sum += *s;
-  // The tint of glass is a share of what its surfaces let through.
-  const bool is_share = rest.angle_law != AngleLaw::kDielectric && rest.specular_transmittance.size() > 0;
-  if (is_share) sum += rest.specular_transmittance;
-  if (sum.maxCoeff() <= 1 + kRounding) return;
+  const Spectrum sum = m.share_of_light();
+  if (sum.maxCoeff() <= Material::kAllLight) return;
   scene.warnings.push_back(fmt::format(
       "{}: it reflects and transmits {:.4g} of the light, more than it gets; its mirror and glass "
       "parts are made less until nothing is gained.",
@@ -85,7 +79,7 @@ void limit_to_all_light(Material& m, Scene& scene, const std::string& where) {
     s -= taken;
     excess -= taken;
   };
-  if (is_share) take(rest.specular_transmittance);
+  if (rest.angle_law != AngleLaw::kDielectric) take(rest.specular_transmittance);
   take(rest.specular_reflectance);
   take(rest.diffuse_transmittance);
 }
@@ -96,8 +90,7 @@ void check_specular(Material& m, Scene& scene, const std::string& where) {
     if (!(roughness >= 0 && roughness <= 1))
       throw InputError(where, fmt::format("roughness {} is outside [0, 1]", roughness),
                        "Give 0 (a mirror) to 1.");
-  constexpr double kLargestIndex = 100;
-  if (!(rest.index_of_refraction >= 1 && rest.index_of_refraction <= kLargestIndex))
+  if (!(rest.index_of_refraction >= 1 && rest.index_of_refraction <= NonDiffusePart::kLargestIndex))
     throw InputError(where, fmt::format("index of refraction {}", rest.index_of_refraction),
                      "Give 1 (no refraction) to 100; window glass has 1.52, water 1.33.");
   if (rest.absorption_per_m.size() > 0) {

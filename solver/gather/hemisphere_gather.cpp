@@ -24,10 +24,6 @@ std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight&
   return reach;
 }
 
-float largest_of(const float* values, std::size_t count) {
-  return *std::max_element(values, values + count);
-}
-
 }  // namespace
 
 HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight& direct,
@@ -46,43 +42,35 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
   const std::size_t bands = band_count();
   Hit hit = y;
   Vec3f along = direction;
-  float way = 0;              // from the last surface that scattered the light
-  bool is_bent = false;       // that way is, so shadow rays from there did not find what it meets
-  std::uint32_t crossed = 0;  // mirrors and panes in all
-  TriangleId body;            // of glass that the ray was sent into
-  SpecularStep step(surfaces.any_specular() ? bands : 0);
+  float way = 0;  // from the last surface that scattered the light
+  SpecularPath path(room(), specular_, key);
   for (int bounce = 0;;) {
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
     way += hit.distance;
-    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, weight);
-    const SurfacePoint point = surface_point(rays, hit, along);
-    if (is_bent) add_emission(surfaces, point, weight, sum);
+    path.attenuate(hit, weight);
+    if (path.is_bent()) add_emission(surfaces, surface_point(rays, hit, along), weight, sum);
     const bool is_read = bounce == most_bounces_ || !continues(zone, way);
     if (is_read) {
       const float* radiance = field_->reflected(zone, key.part);
       for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
     }
-    float scattered = is_read ? 0 : 1;  // chance that the ray goes on from here as scattered light
-    if (surfaces.is_specular(hit.triangle, hit.front)) {
-      if (crossed == SpecularNumbers::kMostSteps) return;
-      const SpecularSurface& surface = surfaces.specular(hit.triangle);
-      const float on = surface.shares(point.normal.dot(point.towards), point.front, step);
-      if (!is_read) scattered = largest_of(surfaces.reflectance(hit.triangle, hit.front), bands);
-      if (scattered + on > 1) scattered /= scattered + on;
-      const float u = specular_.at(key, crossed++);
-      if (!(u < scattered)) {
-        if (scattered > 0) add_direct(point, bounce, key, weight, sum);
-        if (!surface.choose(point, u - scattered, Survival::kRoulette, step, 1 - scattered)) return;
-        for (std::size_t b = 0; b < bands; ++b) weight[b] *= step.share()[b] / step.chance;
-        is_bent = is_bent || step.bends;
-        body = surfaces.body_beyond(hit.triangle, step.front, body);
-        along = step.direction;
-        if (!rays.closest(rays.ray_origin(hit.triangle, hit.u, hit.v, step.front), along, hit)) return;
+    const bool specular = surfaces.is_specular(hit.triangle, hit.front);
+    if (is_read && !specular) return;
+    const SurfacePoint point = surface_point(rays, hit, along);
+    float scattered = 1;  // chance that the ray goes on from here as scattered light
+    if (specular) {
+      const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+      scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
+      if (scattered > 0) add_direct(point, bounce, key, weight, sum);
+      const SpecularPath::Next next = path.choose(point, scattered, weight);
+      if (next == SpecularPath::Next::kEnds) return;
+      if (next == SpecularPath::Next::kGoesOn) {
+        along = path.direction();
+        if (!rays.closest(path.origin(), along, hit)) return;
         continue;
       }
     }
-    if (is_read) return;
     const auto number = static_cast<std::uint32_t>(2 * bounce + 1);
     const std::array<float, 4> u_ray = rng_.uniform4(key.index, key.batch, key.step(number));
     const ScatterSample next = surfaces.sample(point, u_ray[0], u_ray[1]);
@@ -90,7 +78,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     bool dark = true;
     for (std::size_t b = 0; b < bands; ++b) dark = dark && weight[b] * brdf(b) == 0;
     if (dark) return;
-    add_direct(point, bounce, key, weight, sum);
+    if (!specular) add_direct(point, bounce, key, weight, sum);
     for (std::size_t b = 0; b < bands; ++b) {
       weight[b] *= brdf(b) / scattered;
       weight[b] *= next.cosine_over_pdf;
@@ -98,7 +86,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     along = next.direction;
     if (!rays.closest(ray_origin(rays, point), along, hit)) return;
     way = 0;
-    is_bent = false;
+    path.scatter();
     ++bounce;
   }
 }

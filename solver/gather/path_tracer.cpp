@@ -18,15 +18,12 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
   Vec3f direction = sample_lambert(x.normal, u0, u1);
   if (!(direction.dot(side_normal(rays, x)) > 0)) return;
   Vec3f origin = ray_origin(rays, x);
-  bool is_bent = false;  // since light was scattered last, so shadow rays did not find what the ray meets
-  std::uint32_t crossed = 0;  // mirrors and panes in all
-  TriangleId body;            // of glass that the ray was sent into
-  SpecularStep step(surfaces.any_specular() ? bands : 0);
+  SpecularPath path(*room_, specular_, key);
   for (std::uint32_t bounce = 0;;) {
     Hit hit;
     if (!rays.closest(origin, direction, hit)) return;
-    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, weight);
-    if (is_bent) add_emission(surfaces, surface_point(rays, hit, direction), weight, sum);
+    path.attenuate(hit, weight);
+    if (path.is_bent()) add_emission(surfaces, surface_point(rays, hit, direction), weight, sum);
     const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
     const float largest = *std::max_element(reflectance, reflectance + bands);
     const bool specular = surfaces.is_specular(hit.triangle, hit.front);
@@ -41,18 +38,12 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
     point = surface_point(rays, hit, direction);
     if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, weight, sum);
     if (specular) {
-      if (crossed == SpecularNumbers::kMostSteps) return;
-      const SpecularSurface& surface = surfaces.specular(hit.triangle);
-      const float on = surface.shares(point.normal.dot(point.towards), point.front, step);
-      survival = largest + on > 1 ? largest / (largest + on) : largest;
-      const float v = specular_.at(key, crossed++);
-      if (!(v < survival)) {
-        if (!surface.choose(point, v - survival, Survival::kRoulette, step, 1 - survival)) return;
-        for (std::size_t b = 0; b < bands; ++b) weight[b] *= step.share()[b] / step.chance;
-        is_bent = is_bent || step.bends;
-        body = surfaces.body_beyond(hit.triangle, step.front, body);
-        direction = step.direction;
-        origin = rays.ray_origin(hit.triangle, hit.u, hit.v, step.front);
+      survival = largest;
+      const SpecularPath::Next next = path.choose(point, survival, weight);
+      if (next == SpecularPath::Next::kEnds) return;
+      if (next == SpecularPath::Next::kGoesOn) {
+        direction = path.direction();
+        origin = path.origin();
         continue;
       }
     }
@@ -65,7 +56,7 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
       weight[b] *= next.cosine_over_pdf;
     }
     origin = ray_origin(rays, point);
-    is_bent = false;
+    path.scatter();
     ++bounce;
   }
 }

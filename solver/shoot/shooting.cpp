@@ -73,7 +73,6 @@ class SweepTracer {
               BatchBooks& books)
       : transport_(batch.transport),
         bands_(batch.transport.bands()),
-        batch_(batch.batch),
         number_(number),
         observer_(batch.ray_observer),
         shared_(accounts_are_shared(sweep.incident.size())),
@@ -94,7 +93,7 @@ class SweepTracer {
   std::uint64_t carried_rays() const { return carried_rays_; }
 
   void trace(PacketBlock& block) {
-    trace_and_book(block, false, false);
+    trace_and_book(block, false);
     if (doubtful_.count() >= 16) look_again();
     if (carried_.count() >= 16) trace_carried();
   }
@@ -109,35 +108,23 @@ class SweepTracer {
   void trace_on(PacketBlock& block) {
     carried_rays_ += static_cast<std::uint64_t>(block.count);
     if (observer_ != nullptr) (*observer_)({block.rays, block.count, block.id, number_});
-    trace_and_book(block, false, true);
+    trace_and_book(block, false);
     if (doubtful_.count() >= 16) look_again();
   }
 
  private:
   void look_again() {
     doubtful_.take(waiting_);
-    trace_and_book(waiting_, true, true);
+    trace_and_book(waiting_, true);
   }
   void trace_carried() {
     carried_.take(waiting_);
     trace_on(waiting_);
   }
 
-  /// Random bits of the packets' arrivals; those of packets that were carried on differ from arrival to
-  /// arrival.
-  void draw_bits(const PacketBlock& block, bool may_be_carried) {
-    if (!may_be_carried || !specular_.any()) {
-      choice_.bits4x16(block.id, batch_, number_, bits_);
-      return;
-    }
-    for (int lane = 0; lane < block.count; ++lane)
-      bits_.word[0][lane] =
-          choice_.bits4(std::uint64_t{block.way[lane].steps} << 32 | block.id[lane], batch_, number_)[0];
-  }
-
-  void trace_and_book(PacketBlock& block, bool second_look, bool may_be_carried) {
+  void trace_and_book(PacketBlock& block, bool second_look) {
     transport_.rays().closest16(block.rays, block.count, hits_);
-    if (arrivals_ != nullptr) draw_bits(block, may_be_carried);
+    if (arrivals_ != nullptr) specular_.draw_bits(choice_, block, number_, bits_);
     find_accounts(transport_, hits_, block.count, incident_, shared_, second_look, arrivals_, bits_.word[0],
                   books_, accounts_);
     // The compiler cannot know that booking leaves the members of this object alone.
@@ -172,7 +159,6 @@ class SweepTracer {
 
   const PacketRoom& transport_;
   std::size_t bands_;
-  std::uint32_t batch_;
   std::uint32_t number_;
   const RayObserver* observer_;
   bool shared_;

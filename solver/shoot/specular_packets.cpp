@@ -1,5 +1,7 @@
 #include "solver/shoot/specular_packets.h"
 
+#include <array>
+
 namespace reemit {
 
 SpecularPackets::SpecularPackets(const BatchTask& task, BatchBooks& books)
@@ -12,6 +14,17 @@ SpecularPackets::SpecularPackets(const BatchTask& task, BatchBooks& books)
       any_(surfaces_.any_specular()),
       way_(task.transport.bands()),
       power_(task.transport.bands()) {}
+
+void SpecularPackets::draw_bits(const CounterRng& rng, const PacketBlock& block, std::uint32_t step,
+                                BitLanes& bits) const {
+  rng.bits4x16(block.id, batch_, step, bits);
+  if (!any_) return;
+  for (int lane = 0; lane < block.count; ++lane) {
+    if (block.way[lane].steps == 0) continue;
+    const std::array<std::uint32_t, 4> own = rng.bits4(number_of(block, lane), batch_, step);
+    for (std::size_t k = 0; k < 4; ++k) bits.word[k][lane] = own[k];
+  }
+}
 
 void SpecularPackets::attenuate(const SpecularWay& way, const Hit16& hits, int lane,
                                 std::int64_t* power) const {
@@ -36,19 +49,18 @@ float SpecularPackets::chances(const PacketBlock& block, const Hit16& hits, int 
   return cosine > 0 ? surfaces_.specular(t).shares(cosine, hits.front[lane], way_) : 0;
 }
 
-bool SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
+void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
                                WaitingPackets& next) {
-  if (!any_ || !surfaces_.is_specular(TriangleId(hits.triangle[lane]), hits.front[lane])) return false;
-  const std::uint64_t packet = std::uint64_t{block.way[lane].steps} << 32 | block.id[lane];
-  return carry_on(block, hits, lane, rng_.uniform4(packet, batch_, step)[0], 1, next);
+  if (!surfaces_.is_specular(TriangleId(hits.triangle[lane]), hits.front[lane])) return;
+  carry_on(block, hits, lane, rng_.uniform4(number_of(block, lane), batch_, step)[0], 1, next);
 }
 
-bool SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u, float most,
+void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u, float most,
                                WaitingPackets& next) {
   const TriangleId t(hits.triangle[lane]);
   SurfacePoint x = surface_point(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]);
   x.towards = -block.rays.direction(lane);
-  if (!surfaces_.specular(t).choose(x, u, Survival::kRoulette, way_, most)) return false;
+  if (!surfaces_.specular(t).choose(x, u, Survival::kRoulette, way_, most)) return;
   const std::size_t bands = power_.size();
   const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * bands];
   const std::size_t surface = mesh_.triangle(t).surface.index();
@@ -64,7 +76,6 @@ bool SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
              {block.way[lane].steps + 1, block.way[lane].bent || way_.bends,
               surfaces_.body_beyond(t, way_.front, block.way[lane].body)},
              power_.data());
-  return true;
 }
 
 }  // namespace reemit

@@ -20,20 +20,28 @@ class SpecularPackets {
 
   /// Whether any surface of the room sends packets on.
   bool any() const { return any_; }
+  /// Random bits of the packets of a block; those of packets that were sent on differ from surface to
+  /// surface.
+  void draw_bits(const CounterRng& rng, const PacketBlock& block, std::uint32_t step, BitLanes& bits) const;
   /// Takes from a packet's power, per band, what a body of glass absorbed on the way to where it met the
   /// room.
   void attenuate(const SpecularWay& way, const Hit16& hits, int lane, std::int64_t* power) const;
   /// Sends the packet of a lane on from what it met, into `next`, if it met such a surface and is chosen.
-  /// `step` tells the flights of a batch apart. True if it went on; it ends after kMostSteps as unshot.
-  bool carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
+  /// `step` tells the flights of a batch apart. It ends after kMostSteps as unshot.
+  void carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
                 WaitingPackets& next);
   /// The same by a given number, uniform in [0,most): the ways on have the chance `most` in all at most.
-  bool carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u, float most,
+  void carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u, float most,
                 WaitingPackets& next);
   /// Chances of the ways on from what a lane met, in all; 0 where there are none.
   float chances(const PacketBlock& block, const Hit16& hits, int lane);
 
  private:
+  /// Names the random numbers of a packet at what it met.
+  static std::uint64_t number_of(const PacketBlock& block, int lane) {
+    return std::uint64_t{block.way[lane].steps} << 32 | block.id[lane];
+  }
+
   /// Mirrors that face each other may send a packet to and fro for ever.
   static constexpr std::uint32_t kMostSteps = 1U << 17;
 

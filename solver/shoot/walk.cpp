@@ -164,19 +164,6 @@ class WalkTask {
     }
   }
 
-  /// Random bits of the reflections of a block; those of packets that were carried on differ from one to the
-  /// next.
-  void draw_bits(const PacketBlock& block, std::uint32_t bounce, BitLanes& bits) const {
-    rng_.bits4x16(block.id, batch_, bounce, bits);
-    if (!specular_.any()) return;
-    for (int lane = 0; lane < block.count; ++lane) {
-      if (block.way[lane].steps == 0) continue;
-      const std::array<std::uint32_t, 4> own =
-          rng_.bits4(std::uint64_t{block.way[lane].steps} << 32 | block.id[lane], batch_, bounce);
-      for (std::size_t k = 0; k < 4; ++k) bits.word[k][lane] = own[k];
-    }
-  }
-
   /// Traces a block, books where each packet comes to, and keeps those that survive.
   void arrive(PacketBlock& block, std::vector<std::int64_t>& incident, std::uint32_t bounce,
               bool second_look) {
@@ -189,7 +176,7 @@ class WalkTask {
       if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * bands_], 1);
     }
     BitLanes bits;
-    draw_bits(block, bounce, bits);
+    specular_.draw_bits(rng_, block, bounce, bits);
     // The compiler cannot know that booking leaves the members of this object alone.
     const std::size_t bands = bands_;
     for (int lane = 0; lane < block.count; ++lane) {

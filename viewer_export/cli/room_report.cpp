@@ -97,12 +97,10 @@ std::vector<std::string> models_of(const Material& material) {
     models.emplace_back("clear sheet");
   if (part.reflects_specularly() && part.angle_law != AngleLaw::kDielectric)
     models.emplace_back(part.angle_law == AngleLaw::kSchlick ? "metal" : "mirror");
-  const auto given = [](const Spectrum& s) { return s.size() > 0 && (s > 0).any(); };
-  if (part.roughness > NonDiffusePart::kSmooth && given(part.specular_reflectance))
-    models.emplace_back("gloss (not modelled)");
-  if (part.transmission_roughness > NonDiffusePart::kSmooth && given(part.specular_transmittance))
-    models.emplace_back("glossy transmission (not modelled)");
-  if (given(part.diffuse_transmittance)) models.emplace_back("diffuse transmission (not modelled)");
+  if (part.has_gloss()) models.emplace_back("gloss (not modelled)");
+  if (part.has_glossy_transmission()) models.emplace_back("glossy transmission (not modelled)");
+  if (NonDiffusePart::is_given(part.diffuse_transmittance))
+    models.emplace_back("diffuse transmission (not modelled)");
   return models;
 }
 

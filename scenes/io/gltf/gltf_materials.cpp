@@ -145,7 +145,7 @@ class MaterialReader {
       material.non_diffuse.specular_transmittance = base * ((1 - metallic) * transmitted);
       material.non_diffuse.transmission_roughness = material.non_diffuse.roughness;
       material.non_diffuse.index_of_refraction =
-          std::max(1.0, number(source, "KHR_materials_ior", "ior", 1.5, 100));
+          std::max(1.0, number(source, "KHR_materials_ior", "ior", 1.5, NonDiffusePart::kLargestIndex));
       if (metallic == 0) material.non_diffuse.angle_law = AngleLaw::kDielectric;
       read_volume(source, material.non_diffuse);
     }

@@ -62,18 +62,13 @@ void read_specular(const JsonCursor& at, const BandSet& bands, Material& materia
   if (metal) part.angle_law = AngleLaw::kSchlick;
   if (mirror || metal) part.specular_reflectance = read_reflectance(mirror ? *mirror : *metal, bands);
   if (clear) part.specular_transmittance = read_reflectance(*clear, bands);
-  Spectrum sum = material.reflectance;
-  for (const Spectrum* share : {&part.specular_reflectance, &part.specular_transmittance})
-    if (share->size() > 0) sum += *share;
-  constexpr double kRounding = 1e-9;
-  if (sum.maxCoeff() > 1 + kRounding)
-    at.fail(fmt::format("the surface reflects and transmits {:.6g} of the light in one band", sum.maxCoeff()),
+  if (const double most = material.share_of_light().maxCoeff(); most > Material::kAllLight)
+    at.fail(fmt::format("the surface reflects and transmits {:.6g} of the light in one band", most),
             "Make its \"reflectance\", \"mirror\" or \"metal\", and \"transmittance\" add up to at most 1.");
   if (!glass) return;
   glass->expect_object({"ior", "transmittance", "solid", "transmittance_per_m"});
   part.angle_law = AngleLaw::kDielectric;
-  constexpr double kLargestIndex = 100;
-  part.index_of_refraction = glass->at("ior").number_in(1, kLargestIndex);
+  part.index_of_refraction = glass->at("ior").number_in(1, NonDiffusePart::kLargestIndex);
   part.specular_transmittance = Spectrum::Ones(static_cast<Eigen::Index>(bands.count()));
   if (const auto tint = glass->find("transmittance"))
     part.specular_transmittance = read_reflectance(*tint, bands);
