@@ -47,8 +47,12 @@ void add_non_diffuse(Hasher& hash, const NonDiffusePart& part) {
   const Spectrum* shares[] = {&part.specular_reflectance, &part.diffuse_transmittance,
                               &part.specular_transmittance, &part.absorption_per_m};
   const auto numbers_of = [](const NonDiffusePart& p) {
-    return std::array{p.roughness, p.transmission_roughness, p.index_of_refraction,
-                      static_cast<double>(p.angle_law), p.is_solid ? 1.0 : 0.0};
+    return std::array{p.roughness,
+                      p.transmission_roughness,
+                      p.index_of_refraction,
+                      static_cast<double>(p.angle_law),
+                      p.is_solid ? 1.0 : 0.0,
+                      static_cast<double>(p.lobe)};
   };
   const auto numbers = numbers_of(part);
   if (std::all_of(std::begin(shares), std::end(shares), [](const Spectrum* s) { return s->size() == 0; }) &&

@@ -13,20 +13,25 @@ enum class AngleLaw {
   kDielectric,  ///< Fresnel's equations for the index of refraction; no specular_reflectance is given.
 };
 
+/// How light that is not reflected or transmitted sharply is spread (solver/reflect/gloss.h).
+enum class GlossLobe { kGgx, kWard, kPhong };
+
 /// What a surface does with light besides reflecting it as Lambert does.
 struct NonDiffusePart {
-  /// A reflected or transmitted beam that is spread no more than this is taken as a sharp one.
+  /// A reflected or transmitted beam of no more than this roughness is taken as a sharp one.
   static constexpr double kSmooth = 0.02;
   static constexpr double kLargestIndex = 100;  ///< Of refraction.
 
-  Spectrum specular_reflectance;   ///< [0,1]; size 0 = none.
-  double roughness = 0;            ///< RMS slope as Ward's alpha [0,1]; 0 = mirror.
+  Spectrum specular_reflectance;  ///< [0,1]; size 0 = none.
+  /// alpha of GGX and Ward's lobe [0,1], 0 = mirror; Phong's exponent is 2/alpha^2 - 2 [WAL07].
+  double roughness = 0;
   Spectrum diffuse_transmittance;  ///< [0,1]; size 0 = none. Not modelled: this light is absorbed.
   /// [0,1]; size 0 = none. With kDielectric, of the glass alone: of a pane, for one pass across it at normal
   /// incidence; of a solid, a tint of what crosses the surface. Else of the whole.
   Spectrum specular_transmittance;
   double transmission_roughness = 0;  ///< As roughness.
-  double index_of_refraction = 1;     ///< Of what is behind the front to what is before it [1, 100].
+  GlossLobe lobe = GlossLobe::kGgx;
+  double index_of_refraction = 1;  ///< Of what is behind the front to what is before it [1, 100].
   AngleLaw angle_law = AngleLaw::kConstant;
   /// The faces bound a body of glass: their backs are its inside, and light is refracted. Else a face is a
   /// thin pane, which light crosses straight on.
@@ -35,17 +40,13 @@ struct NonDiffusePart {
 
   /// Whether a share is there and not 0 in all bands.
   static bool is_given(const Spectrum& share) { return share.size() > 0 && (share > 0).any(); }
+  /// Sharply or spread.
   bool reflects_specularly() const {
-    return roughness <= kSmooth && (angle_law == AngleLaw::kDielectric || is_given(specular_reflectance));
+    return angle_law == AngleLaw::kDielectric || is_given(specular_reflectance);
   }
-  bool transmits_specularly() const {
-    return transmission_roughness <= kSmooth && is_given(specular_transmittance);
-  }
-  /// What is not modelled besides diffuse transmission.
-  bool has_gloss() const { return roughness > kSmooth && is_given(specular_reflectance); }
-  bool has_glossy_transmission() const {
-    return transmission_roughness > kSmooth && is_given(specular_transmittance);
-  }
+  bool transmits_specularly() const { return is_given(specular_transmittance); }
+  bool has_gloss() const { return reflects_specularly() && roughness > kSmooth; }
+  bool has_glossy_transmission() const { return transmits_specularly() && transmission_roughness > kSmooth; }
 };
 
 /// Reflection, transmission and self-emission of a surface. Behaviour lives in solver/reflect and

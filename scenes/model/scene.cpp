@@ -83,10 +83,7 @@ std::vector<IgnoredPart> ignored_parts(const Material& m, const BandSet& bands) 
     if (NonDiffusePart::is_given(s))
       parts.push_back({kind, fmt::format("{} {:.3g}", what, luminous_mean(s, bands))});
   };
-  if (rest.has_gloss()) add("gloss", "glossy reflectance", rest.specular_reflectance);
   add("diffuse_transmittance", "diffuse transmittance", rest.diffuse_transmittance);
-  if (rest.has_glossy_transmission())
-    add("glossy_transmittance", "glossy transmittance", rest.specular_transmittance);
   return parts;
 }
 
@@ -109,7 +106,8 @@ void warn_of_ignored_parts(Scene& scene, const std::vector<bool>& used) {
 void warn_of_light_over_mirrors(Scene& scene, const std::vector<bool>& used) {
   if (scene.lights.empty()) return;
   const auto bends = [](const NonDiffusePart& part) {
-    return part.reflects_specularly() || (part.transmits_specularly() && part.is_solid);
+    return (part.reflects_specularly() && !part.has_gloss()) ||
+           (part.transmits_specularly() && part.is_solid);
   };
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     if (!used[i] || !bends(scene.materials[i].non_diffuse)) continue;

@@ -25,7 +25,10 @@ void LuminaireTable::add_surfaces(const Room& room) {
   const ZoneMesh& mesh = room.mesh();
   const SurfaceModel& surfaces = room.surfaces();
   const double metres = rays_->metres_per_unit();
+  area_of_surface_.assign(surfaces.surface_count(), 0.0F);
   const auto add = [&](AreaLuminaire luminaire, SurfaceId surface) {
+    area_of_surface_[surface.index()] += static_cast<float>(luminaire.area());
+    surface_of_area_.push_back(surface);
     areas_.push_back(std::move(luminaire));
     add_strength(surfaces.normal_radiance(surface));
   };

@@ -9,6 +9,11 @@ namespace {
 /// Shadow rays end after so many panes.
 constexpr int kMostPanes = 256;
 
+/// pdf / (pdf + way^2 / area), without a division by 0.
+float share_of_lobe(float area, float way, float pdf_per_sr) {
+  return pdf_per_sr * area / (pdf_per_sr * area + way * way);
+}
+
 }  // namespace
 
 DirectLight::DirectLight(const Room& room, const DirectLightSettings& settings)
@@ -35,7 +40,7 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
   if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return {};
   const Vec3f towards = sample.towards(origin);
   if (!(towards.dot(side_normal(*rays_, x)) > 0)) return {};
-  Arrival light{table_.strength(entry), sample.factor * inverse_probability, towards, {}};
+  Arrival light{table_.strength(entry), sample.factor * inverse_probability, entry, towards, {}};
   if (!passes(origin, sample, light.panes)) return {};
   return light;
 }
@@ -85,6 +90,35 @@ void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<f
   const BrdfValue brdf = surfaces_->value(x, light.towards.normalized());
   for (std::size_t b = 0; b < band_count(); ++b)
     sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.strength[b] * light.pane(b);
+}
+
+void DirectLight::add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
+                                  const float* weight, float* sum) const {
+  if (empty()) return;
+  const SpecularSurface& surface = surfaces_->specular(x.triangle);
+  if (surface.spreads_reflected()) add_lobe_of(x, x, u, weight, sum);
+  if (!surface.spreads_transmitted()) return;
+  SurfacePoint beyond = x;
+  beyond.front = !x.front;
+  beyond.normal = -x.normal;
+  add_lobe_of(x, beyond, u, weight, sum);
+}
+
+void DirectLight::add_lobe_of(const SurfacePoint& x, const SurfacePoint& lit,
+                              const std::array<float, kDimensions>& u, const float* weight,
+                              float* sum) const {
+  const Arrival light = estimate(lit, ray_origin(*rays_, lit), u);
+  if (light.strength == nullptr) return;
+  SpecularStep step(band_count());
+  if (!surfaces_->specular(x.triangle).value(x, light.towards.normalized(), step)) return;
+  const float area = table_.emitting_area(light.entry);
+  const float seldom = area > 0 ? 1 - share_of_lobe(area, light.towards.norm(), step.pdf_per_sr) : 1.0F;
+  for (std::size_t b = 0; b < band_count(); ++b)
+    sum[b] += weight[b] * seldom * step.share()[b] * light.factor * light.strength[b] * light.pane(b);
+}
+
+float DirectLight::found_by_lobe(TriangleId luminaire, float way, float pdf_per_sr) const {
+  return share_of_lobe(table_.emitting_area(surfaces_->surface(luminaire)), way, pdf_per_sr);
 }
 
 void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first,

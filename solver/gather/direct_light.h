@@ -45,6 +45,15 @@ class DirectLight {
   void add_reflected_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, float chance,
                             const float* weight, float* sum) const;
 
+  /// One sample of what the lobes of a rough surface at x send towards x.towards (SpecularSurface::value):
+  /// adds weight[b] times that to sum[b], of areas only the share that rays drawn from the lobe do not find.
+  void add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
+                       float* sum) const;
+  /// The share of an area's light that is left to rays drawn from a lobe: the balance heuristic [VG95], with
+  /// the luminaires of a surface taken as drawn evenly by area. `way`: from the lobe to a point of the
+  /// triangle.
+  float found_by_lobe(TriangleId luminaire, float way, float pdf_per_sr) const;
+
   /// Adds, for samples first .. first+count-1 of the sequence (dimensions 0-2), E_b to sum[b] [W/m2] and, if
   /// given, E_b^2 to sum_of_squares[b].
   void add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first, int count,
@@ -55,12 +64,16 @@ class DirectLight {
   struct Arrival {
     const float* strength = nullptr;  ///< Null if nothing arrives.
     float factor = 0;
+    std::size_t entry = 0;   ///< Of the table.
     Vec3f towards{0, 0, 0};  ///< The luminaire; of any length.
     /// By band, what panes on the way leave of it; empty where there are none.
     std::vector<float> panes;
 
     float pane(std::size_t b) const { return panes.empty() ? 1.0F : panes[b]; }
   };
+  /// add_lobe_sample by the side of the surface that light falls on.
+  void add_lobe_of(const SurfacePoint& x, const SurfacePoint& lit, const std::array<float, kDimensions>& u,
+                   const float* weight, float* sum) const;
   /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival.
   bool passes(const Vec3f& origin, const LuminaireSample& sample, std::vector<float>& panes) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;

@@ -33,7 +33,7 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
       reach_(reach_of_zones(field, direct, settings, stop)),
       most_bounces_(settings.most_bounces),
       rng_(settings.seed, RngPurpose::kHemisphere),
-      specular_(settings.seed, RngPurpose::kSpecular) {}
+      specular_(settings.seed, RngPurpose::kSpecular, RngPurpose::kSpread) {}
 
 void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
                                      float* sum) const {
@@ -48,8 +48,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
     way += hit.distance;
-    path.attenuate(hit, weight);
-    if (path.is_bent()) add_emission(surfaces, surface_point(rays, hit, along), weight, sum);
+    path.arrive(*direct_, hit, along, weight, sum);
     const bool is_read = bounce == most_bounces_ || !continues(zone, way);
     if (is_read) {
       const float* radiance = field_->reflected(zone, key.part);
@@ -63,6 +62,8 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
       const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
       scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
       if (scattered > 0) add_direct(point, bounce, key, weight, sum);
+      if (surfaces.spreads(hit.triangle))
+        direct_->add_lobe_sample(point, light_numbers(bounce, key), weight, sum);
       const SpecularPath::Next next = path.choose(point, scattered, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
@@ -93,9 +94,14 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
 
 void HemisphereGather::add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
                                   float* sum) const {
+  direct_->add_reflected_sample(y, light_numbers(bounce, key), 1, weight, sum);
+}
+
+std::array<float, DirectLight::kDimensions> HemisphereGather::light_numbers(int bounce,
+                                                                            const PathKey& key) const {
   const std::array<float, 4> u =
       rng_.uniform4(key.index, key.batch, key.step(static_cast<std::uint32_t>(2 * bounce)));
-  direct_->add_reflected_sample(y, {u[0], u[1], u[2]}, 1, weight, sum);
+  return {u[0], u[1], u[2]};
 }
 
 GatherBatch::GatherBatch(const HemisphereGather& gather)

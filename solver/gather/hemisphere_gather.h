@@ -53,6 +53,8 @@ class HemisphereGather {
   void add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
                   float* sum) const;
 
+  std::array<float, DirectLight::kDimensions> light_numbers(int bounce, const PathKey& key) const;
+
   const RadianceField* field_;
   const DirectLight* direct_;
   std::vector<float> reach_;  // by zone: hits nearer than this are continued

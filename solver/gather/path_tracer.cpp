@@ -7,7 +7,10 @@
 namespace reemit {
 
 PathTracer::PathTracer(const Room& room, const DirectLight& direct, std::uint64_t seed)
-    : room_(&room), direct_(&direct), rng_(seed, RngPurpose::kPath), specular_(seed, RngPurpose::kSpecular) {}
+    : room_(&room),
+      direct_(&direct),
+      rng_(seed, RngPurpose::kPath),
+      specular_(seed, RngPurpose::kSpecular, RngPurpose::kSpread) {}
 
 void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const PathKey& key, float* weight,
                               float* sum) const {
@@ -22,8 +25,7 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
   for (std::uint32_t bounce = 0;;) {
     Hit hit;
     if (!rays.closest(origin, direction, hit)) return;
-    path.attenuate(hit, weight);
-    if (path.is_bent()) add_emission(surfaces, surface_point(rays, hit, direction), weight, sum);
+    path.arrive(*direct_, hit, direction, weight, sum);
     const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
     const float largest = *std::max_element(reflectance, reflectance + bands);
     const bool specular = surfaces.is_specular(hit.triangle, hit.front);
@@ -38,6 +40,7 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
     point = surface_point(rays, hit, direction);
     if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, weight, sum);
     if (specular) {
+      if (surfaces.spreads(hit.triangle)) direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, weight, sum);
       survival = largest;
       const SpecularPath::Next next = path.choose(point, survival, weight);
       if (next == SpecularPath::Next::kEnds) return;

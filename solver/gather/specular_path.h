@@ -1,69 +1,90 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstdint>
 
+#include "solver/gather/direct_light.h"
 #include "solver/gather/path_key.h"
 #include "solver/room/room.h"
 #include "solver/sampling/counter_rng.h"
 
 namespace reemit {
 
-/// Uniform numbers that choose the ways of one path on mirrors and glass.
+/// Uniform numbers that choose the ways of one path on mirrors, gloss and glass.
 class SpecularNumbers {
  public:
-  SpecularNumbers(std::uint64_t seed, RngPurpose purpose) : rng_(seed, purpose) {}
+  SpecularNumbers(std::uint64_t seed, RngPurpose choice, RngPurpose spread)
+      : rng_(seed, choice), spread_(seed, spread) {}
 
   static constexpr std::uint32_t kMostSteps = 4 * PathKey::kStepsPerPath;  ///< Paths end there.
   /// In [0,1). Pre: step < kMostSteps.
   float at(const PathKey& key, std::uint32_t step) const {
     return rng_.uniform4(key.index, key.batch, key.step(step / 4))[step % 4];
   }
+  /// Two numbers in [0,1) that spread a way on; they come again after PathKey::kStepsPerPath steps.
+  std::array<float, 2> spread(const PathKey& key, std::uint32_t step) const {
+    const std::array<float, 4> u =
+        spread_.uniform4(key.index, key.batch, key.step(step % PathKey::kStepsPerPath));
+    return {u[0], u[1]};
+  }
 
  private:
   CounterRng rng_;
+  CounterRng spread_;
 };
 
-/// Adds weight[b] times the radiance that x emits towards x.towards to sum[b].
-inline void add_emission(const SurfaceModel& surfaces, const SurfacePoint& x, const float* weight,
-                         float* sum) {
-  if (!surfaces.emits(x.triangle, x.front)) return;
-  const float* emitted = surfaces.emitted(x.triangle, x.front);
-  const float shape = surfaces.emission_shape(x.triangle, std::fabs(x.normal.dot(x.towards)));
-  for (std::size_t b = 0; b < surfaces.band_count(); ++b) sum[b] += weight[b] * shape * emitted[b];
-}
-
-/// A path that is followed over mirrors and glass: what it came over since light was scattered last, and
-/// where it goes on. Of one thread.
+/// A path that is followed over mirrors, gloss and glass: what it came over since light was scattered last,
+/// and where it goes on. Of one thread.
 class SpecularPath {
  public:
   enum class Next { kScatters, kGoesOn, kEnds };
 
-  SpecularPath(const Room& room, const SpecularNumbers& numbers, const PathKey& key)
+  /// `pdf_per_sr`: density of the first ray, where it leaves a surface whose light of luminaires is divided
+  /// between shadow rays and such rays (DirectLight::found_by_lobe); else 0.
+  SpecularPath(const Room& room, const SpecularNumbers& numbers, const PathKey& key, float pdf_per_sr = 0)
       : room_(&room),
         numbers_(&numbers),
         key_(key),
-        step_(room.surfaces().any_specular() ? room.band_count() : 0) {}
+        step_(room.surfaces().any_specular() ? room.band_count() : 0),
+        pdf_per_sr_(pdf_per_sr) {}
 
-  /// Whether shadow rays from where light was scattered last did not find what the path meets now.
-  bool is_bent() const { return is_bent_; }
-  /// Takes from weight[b] what a body of glass absorbed on the way to a hit.
-  void attenuate(const Hit& hit, float* weight) const {
+  /// Goes to a hit: takes from weight[b] what a body of glass absorbed on the way, and adds weight[b] times
+  /// what the hit emits back along it to sum[b], as far as shadow rays from where light was scattered last
+  /// did not find it.
+  void arrive(const DirectLight& direct, const Hit& hit, const Vec3f& along, float* weight, float* sum) {
     const SurfaceModel& surfaces = room_->surfaces();
+    way_ += hit.distance;
     surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body_), hit.distance, weight);
+    if (!(is_bent_ || pdf_per_sr_ > 0) || !surfaces.emits(hit.triangle, hit.front)) return;
+    const float found = is_bent_ ? 1 : direct.found_by_lobe(hit.triangle, way_, pdf_per_sr_);
+    const SurfacePoint x = surface_point(room_->rays(), hit, along);
+    const float* emitted = surfaces.emitted(x.triangle, x.front);
+    const float shape = found * surfaces.emission_shape(x.triangle, std::fabs(x.normal.dot(x.towards)));
+    for (std::size_t b = 0; b < surfaces.band_count(); ++b) sum[b] += weight[b] * shape * emitted[b];
   }
-  /// What becomes of the path at x, a mirror or glass. It scatters with the chance `scattered` [0,1], which
-  /// is lowered where it and the ways on add up to more than 1; or it goes on, from origin() along
-  /// direction(), with weight[b] for that.
+  /// What becomes of the path at x, a surface that sends rays on. It scatters with the chance `scattered`
+  /// [0,1], which is lowered where it and the ways on add up to more than 1; or it goes on, from origin()
+  /// along direction(), with weight[b] for that.
   Next choose(const SurfacePoint& x, float& scattered, float* weight) {
     if (steps_ == SpecularNumbers::kMostSteps) return Next::kEnds;
     const SpecularSurface& surface = room_->surfaces().specular(x.triangle);
     const float on = surface.shares(x.normal.dot(x.towards), x.front, step_);
     if (scattered + on > 1) scattered /= scattered + on;
-    const float u = numbers_->at(key_, steps_++);
+    const float u = numbers_->at(key_, steps_);
+    std::array<float, 2> spread{};
+    if (surface.is_rough()) spread = numbers_->spread(key_, steps_);
+    ++steps_;
     if (u < scattered) return Next::kScatters;
-    if (!surface.choose(x, u - scattered, Survival::kRoulette, step_, 1 - scattered)) return Next::kEnds;
+    if (!surface.choose(x, u - scattered, spread, Survival::kRoulette, step_, 1 - scattered))
+      return Next::kEnds;
     for (std::size_t b = 0; b < room_->band_count(); ++b) weight[b] *= step_.share()[b] / step_.chance;
-    is_bent_ = is_bent_ || step_.bends;
+    if (step_.pdf_per_sr > 0) {
+      is_bent_ = false;
+      pdf_per_sr_ = step_.pdf_per_sr;
+      way_ = 0;
+    } else {
+      is_bent_ = is_bent_ || step_.bends;
+    }
     body_ = room_->surfaces().body_beyond(x.triangle, step_.front, body_);
     origin_ = room_->rays().ray_origin(x.triangle, x.u, x.v, step_.front);
     return Next::kGoesOn;
@@ -71,15 +92,20 @@ class SpecularPath {
   const Vec3f& origin() const { return origin_; }
   const Vec3f& direction() const { return step_.direction; }
   /// Light is scattered here: what comes next is seen by shadow rays again.
-  void scatter() { is_bent_ = false; }
+  void scatter() {
+    is_bent_ = false;
+    pdf_per_sr_ = 0;
+  }
 
  private:
   const Room* room_;
   const SpecularNumbers* numbers_;
   PathKey key_;
   SpecularStep step_;
-  bool is_bent_ = false;
-  std::uint32_t steps_ = 0;  // over mirrors and panes in all
+  bool is_bent_ = false;     // shadow rays do not find what it meets
+  float pdf_per_sr_;         // of the ray that left a lobe last; 0 where none did
+  float way_ = 0;            // from there
+  std::uint32_t steps_ = 0;  // in all
   TriangleId body_;          // of glass that the path was sent into
   Vec3f origin_{0, 0, 0};
 };

@@ -25,10 +25,15 @@ SpecularSurface::SpecularSurface(const Material& material, double metres_per_uni
     : reflects_(material.non_diffuse.reflects_specularly()),
       transmits_(material.non_diffuse.transmits_specularly()),
       solid_(material.non_diffuse.is_solid),
+      rough_mirror_(material.non_diffuse.has_gloss()),
+      rough_across_(material.non_diffuse.has_glossy_transmission()),
       law_(material.non_diffuse.angle_law),
       ior_(material.non_diffuse.index_of_refraction) {
   const NonDiffusePart& part = material.non_diffuse;
   const auto bands = static_cast<std::size_t>(material.reflectance.size());
+  const GlossLobe lobe = solid_ ? GlossLobe::kGgx : part.lobe;
+  if (rough_mirror_) mirror_lobe_ = GlossModel(lobe, part.roughness);
+  if (rough_across_) across_lobe_ = GlossModel(lobe, part.transmission_roughness);
   most_ = by_band(1 - material.reflectance, true, bands);
   reflectance_ = by_band(part.specular_reflectance, reflects_, bands);
   transmittance_ = by_band(part.specular_transmittance, transmits_, bands);
@@ -73,8 +78,8 @@ float SpecularSurface::shares(float cosine, bool front, SpecularStep& step) cons
   return largest(step.reflected) + largest(step.transmitted);
 }
 
-bool SpecularSurface::choose(const SurfacePoint& x, float u, Survival survival, SpecularStep& step,
-                             float most) const {
+bool SpecularSurface::choose(const SurfacePoint& x, float u, const std::array<float, 2>& spread,
+                             Survival survival, SpecularStep& step, float most) const {
   const float cosine = x.normal.dot(x.towards);
   if (!(cosine > 0 && most > 0)) return false;
   const float sum = shares(cosine, x.front, step);
@@ -86,23 +91,24 @@ bool SpecularSurface::choose(const SurfacePoint& x, float u, Survival survival, 
   const float across = largest(step.transmitted);
   step.crosses = across > 0 && u >= scale * mirror;
   step.chance = scale * (step.crosses ? across : mirror);
-  if (!(step.chance > 0)) return false;
-  turn(x, step);
-  return true;
+  return step.chance > 0 && turn(x, spread, step);
 }
 
-bool SpecularSurface::take(const SurfacePoint& x, bool crosses, SpecularStep& step) const {
+bool SpecularSurface::take(const SurfacePoint& x, bool crosses, const std::array<float, 2>& spread,
+                           SpecularStep& step) const {
   const float cosine = x.normal.dot(x.towards);
   if (!(cosine > 0)) return false;
   shares(cosine, x.front, step);
   step.crosses = crosses;
   step.chance = 1;
-  if (!(largest(step.share()) > 0)) return false;
-  turn(x, step);
-  return true;
+  return largest(step.share()) > 0 && turn(x, spread, step);
 }
 
-void SpecularSurface::turn(const SurfacePoint& x, SpecularStep& step) const {
+bool SpecularSurface::turn(const SurfacePoint& x, const std::array<float, 2>& spread,
+                           SpecularStep& step) const {
+  step.pdf_per_sr = 0;
+  if (step.crosses ? rough_across_ : rough_mirror_)
+    return solid_ ? turn_at_facet(x, spread, step) : turn_by_lobe(x, spread, step);
   const float cosine = x.normal.dot(x.towards);
   step.bends = !step.crosses || solid_;
   step.front = step.crosses != x.front;
@@ -117,6 +123,70 @@ void SpecularSurface::turn(const SurfacePoint& x, SpecularStep& step) const {
     const Vec3 d = -x.towards.cast<double>() / eta + (static_cast<double>(cosine) / eta - beyond) * n;
     step.direction = d.normalized().cast<float>();
   }
+  return true;
+}
+
+bool SpecularSurface::turn_by_lobe(const SurfacePoint& x, const std::array<float, 2>& spread,
+                                   SpecularStep& step) const {
+  const GlossModel& lobe = step.crosses ? across_lobe_ : mirror_lobe_;
+  const Frame frame(x.normal);
+  const Vec3f from = frame.to_local(x.towards);
+  Vec3f to;
+  if (!lobe.sample(from, spread[0], spread[1], to)) return false;
+  const GlossValue v = lobe.value(from, to);
+  if (!(v.brdf_per_sr > 0 && v.pdf_per_sr > 0)) return false;
+  shares(v.half_cosine, x.front, step);
+  for (float& share : step.share()) share *= v.brdf_per_sr * to.z() / v.pdf_per_sr;
+  step.pdf_per_sr = v.pdf_per_sr;
+  step.bends = true;
+  step.front = step.crosses != x.front;
+  step.direction = frame.to_world(step.crosses ? Vec3f(to.x(), to.y(), -to.z()) : to);
+  return true;
+}
+
+bool SpecularSurface::turn_at_facet(const SurfacePoint& x, const std::array<float, 2>& spread,
+                                    SpecularStep& step) const {
+  const GlossModel& lobe = step.crosses ? across_lobe_ : mirror_lobe_;
+  const Frame frame(x.normal);
+  const Vec3f from = frame.to_local(x.towards);
+  const Vec3f facet = lobe.sample_facet(from, spread[0], spread[1]);
+  const float cosine = from.dot(facet);
+  if (!(cosine > 0)) return false;
+  shares(cosine, x.front, step);
+  Vec3f to = 2 * cosine * facet - from;
+  if (step.crosses) {
+    const float eta = static_cast<float>(x.front ? ior_ : 1 / ior_);
+    const auto beyond =
+        static_cast<float>(refracted_cosine(static_cast<double>(eta), static_cast<double>(cosine)));
+    to = (cosine / eta - beyond) * facet - from / eta;
+  }
+  to.normalize();
+  if (step.crosses ? !(to.z() < 0) : !(to.z() > 0)) return false;
+  // Reflected light leaves over the heights that it came by; refracted light finds others [WAL07, eq. 41].
+  float unmasked = lobe.unmasked(to);
+  if (!step.crosses) {
+    const GlossValue v = lobe.value(from, to);
+    unmasked = v.brdf_per_sr * to.z() / v.pdf_per_sr;
+  }
+  for (float& share : step.share()) share *= unmasked;
+  step.bends = true;
+  step.front = step.crosses != x.front;
+  step.direction = frame.to_world(to);
+  return true;
+}
+
+bool SpecularSurface::value(const SurfacePoint& x, const Vec3f& from, SpecularStep& step) const {
+  const Frame frame(x.normal);
+  Vec3f light = frame.to_local(from);
+  step.crosses = light.z() < 0;
+  if (!(step.crosses ? spreads_transmitted() : spreads_reflected())) return false;
+  light.z() = std::fabs(light.z());
+  const GlossValue v = (step.crosses ? across_lobe_ : mirror_lobe_).value(frame.to_local(x.towards), light);
+  if (!(v.brdf_per_sr > 0)) return false;
+  shares(v.half_cosine, x.front, step);
+  for (float& share : step.share()) share *= v.brdf_per_sr;
+  step.pdf_per_sr = v.pdf_per_sr;
+  return true;
 }
 
 float SpecularSurface::left_inside(std::size_t band, float way) const {

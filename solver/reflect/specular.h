@@ -1,14 +1,17 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "scenes/model/material.h"
+#include "solver/reflect/gloss.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
 
-/// How light goes on from a surface as one ray: into the mirror direction, or across. To be used from hit to
-/// hit, so that memory is asked for once; a room without such surfaces needs one of no bands.
+/// How light goes on from a surface as one ray: into the mirror direction, or across, or near these where the
+/// surface is rough. To be used from hit to hit, so that memory is asked for once; a room without such
+/// surfaces needs one of no bands.
 struct SpecularStep {
   explicit SpecularStep(std::size_t bands) : reflected(bands), transmitted(bands) {}
 
@@ -19,9 +22,13 @@ struct SpecularStep {
   bool crosses = false;            ///< It is the transmitted one.
   bool bends = true;               ///< It is not the straight way on, so shadow rays do not find it.
   float chance = 0;                ///< Of this choice (0,1].
+  /// Density of the direction [1/sr] where DirectLight finds luminaires there too; 0 where it does not.
+  float pdf_per_sr = 0;
 
-  /// By band, the share of the arriving light that goes this way.
+  /// By band, the share of the arriving light that goes this way; of rough surfaces, what their lobe sends
+  /// there over the density.
   const std::vector<float>& share() const { return crosses ? transmitted : reflected; }
+  std::vector<float>& share() { return crosses ? transmitted : reflected; }
 };
 
 /// How often the ways on from a surface are chosen.
@@ -30,10 +37,11 @@ enum class Survival {
   kCertain,   ///< In proportion to these; the ray always goes on.
 };
 
-/// What of a material is carried on by rays: mirror reflection and clear transmission of smooth surfaces.
-/// With the Lambertian part it never adds up to more than the light that arrives. Light that goes on and back
-/// along the same way meets the same shares, so a ray may be followed from either end; radiance is meant as
-/// that of vacuum, L/n^2.
+/// What of a material is carried on by rays: reflection and transmission, sharp or as the lobes of gloss.h.
+/// What a rough thin sheet lets through is what it would reflect, mirrored at it; rough bodies of glass
+/// refract at the facets of GGX [WAL07]. With the Lambertian part it never adds up to more than the light
+/// that arrives. Light that goes on and back along the same way meets the same shares, so a ray may be
+/// followed from either end; radiance is meant as that of vacuum, L/n^2.
 class SpecularSurface {
  public:
   SpecularSurface() = default;
@@ -43,30 +51,45 @@ class SpecularSurface {
   bool exists() const { return reflects_ || transmits_; }
   bool transmits() const { return transmits_; }
   /// Light crosses it straight on.
-  bool is_pane() const { return transmits_ && !solid_; }
+  bool is_pane() const { return transmits_ && !solid_ && !rough_across_; }
   /// Light is bent where it crosses; the back is the inside of a body.
   bool is_body() const { return transmits_ && solid_; }
   bool absorbs_inside() const { return !absorption_.empty(); }
+  bool is_rough() const { return rough_mirror_ || rough_across_; }
+  /// Light that DirectLight finds is scattered: by the reflected lobe, by that of a thin sheet.
+  bool spreads_reflected() const { return rough_mirror_ && !solid_; }
+  bool spreads_transmitted() const { return rough_across_ && !solid_; }
 
   /// Shares of the light that arrives at `cosine` (0,1] to the normal of a side. Returns the sum of the
   /// chances that the ways would have by roulette; it may be above 1 where bands differ.
   float shares(float cosine, bool front, SpecularStep& step) const;
   /// Chooses a way for light seen from x.towards by a number that is uniform in [0,most); 0 < most <= 1 is
-  /// what all chances may add up to. False if it ends here.
-  bool choose(const SurfacePoint& x, float u, Survival survival, SpecularStep& step, float most = 1) const;
+  /// what all chances may add up to. Two uniform numbers spread it. False if it ends here.
+  bool choose(const SurfacePoint& x, float u, const std::array<float, 2>& spread, Survival survival,
+              SpecularStep& step, float most = 1) const;
   /// Takes one of the two ways for certain. False if nothing goes there.
-  bool take(const SurfacePoint& x, bool crosses, SpecularStep& step) const;
+  bool take(const SurfacePoint& x, bool crosses, const std::array<float, 2>& spread,
+            SpecularStep& step) const;
+  /// For light that comes from a unit direction, on either side: step.share() becomes the BRDF or BTDF [1/sr]
+  /// by band, seen from x.towards, and step.pdf_per_sr the density with which the way would be drawn there.
+  /// False if nothing is spread there.
+  bool value(const SurfacePoint& x, const Vec3f& from, SpecularStep& step) const;
   /// What is left of light after a way inside the body that ended on this surface, of one band; the way is in
   /// the units of the constructor.
   float left_inside(std::size_t band, float way) const;
 
  private:
-  /// Finds the direction of the way that `step` crosses or does not.
-  void turn(const SurfacePoint& x, SpecularStep& step) const;
+  /// Finds the direction of the way that `step` crosses or does not. False if a lobe sends it nowhere.
+  bool turn(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
+  bool turn_by_lobe(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
+  bool turn_at_facet(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
 
   bool reflects_ = false;
   bool transmits_ = false;
   bool solid_ = false;
+  bool rough_mirror_ = false;
+  bool rough_across_ = false;
+  GlossModel mirror_lobe_, across_lobe_;
   AngleLaw law_ = AngleLaw::kConstant;
   double ior_ = 1;
   std::vector<float> most_;           // by band: what the Lambertian part leaves

@@ -42,6 +42,8 @@ class SurfaceModel {
     return std::visit([&](const auto& lobe) { return lobe.sample(x, u0, u1); }, lobe_at(x));
   }
 
+  SurfaceId surface(TriangleId t) const { return SurfaceId(surface_of(t)); }
+
   /// Whether any surface of the room has a part that is carried on by rays; whether light crosses any.
   bool any_specular() const { return any_specular_; }
   bool any_transmits() const { return any_transmits_; }
@@ -49,6 +51,10 @@ class SurfaceModel {
   const SpecularSurface& specular(TriangleId t) const { return specular_[surface_of(t)]; }
   bool is_specular(TriangleId t, bool front) const {
     return any_specular_ && specular(t).exists() && side(t, front).reflects;
+  }
+  /// Whether DirectLight finds light that lobes of a specular triangle spread.
+  bool spreads(TriangleId t) const {
+    return specular(t).spreads_reflected() || specular(t).spreads_transmitted();
   }
   /// The body of glass that absorbed light on a way that ended on a side of a triangle: `known`, where a ray
   /// has been sent into one, else the one whose inside that side is. Not valid if there is none.

@@ -29,6 +29,8 @@ enum class RngPurpose : std::uint32_t {
   kPilotLight,
   kSpecular,
   kSpecularCamera,
+  kSpread,
+  kSpreadCamera,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

@@ -85,6 +85,7 @@ class WayOut {
     const TriangleId t(hits.triangle[lane]);
     const double kept = surfaces.reflectance(transport_.mesh().triangle(t).surface)[band_];
     if (!surfaces.is_specular(t, hits.front[lane])) return kept < 1;
+    if (surfaces.specular(t).is_rough()) return true;  // no lobe keeps all light
     SpecularStep at_normal(transport_.bands());
     surfaces.specular(t).shares(1, hits.front[lane], at_normal);
     const auto mirrored = static_cast<double>(at_normal.reflected[band_]);

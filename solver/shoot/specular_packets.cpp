@@ -52,15 +52,26 @@ float SpecularPackets::chances(const PacketBlock& block, const Hit16& hits, int 
 void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
                                WaitingPackets& next) {
   if (!surfaces_.is_specular(TriangleId(hits.triangle[lane]), hits.front[lane])) return;
-  carry_on(block, hits, lane, rng_.uniform4(number_of(block, lane), batch_, step)[0], 1, next);
+  const std::array<float, 4> u = rng_.uniform4(number_of(block, lane), batch_, step);
+  carry_on(block, hits, lane, u[0], {u[1], u[2]}, 1, next);
 }
 
-void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u, float most,
-                               WaitingPackets& next) {
+void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
+                               float u, float most, WaitingPackets& next) {
+  std::array<float, 2> spread{};
+  if (surfaces_.specular(TriangleId(hits.triangle[lane])).is_rough()) {
+    const std::array<float, 4> numbers = rng_.uniform4(number_of(block, lane), batch_, step);
+    spread = {numbers[1], numbers[2]};
+  }
+  carry_on(block, hits, lane, u, spread, most, next);
+}
+
+void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u,
+                               const std::array<float, 2>& spread, float most, WaitingPackets& next) {
   const TriangleId t(hits.triangle[lane]);
   SurfacePoint x = surface_point(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]);
   x.towards = -block.rays.direction(lane);
-  if (!surfaces_.specular(t).choose(x, u, Survival::kRoulette, way_, most)) return;
+  if (!surfaces_.specular(t).choose(x, u, spread, Survival::kRoulette, way_, most)) return;
   const std::size_t bands = power_.size();
   const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * bands];
   const std::size_t surface = mesh_.triangle(t).surface.index();

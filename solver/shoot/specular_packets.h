@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -31,12 +32,14 @@ class SpecularPackets {
   void carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
                 WaitingPackets& next);
   /// The same by a given number, uniform in [0,most): the ways on have the chance `most` in all at most.
-  void carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u, float most,
-                WaitingPackets& next);
+  void carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step, float u,
+                float most, WaitingPackets& next);
   /// Chances of the ways on from what a lane met, in all; 0 where there are none.
   float chances(const PacketBlock& block, const Hit16& hits, int lane);
 
  private:
+  void carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u,
+                const std::array<float, 2>& spread, float most, WaitingPackets& next);
   /// Names the random numbers of a packet at what it met.
   static std::uint64_t number_of(const PacketBlock& block, int lane) {
     return std::uint64_t{block.way[lane].steps} << 32 | block.id[lane];

@@ -202,12 +202,13 @@ class WalkTask {
       if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       std::vector<std::int64_t>& part = block.way[lane].bent ? zones_.indirect : incident;
       for (std::size_t b = 0; b < bands; ++b) book(part[zone[lane].index() * bands + b], quanta[b], shared_);
-      reflect(surface, block, lane, bits);
+      reflect(surface, block, lane, bounce, bits);
     }
   }
 
   /// Absorbs a packet, scatters it, or sends it on as a ray.
-  void reflect(SurfaceId surface, const PacketBlock& block, int lane, const BitLanes& bits) {
+  void reflect(SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce,
+               const BitLanes& bits) {
     const auto k = static_cast<std::size_t>(lane);
     const std::int64_t* quanta = &block.power[k * bands_];
     const double* rho = transport_.surface_model().reflectance(surface);
@@ -219,7 +220,7 @@ class WalkTask {
     if (!(u < survival)) {
       for (std::size_t b = 0; b < bands_; ++b) absorbed[b] += quanta[b];
       if (on > 0)
-        specular_.carry_on(block, hits_, lane, u - static_cast<float>(survival),
+        specular_.carry_on(block, hits_, lane, bounce, u - static_cast<float>(survival),
                            1 - static_cast<float>(survival), carried_);
       return;
     }

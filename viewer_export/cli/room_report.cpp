@@ -90,15 +90,22 @@ std::string materials_text(const Scene& scene) {
 std::vector<std::string> models_of(const Material& material) {
   const NonDiffusePart& part = material.non_diffuse;
   const bool crosses = part.transmits_specularly();
+  const bool is_glass = crosses && part.angle_law == AngleLaw::kDielectric;
   std::vector<std::string> models;
-  if (crosses && part.angle_law == AngleLaw::kDielectric)
+  if (is_glass)
     models.emplace_back(part.is_solid ? "solid glass" : "glass pane");
+  else if (part.has_glossy_transmission())
+    models.emplace_back("hazy sheet");
   else if (crosses)
     models.emplace_back("clear sheet");
-  if (part.reflects_specularly() && part.angle_law != AngleLaw::kDielectric)
-    models.emplace_back(part.angle_law == AngleLaw::kSchlick ? "metal" : "mirror");
-  if (part.has_gloss()) models.emplace_back("gloss (not modelled)");
-  if (part.has_glossy_transmission()) models.emplace_back("glossy transmission (not modelled)");
+  if (is_glass && (part.has_gloss() || part.has_glossy_transmission())) models.back().insert(0, "rough ");
+  if (part.reflects_specularly() && !is_glass) {
+    const bool is_metal = part.angle_law == AngleLaw::kSchlick;
+    if (part.has_gloss())
+      models.emplace_back(is_metal ? "rough metal" : "gloss");
+    else
+      models.emplace_back(is_metal ? "metal" : "mirror");
+  }
   if (NonDiffusePart::is_given(part.diffuse_transmittance))
     models.emplace_back("diffuse transmission (not modelled)");
   return models;

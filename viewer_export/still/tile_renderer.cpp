@@ -42,7 +42,7 @@ TileRenderer::TileRenderer(const Room& room, const Solution& solution, const Pin
                              .seed = settings.seed},
               &stop),
       path_(room, direct_, settings.seed),
-      specular_(settings.seed, RngPurpose::kSpecularCamera),
+      specular_(settings.seed, RngPurpose::kSpecularCamera, RngPurpose::kSpreadCamera),
       all_(room.band_count(), 1.0F) {}
 
 void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
@@ -143,7 +143,7 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
 
   const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
   for (std::size_t b = 0; b < bands; ++b) sums.albedo[b] += sums.share * reflectance[b];
-  add_seen(point, all_.data(), sample, sums, batch);
+  add_seen(point, all_.data(), 1, sample, sums, batch);
   if (surfaces.is_specular(hit.triangle, hit.front))
     add_over_mirrors(point, hit.distance, sample, sums, batch);
 }
@@ -158,7 +158,9 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
     SurfacePoint x;
     std::vector<float> through;
     std::uint32_t steps;
-    TriangleId body;  // of glass that was looked into
+    TriangleId body;   // of glass that was looked into
+    float pdf_per_sr;  // of the ray from a lobe that still goes straight, as of SpecularPath; else 0
+    float way;         // from there
   };
   const RayTracer& rays = room_->rays();
   const SurfaceModel& surfaces = room_->surfaces();
@@ -166,18 +168,27 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
   SpecularStep step(field_.band_count());
   std::uint32_t numbers = 0;
   std::vector<Look> looks;
-  looks.push_back({x, all_, 0, {}});
+  looks.push_back({x, all_, 0, {}, 0, 0});
   surfaces.attenuate(surfaces.body_around(x.triangle, x.front, {}), way, looks.back().through.data());
   const auto follow = [&](const Look& from) {
+    // What a lobe about a shading normal sends into the surface is lost.
+    if (!(step.direction.dot(side_normal(rays, from.x.triangle, from.x.u, from.x.v, step.front)) > 0)) return;
     Hit hit;
     if (!rays.closest(rays.ray_origin(from.x.triangle, from.x.u, from.x.v, step.front), step.direction, hit))
       return;
-    Look next{seen_point(hit, step.direction), from.through, from.steps + 1,
-              surfaces.body_beyond(from.x.triangle, step.front, from.body)};
+    Look next{seen_point(hit, step.direction),
+              from.through,
+              from.steps + 1,
+              surfaces.body_beyond(from.x.triangle, step.front, from.body),
+              step.bends ? step.pdf_per_sr : from.pdf_per_sr,
+              hit.distance};
+    if (!step.bends) next.way += from.way;
+    const bool is_shared = next.pdf_per_sr > 0 && sums.integrator != Integrator::kZones;
+    const float found = is_shared ? direct_.found_by_lobe(hit.triangle, next.way, next.pdf_per_sr) : 1;
     for (std::size_t b = 0; b < next.through.size(); ++b) next.through[b] *= step.share()[b] / step.chance;
     surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, next.body), hit.distance,
                        next.through.data());
-    add_seen(next.x, next.through.data(), sample, sums, batch);
+    add_seen(next.x, next.through.data(), found, sample, sums, batch);
     if (surfaces.is_specular(hit.triangle, hit.front)) looks.push_back(std::move(next));
   };
   while (!looks.empty() && numbers < SpecularNumbers::kMostSteps) {
@@ -189,23 +200,29 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
     const Vec3f& n = look.x.normal;
     const Vec3f mirrored = 2 * n.dot(look.x.towards) * n - look.x.towards;
     if (!(n.dot(look.x.towards) > 0 && mirrored.dot(normal) > 0)) look.x.normal = normal;
+    if (surfaces.spreads(look.x.triangle) && sums.integrator != Integrator::kZones)
+      add_highlights(look.x, look.through.data(), sample, sums);
+    std::array<float, 2> spread{};
     if (look.steps < kSplitSteps) {
-      for (const bool crosses : {false, true})
-        if (surface.take(look.x, crosses, step)) follow(look);
+      for (const bool crosses : {false, true}) {
+        if (surface.is_rough()) spread = specular_.spread(key, numbers++);
+        if (surface.take(look.x, crosses, spread, step)) follow(look);
+      }
       continue;
     }
     const Survival survival = look.steps < kCertainSteps ? Survival::kCertain : Survival::kRoulette;
-    if (surface.choose(look.x, specular_.at(key, numbers++), survival, step)) follow(look);
+    if (surface.is_rough()) spread = specular_.spread(key, numbers);
+    if (surface.choose(look.x, specular_.at(key, numbers++), spread, survival, step)) follow(look);
   }
 }
 
-void TileRenderer::add_seen(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
-                            GatherBatch& batch) const {
+void TileRenderer::add_seen(const SurfacePoint& x, const float* through, float found, int sample,
+                            PixelSums& sums, GatherBatch& batch) const {
   const std::size_t bands = field_.band_count();
   const SurfaceModel& surfaces = room_->surfaces();
   const float* emitted = surfaces.emitted(x.triangle, x.front);
   const float towards_eye = std::fabs(room_->rays().normal(x.triangle, x.u, x.v).dot(x.towards));
-  const float emission = sums.share * surfaces.emission_shape(x.triangle, towards_eye);
+  const float emission = found * sums.share * surfaces.emission_shape(x.triangle, towards_eye);
   for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += emission * emitted[b] * through[b];
   if (sums.integrator != Integrator::kZones) {
     add_light(x, through, sample, sums, batch);
@@ -220,6 +237,16 @@ void TileRenderer::add_seen(const SurfacePoint& x, const float* through, int sam
       sums.indirect[b] += share_of_part * (all[b] - direct[b]) * through[b];
   }
   for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += sums.share * direct[b] * through[b];
+}
+
+void TileRenderer::add_highlights(const SurfacePoint& x, const float* through, int sample,
+                                  PixelSums& sums) const {
+  const int shadow_rays = settings_->light_samples;
+  std::vector<float>& weight = *sums.weight;
+  for (std::size_t b = 0; b < field_.band_count(); ++b)
+    weight[b] = sums.share / static_cast<float>(shadow_rays) * through[b];
+  for (int i = 0; i < shadow_rays; ++i)
+    direct_.add_lobe_sample(x, sums.sampler.light(sample, i, shadow_rays), weight.data(), sums.direct);
 }
 
 void TileRenderer::add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,

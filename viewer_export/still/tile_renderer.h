@@ -59,12 +59,14 @@ class TileRenderer {
   struct PixelSums;
 
   void add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const;
-  /// What scatters or emits at x, of which the film gets `through` per band.
-  void add_seen(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
+  /// What scatters or emits at x, of which the film gets `through` per band; of what emits the share `found`.
+  void add_seen(const SurfacePoint& x, const float* through, float found, int sample, PixelSums& sums,
                 GatherBatch& batch) const;
+  /// What the lobes of a rough surface at x send of luminaires that shadow rays find.
+  void add_highlights(const SurfacePoint& x, const float* through, int sample, PixelSums& sums) const;
   void add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
                  GatherBatch& batch) const;
-  /// What is seen over x, a mirror or glass that a ray of length `way` met.
+  /// What is seen over x, a mirror, gloss or glass that a ray of length `way` met.
   void add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums, GatherBatch& batch) const;
   SurfacePoint seen_point(const Hit& hit, const Vec3f& direction) const;
 

@@ -58,6 +58,7 @@ Material convert_mgf_material(const MgfMaterial& m, const std::string& name, con
   if (m.ts.value > 0) rest.specular_transmittance = fitted(m.ts, 1, changed);
   rest.roughness = m.rs_roughness;
   rest.transmission_roughness = m.ts_roughness;
+  rest.lobe = GlossLobe::kWard;
   if (m.ir_real > 1 && m.ir_imaginary == 0) rest.index_of_refraction = m.ir_real;
   if (m.sides == 1 && rest.index_of_refraction > 1 && m.ts.value > 0 && rest.transmits_specularly()) {
     // One-sided and refracting: the surface of a body of glass. rs and ts are those of one passage through it

@@ -47,6 +47,21 @@ void read_sides(const JsonCursor& at, Material& material) {
   }
 }
 
+/// "roughness" of what goes on as a ray, and the "lobe" that it spreads to.
+void read_gloss(const JsonCursor& at, NonDiffusePart& part) {
+  const auto roughness = at.find("roughness");
+  const auto lobe = at.find("lobe");
+  if (lobe && !roughness) lobe->fail("a lobe without a roughness", "Give the \"roughness\", 0 to 1.");
+  if (!roughness) return;
+  if (!part.reflects_specularly() && !part.transmits_specularly())
+    roughness->fail("a roughness of nothing: the material is Lambertian",
+                    "Give a \"mirror\", \"metal\", \"transmittance\" or \"glass\" share too.");
+  part.roughness = part.transmission_roughness = roughness->number_in(0, 1);
+  if (!lobe) return;
+  const std::string name = lobe->choice({"ggx", "ward", "phong"});
+  part.lobe = name == "ward" ? GlossLobe::kWard : name == "phong" ? GlossLobe::kPhong : GlossLobe::kGgx;
+}
+
 /// The keys of what goes on as a ray: "mirror" or "metal", "transmittance", or "glass" alone.
 void read_specular(const JsonCursor& at, const BandSet& bands, Material& material) {
   NonDiffusePart& part = material.non_diffuse;
@@ -93,7 +108,7 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
   for (const auto& [name, at] : materials.members()) {
     at.expect_object({"reflectance", "radiance", "exitance", "luminance_cd_m2", "exitance_lm_m2",
                       "total_power", "total_flux_lm", "emission_color", "emission_exponent", "sides",
-                      "emission_sides", "mirror", "metal", "transmittance", "glass"});
+                      "emission_sides", "mirror", "metal", "transmittance", "glass", "roughness", "lobe"});
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;
     material.name = name;
@@ -103,6 +118,7 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
       material.reflectance = read_reflectance(*reflectance, scene.bands);
     }
     read_specular(at, scene.bands, material);
+    read_gloss(at, material.non_diffuse);
     read_sides(at, material);
     const MaterialId id(scene.materials.size());
     const char* emission = emission_key(at);

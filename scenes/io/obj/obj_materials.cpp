@@ -162,6 +162,7 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tel
   }
   // Phong exponent to microfacet roughness [WAL07].
   rest.roughness = shares.is_sharp ? 0 : std::sqrt(2 / (m.shininess + 2));
+  rest.lobe = GlossLobe::kPhong;
   if (shares.is_metal) rest.angle_law = AngleLaw::kSchlick;
   if (shares.is_glass) {
     rest.angle_law = AngleLaw::kDielectric;

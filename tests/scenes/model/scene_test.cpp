@@ -151,15 +151,16 @@ TEST(FinishScene, TransportsOneBandWhenNothingHasColour) {
 TEST(FinishScene, SaysWhatItIgnoresOncePerMaterial) {
   Scene scene = small_room();
   scene.materials[0].non_diffuse.specular_reflectance = Eigen::Array3d(0.25, 0.25, 0.25);
-  scene.surfaces.push_back(scene.surfaces[0]);
-  Scene smooth = scene;
-  finish_scene(smooth);
-  EXPECT_TRUE(smooth.warnings.empty()) << "a mirror is modelled";
   scene.materials[0].non_diffuse.roughness = 0.1;
+  scene.surfaces.push_back(scene.surfaces[0]);
+  Scene modelled = scene;
+  finish_scene(modelled);
+  EXPECT_TRUE(modelled.warnings.empty()) << "gloss is modelled";
+  scene.materials[0].non_diffuse.diffuse_transmittance = Eigen::Array3d(0.25, 0.25, 0.25);
   finish_scene(scene);
   ASSERT_EQ(scene.warnings.size(), 1U);
   EXPECT_THAT(scene.warnings[0], HasSubstr("wall"));
-  EXPECT_THAT(scene.warnings[0], HasSubstr("glossy reflectance 0.25"));
+  EXPECT_THAT(scene.warnings[0], HasSubstr("diffuse transmittance 0.25"));
 }
 
 TEST(FinishScene, WarnsOfLightOverMirrorsThatStillsLack) {
@@ -169,6 +170,10 @@ TEST(FinishScene, WarnsOfLightOverMirrorsThatStillsLack) {
   finish_scene(without);
   EXPECT_TRUE(without.warnings.empty()) << "rays meet luminaires with an area";
   scene.lights.emplace_back(PointLight{"bulb", {0, 0, 1}, Eigen::Array3d(2, 2, 2)});
+  Scene rough = scene;
+  rough.materials[0].non_diffuse.roughness = 0.1;
+  finish_scene(rough);
+  EXPECT_TRUE(rough.warnings.empty()) << "shadow rays find what gloss spreads";
   finish_scene(scene);
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("without area and mirrors or bodies of glass ('wall')")));
 }
@@ -317,6 +322,7 @@ TEST(ContentHash, DependsOnWhatLightSeesAndNothingElse) {
       changed([](Scene& s) { s.materials[0].non_diffuse.specular_transmittance = Spectrum::Ones(3); }),
       changed([](Scene& s) { s.materials[0].non_diffuse.roughness = 0.1; }),
       changed([](Scene& s) { s.materials[0].non_diffuse.transmission_roughness = 0.1; }),
+      changed([](Scene& s) { s.materials[0].non_diffuse.lobe = GlossLobe::kPhong; }),
       changed([](Scene& s) { s.materials[0].non_diffuse.index_of_refraction = 1.5; }),
       changed([](Scene& s) { s.materials[0].non_diffuse.angle_law = AngleLaw::kSchlick; }),
       changed([](Scene& s) { s.materials[0].non_diffuse.is_solid = true; }),

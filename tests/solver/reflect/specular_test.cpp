@@ -142,7 +142,7 @@ TEST(SpecularSurface, RaysAreBentBySnellsLawAndComeBackTheSameWay) {
   const SpecularSurface body(material_of(0, glass(1.5, true)), 1);
   for (const double angle : {0.0, 20.0, 50.0, 80.0}) {
     SpecularStep step(1);
-    ASSERT_TRUE(body.choose(seen_at(angle), 0.9999F, Survival::kCertain, step));
+    ASSERT_TRUE(body.choose(seen_at(angle), 0.9999F, {}, Survival::kCertain, step));
     ASSERT_TRUE(step.crosses && step.bends);
     EXPECT_FALSE(step.front) << "it leaves from the other side";
     EXPECT_NEAR(step.direction.norm(), 1, 1e-6);
@@ -152,13 +152,13 @@ TEST(SpecularSurface, RaysAreBentBySnellsLawAndComeBackTheSameWay) {
     inside.normal = {0, 0, -1};
     inside.towards = step.direction;
     SpecularStep back(1);
-    ASSERT_TRUE(body.choose(inside, 0.9999F, Survival::kCertain, back));
+    ASSERT_TRUE(body.choose(inside, 0.9999F, {}, Survival::kCertain, back));
     ASSERT_TRUE(back.crosses);
     EXPECT_NEAR((back.direction - seen_at(angle).towards).norm(), 0, 2e-6);
     EXPECT_NEAR(back.transmitted[0], step.transmitted[0], 2e-6) << "reciprocity";
   }
   SpecularStep inside(1);
-  ASSERT_TRUE(body.choose(seen_at(50, false), 0.9999F, Survival::kCertain, inside));
+  ASSERT_TRUE(body.choose(seen_at(50, false), 0.9999F, {}, Survival::kCertain, inside));
   EXPECT_FALSE(inside.crosses) << "total reflection";
   EXPECT_EQ(inside.reflected[0], 1);
 }
@@ -166,12 +166,12 @@ TEST(SpecularSurface, RaysAreBentBySnellsLawAndComeBackTheSameWay) {
 TEST(SpecularSurface, PanesLetLightStraightOnAndMirrorsTurnIt) {
   SpecularStep step(1);
   const SpecularSurface pane(material_of(0, glass(1.5, false)), 1);
-  ASSERT_TRUE(pane.choose(seen_at(40), 0.9F, Survival::kRoulette, step));
+  ASSERT_TRUE(pane.choose(seen_at(40), 0.9F, {}, Survival::kRoulette, step));
   EXPECT_TRUE(step.crosses);
   EXPECT_FALSE(step.bends);
   EXPECT_EQ((step.direction + seen_at(40).towards).norm(), 0);
   const SpecularSurface silver(material_of(0, mirror(0.9)), 1);
-  ASSERT_TRUE(silver.choose(seen_at(40), 0.2F, Survival::kRoulette, step));
+  ASSERT_TRUE(silver.choose(seen_at(40), 0.2F, {}, Survival::kRoulette, step));
   EXPECT_FALSE(step.crosses);
   EXPECT_TRUE(step.front && step.bends);
   const Vec3f& towards = seen_at(40).towards;
@@ -190,7 +190,7 @@ TEST(SpecularSurface, ChancesAddUp) {
       for (int i = 0; i < kNumbers; ++i) {
         SpecularStep step(1);
         const float u = most * (static_cast<float>(i) + 0.5F) / kNumbers;
-        if (!surface.choose(seen_at(30), u, survival, step, most)) continue;
+        if (!surface.choose(seen_at(30), u, {}, survival, step, most)) continue;
         carried[step.crosses ? 1 : 0] += static_cast<double>(step.share()[0] / step.chance * most) / kNumbers;
       }
       EXPECT_NEAR(carried[0], 0.3, 1e-4);
@@ -198,12 +198,75 @@ TEST(SpecularSurface, ChancesAddUp) {
     }
 }
 
-TEST(SpecularSurface, RoughOnesAreLeftOut) {
-  NonDiffusePart gloss = mirror(0.5);
-  gloss.roughness = 0.1;
-  EXPECT_FALSE(SpecularSurface(material_of(0.2, gloss), 1).exists());
-  gloss.roughness = NonDiffusePart::kSmooth;
-  EXPECT_TRUE(SpecularSurface(material_of(0.2, gloss), 1).exists());
+/// Of light seen at an angle, the share that each way on carries in the mean, reflected and transmitted.
+std::array<double, 2> carried(const Material& m, double angle, bool front = true) {
+  const SpecularSurface surface(m, 1);
+  SpecularStep step(1);
+  std::array<double, 2> sum{};
+  constexpr int kPoints = 1 << 18;
+  for (int i = 0; i < kPoints; ++i) {
+    // A lattice by powers of the root of x^4 = x + 1.
+    const auto at = [i](double root) { return static_cast<float>(i * root - std::floor(i * root)); };
+    if (surface.choose(seen_at(angle, front), at(0.8191725134), {at(0.6710436067), at(0.5497004779)},
+                       Survival::kRoulette, step))
+      sum[step.crosses ? 1 : 0] += static_cast<double>(step.share()[0] / step.chance);
+  }
+  for (double& share : sum) share /= kPoints;
+  return sum;
+}
+
+TEST(SpecularSurface, RoughSheetsSendOnWhatTheirLobesSay) {
+  // Albedos by quadrature (gloss_test.cpp).
+  NonDiffusePart part = mirror(0.3);
+  part.specular_transmittance = Spectrum::Constant(1, 0.5);
+  part.roughness = 0.4;
+  part.transmission_roughness = 0.2;
+  const std::array<std::array<double, 3>, 3> albedo{{{0.78657, 0.94766}, {0.84031, 0.96}, {1, 1}}};
+  for (const GlossLobe lobe : {GlossLobe::kGgx, GlossLobe::kWard, GlossLobe::kPhong}) {
+    part.lobe = lobe;
+    const std::array<double, 2> shares = carried(material_of(0.2, part), 0);
+    EXPECT_NEAR(shares[0], 0.3 * albedo[static_cast<std::size_t>(lobe)][0], 2e-3);
+    EXPECT_NEAR(shares[1], 0.5 * albedo[static_cast<std::size_t>(lobe)][1], 3e-3);
+  }
+}
+
+TEST(SpecularSurface, RoughGlassKeepsMostLight) {
+  // What facets hide is lost.
+  NonDiffusePart part = glass(1.5, true);
+  part.roughness = part.transmission_roughness = 0.3;
+  for (const bool front : {true, false})
+    for (const double angle : {0.0, 30.0, 60.0}) {
+      if (!front && angle > 30) continue;  // most of it is totally reflected
+      const std::array<double, 2> shares = carried(material_of(0, part), angle, front);
+      EXPECT_LT(shares[0] + shares[1], 1.001) << angle;
+      EXPECT_GT(shares[0] + shares[1], front ? 0.93 : 0.75) << angle;
+    }
+  part.roughness = part.transmission_roughness = 0.0201;
+  const std::array<double, 2> smooth = carried(material_of(0, part), 40);
+  EXPECT_NEAR(smooth[0], fresnel(1.5, std::cos(40 * kDegree)).mean(), 2e-3);
+  EXPECT_NEAR(smooth[0] + smooth[1], 1, 3e-3);
+}
+
+TEST(SpecularSurface, LobesAreTheSameForRaysAndForShadowRays) {
+  NonDiffusePart part = mirror(0.3, AngleLaw::kSchlick);
+  part.specular_transmittance = Spectrum::Constant(1, 0.4);
+  part.roughness = part.transmission_roughness = 0.3;
+  const SpecularSurface surface(material_of(0.1, part), 1);
+  SpecularStep ray(1), value(1);
+  const SurfacePoint x = seen_at(35);
+  for (const bool crosses : {false, true})
+    for (float u = 0.05F; u < 1; u += 0.1F) {
+      if (!surface.take(x, crosses, {u, 0.3F}, ray)) continue;
+      ASSERT_TRUE(surface.value(x, ray.direction, value));
+      EXPECT_EQ(value.crosses, crosses);
+      EXPECT_NEAR(value.pdf_per_sr, ray.pdf_per_sr, 1e-3F * ray.pdf_per_sr);
+      const float cosine = std::fabs(ray.direction.z());
+      EXPECT_NEAR(value.share()[0] * cosine, ray.share()[0] * ray.pdf_per_sr,
+                  2e-3F * ray.share()[0] * ray.pdf_per_sr);
+    }
+  NonDiffusePart smooth = mirror(0.5);
+  smooth.roughness = NonDiffusePart::kSmooth;
+  EXPECT_FALSE(SpecularSurface(material_of(0.2, smooth), 1).is_rough());
 }
 
 TEST(SpecularSurface, GlassAbsorbsAlongTheWayInside) {

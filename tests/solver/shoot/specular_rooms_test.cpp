@@ -4,10 +4,12 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "solver/gather/direct_light.h"
+#include "solver/gather/path_tracer.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
 #include "tests/solver/shoot/methods.h"
@@ -183,6 +185,52 @@ TEST(SpecularRooms, FurnaceOfMirrorsAndGlass) {
     for (std::size_t k = 0; k < 6; ++k)
       EXPECT_FALSE(is_at(mean_irradiance(s, k), 1.02 * SpecularFurnace::kIrradiance)) << "surface " << k;
     expect_closed_books(s);
+  }
+}
+
+TEST(SpecularRooms, GlossyWallsSendPacketsWherePathsFindThem) {
+  RoomBuilder room = plates(plate(0, 1), plate(0.3, 0));
+  NonDiffusePart& walls = room.scene().materials[0].non_diffuse;
+  walls.specular_reflectance = one_band(0.8);
+  walls.roughness = 0.3;
+  room.scene().materials[2].non_diffuse.specular_reflectance = one_band(0.5);
+  room.scene().materials[2].non_diffuse.roughness = 0.5;
+  for (const GlossLobe lobe : {GlossLobe::kGgx, GlossLobe::kWard, GlossLobe::kPhong}) {
+    for (Material& m : room.scene().materials) m.non_diffuse.lobe = lobe;
+    const ZoneMesh mesh = room.mesh().mesh;
+    const Room space(room.scene(), mesh);
+    const DirectLight direct(space);
+    const PathTracer tracer(space, direct, 5);
+    const CounterRng rng(8, RngPurpose::kPath);
+    // Ceiling points; each group of 1,024 is one estimate.
+    MeanTest paths;
+    for (std::uint32_t g = 0; g < 32; ++g) {
+      float sum = 0;
+      for (std::uint32_t i = 0; i < 1024; ++i) {
+        const auto u = rng.uniform4(i, g, 0);
+        const auto place = rng.uniform4(i, g, 1);
+        std::vector<TriangleId> ceiling;
+        for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+          if (mesh.triangle(TriangleId(t)).surface.index() == kCeiling) ceiling.push_back(TriangleId(t));
+        const float root = std::sqrt(place[1]);
+        const SurfacePoint x =
+            surface_point(space.rays(), ceiling[static_cast<std::size_t>(place[0] * ceiling.size())],
+                          1 - root, place[2] * root, true);
+        float one = 1.0F / 1024;
+        direct.add_sample(x, {u[0], u[1], u[2]}, &one, &sum);
+        float weight = std::numbers::pi_v<float> * one;
+        tracer.add_indirect(x, place[3], u[3], {i, g, 0, 0}, &weight, &sum);
+      }
+      paths.add(static_cast<double>(sum));
+    }
+    for (const SolveMethod method : kMethods) {
+      const Solution s = solved(room, method, 320'000);
+      const MeanTest packets = mean_irradiance(s, kCeiling);
+      const double error = std::hypot(packets.standard_error(), paths.standard_error());
+      EXPECT_NEAR(packets.mean(), paths.mean(), 5 * error) << "lobe " << static_cast<int>(lobe);
+      EXPECT_LT(5 * error, 0.02 * paths.mean()) << "a bias of 2 % would go unseen";
+      expect_closed_books(s);
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -50,8 +51,9 @@ TEST(SpecularStills, FurnaceIsEvenlyBright) {
   }
 }
 
-/// A lamp of radiance 1 above the eye, and what the eye looks down at: `below`, then a black floor.
-StillImage look_down(const NonDiffusePart& below, Integrator integrator) {
+/// A lamp of radiance 1 above the eye, and what the eye looks down at: `below`, then a black floor; or, if
+/// the lamp is `under`, the lamp in place of the floor.
+StillImage look_down(const NonDiffusePart& below, Integrator integrator, bool under = false, int spp = 16) {
   RoomBuilder room;
   const MaterialId lamp = room.material("lamp", 0, std::numbers::pi);
   const MaterialId black = room.material("black", 0);
@@ -61,9 +63,9 @@ StillImage look_down(const NonDiffusePart& below, Integrator integrator) {
     const Vec3 a(-9, -9, z), b(9, -9, z), c(9, 9, z), d(-9, 9, z);
     room.quad(m, down ? std::array{a, d, c, b} : std::array{a, b, c, d}, 1);
   };
-  level(lamp, 2, true);
+  level(under ? black : lamp, 2, true);
   level(seen, 0, false);
-  level(black, -1, false);
+  level(under ? lamp : black, -1, false);
   const Solution solution = test::dark_solution(room);
   const Room walls(room.scene(), solution.mesh);
   Camera camera;
@@ -72,9 +74,9 @@ StillImage look_down(const NonDiffusePart& below, Integrator integrator) {
   camera.up = {0, 1, 0};
   camera.vertical_fov_deg = 4;
   StillSettings settings;
-  settings.width = settings.height = 4;
+  settings.width = settings.height = 8;
   settings.integrator = integrator;
-  settings.spp = 16;
+  settings.spp = spp;
   const std::atomic<bool> interrupt{false};
   return render_still(walls, solution, camera, settings, {}, interrupt);
 }
@@ -97,6 +99,30 @@ TEST(SpecularStills, LampsAreSeenInMirrorsAndPanesWithTheirShare) {
     EXPECT_NEAR(brightness(pane), 1 / 13.0, 1e-4) << to_string(integrator);
     EXPECT_NEAR(brightness(surface), 0.04, 1e-4) << to_string(integrator);
   }
+}
+
+TEST(SpecularStills, LampsAreSeenInGlossAsFoundByShadowRaysAndByTheLobe) {
+  // Lamps that fill the lobe: the share times the albedo of the lobe along the normal (gloss_test.cpp).
+  NonDiffusePart gloss;
+  gloss.specular_reflectance = Spectrum::Constant(1, 0.7);
+  gloss.roughness = 0.2;
+  NonDiffusePart sheet;
+  sheet.specular_transmittance = Spectrum::Constant(1, 0.6);
+  sheet.transmission_roughness = 0.2;
+  for (const Integrator integrator : {Integrator::kZones, Integrator::kGather, Integrator::kPath})
+    for (const auto& [lobe, albedo] :
+         {std::pair(GlossLobe::kWard, 0.96), std::pair(GlossLobe::kPhong, 1.0)}) {
+      gloss.lobe = sheet.lobe = lobe;
+      for (const bool under : {false, true}) {
+        const StillImage image = look_down(under ? sheet : gloss, integrator, under, 64);
+        MeanTest mean;
+        for (std::size_t p = 0; p < image.pixel_count(); ++p)
+          mean.add(static_cast<double>(image.direct[p] + image.indirect[p]));
+        const double truth = (under ? 0.6 : 0.7) * albedo;
+        EXPECT_TRUE(mean.agrees_with(truth)) << to_string(integrator) << " " << mean.mean() << " " << truth;
+        EXPECT_TRUE(mean.would_notice(0.05, truth)) << to_string(integrator);
+      }
+    }
 }
 
 }  // namespace
