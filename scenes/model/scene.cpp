@@ -113,7 +113,8 @@ void warn_of_light_over_mirrors(Scene& scene, const std::vector<bool>& used) {
     if (!used[i] || !bends(scene.materials[i].non_diffuse)) continue;
     scene.warnings.push_back(fmt::format(
         "The room has {} light(s) without area and mirrors or bodies of glass ('{}'): zones get what comes "
-        "over these, but stills and gathered vertices lack it where it falls on a surface.",
+        "over these, and gathered stills and vertices, but path-traced ones lack it where it falls on a "
+        "surface.",
         scene.lights.size(), scene.materials[i].name));
     return;
   }

@@ -26,12 +26,12 @@ class LuminaireTable {
   /// Per band: radiance along the normal [W/(m2 sr)] of an area, intensity [W/sr], irradiance across the beam
   /// [W/m2], or intensity per candela.
   const float* strength(std::size_t entry) const { return &strength_[entry * bands_]; }
-  /// Area of the emitting sides of a surface, and of the one that an entry belongs to [normalised]; of lights
-  /// that rays do not see 0.
-  float emitting_area(SurfaceId s) const { return area_of_surface_[s.index()]; }
-  float emitting_area(std::size_t entry) const {
-    return entry < areas_.size() ? emitting_area(surface_of_area_[entry]) : 0.0F;
+  /// Surface that an entry belongs to; not valid for lights that rays do not see.
+  SurfaceId surface_of(std::size_t entry) const {
+    return entry < areas_.size() ? surface_of_area_[entry] : SurfaceId();
   }
+  /// Area of the emitting sides of a surface [normalised].
+  float emitting_area(SurfaceId s) const { return area_of_surface_[s.index()]; }
   /// Sum of strength over bands.
   float brightness(std::size_t entry) const { return brightness_[entry]; }
 

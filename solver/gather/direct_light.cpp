@@ -93,28 +93,30 @@ void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<f
 }
 
 void DirectLight::add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
-                                  const float* weight, float* sum) const {
+                                  const CausticShare& counted, const float* weight, float* sum) const {
   if (empty()) return;
   const SpecularSurface& surface = surfaces_->specular(x.triangle);
-  if (surface.spreads_reflected()) add_lobe_of(x, x, u, weight, sum);
+  if (surface.spreads_reflected()) add_lobe_of(x, x, u, counted, weight, sum);
   if (!surface.spreads_transmitted()) return;
   SurfacePoint beyond = x;
   beyond.front = !x.front;
   beyond.normal = -x.normal;
-  add_lobe_of(x, beyond, u, weight, sum);
+  add_lobe_of(x, beyond, u, counted, weight, sum);
 }
 
 void DirectLight::add_lobe_of(const SurfacePoint& x, const SurfacePoint& lit,
-                              const std::array<float, kDimensions>& u, const float* weight,
-                              float* sum) const {
+                              const std::array<float, kDimensions>& u, const CausticShare& counted,
+                              const float* weight, float* sum) const {
   const Arrival light = estimate(lit, ray_origin(*rays_, lit), u);
   if (light.strength == nullptr) return;
   SpecularStep step(band_count());
   if (!surfaces_->specular(x.triangle).value(x, light.towards.normalized(), step)) return;
-  const float area = table_.emitting_area(light.entry);
-  const float seldom = area > 0 ? 1 - share_of_lobe(area, light.towards.norm(), step.pdf_per_sr) : 1.0F;
+  const SurfaceId luminaire = table_.surface_of(light.entry);
+  float share = step.is_wide ? 1 : counted.of(luminaire);
+  if (luminaire.valid())
+    share *= 1 - share_of_lobe(table_.emitting_area(luminaire), light.towards.norm(), step.pdf_per_sr);
   for (std::size_t b = 0; b < band_count(); ++b)
-    sum[b] += weight[b] * seldom * step.share()[b] * light.factor * light.strength[b] * light.pane(b);
+    sum[b] += weight[b] * share * step.share()[b] * light.factor * light.strength[b] * light.pane(b);
 }
 
 float DirectLight::found_by_lobe(TriangleId luminaire, float way, float pdf_per_sr) const {

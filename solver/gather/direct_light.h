@@ -7,6 +7,7 @@
 
 #include "solver/emit/luminaire_choice.h"
 #include "solver/emit/luminaire_table.h"
+#include "solver/gather/caustic_map.h"
 #include "solver/room/room.h"
 #include "solver/sampling/sobol.h"
 #include "solver/trace/surface_point.h"
@@ -46,9 +47,10 @@ class DirectLight {
                             const float* weight, float* sum) const;
 
   /// One sample of what the lobes of a rough surface at x send towards x.towards (SpecularSurface::value):
-  /// adds weight[b] times that to sum[b], of areas only the share that rays drawn from the lobe do not find.
-  void add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
-                       float* sum) const;
+  /// adds weight[b] times that to sum[b], of areas only the share that rays drawn from the lobe do not find,
+  /// of narrow lobes only what is `counted`.
+  void add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
+                       const CausticShare& counted, const float* weight, float* sum) const;
   /// The share of an area's light that is left to rays drawn from a lobe: the balance heuristic [VG95], with
   /// the luminaires of a surface taken as drawn evenly by area. `way`: from the lobe to a point of the
   /// triangle.
@@ -73,7 +75,7 @@ class DirectLight {
   };
   /// add_lobe_sample by the side of the surface that light falls on.
   void add_lobe_of(const SurfacePoint& x, const SurfacePoint& lit, const std::array<float, kDimensions>& u,
-                   const float* weight, float* sum) const;
+                   const CausticShare& counted, const float* weight, float* sum) const;
   /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival.
   bool passes(const Vec3f& origin, const LuminaireSample& sample, std::vector<float>& panes) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;

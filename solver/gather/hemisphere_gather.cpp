@@ -30,6 +30,9 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
                                    const GatherSettings& settings, const StopToken* stop)
     : field_(&field),
       direct_(&direct),
+      caustics_(settings.caustics ? CausticMap(field.room(), field.parts(), settings.seed, stop)
+                                  : CausticMap()),
+      white_(field.band_count(), 1.0F),
       reach_(reach_of_zones(field, direct, settings, stop)),
       most_bounces_(settings.most_bounces),
       rng_(settings.seed, RngPurpose::kHemisphere),
@@ -43,7 +46,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
   Hit hit = y;
   Vec3f along = direction;
   float way = 0;  // from the last surface that scattered the light
-  SpecularPath path(room(), specular_, key);
+  SpecularPath path(room(), specular_, key, &caustics_);
   for (int bounce = 0;;) {
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
@@ -63,7 +66,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
       scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
       if (scattered > 0) add_direct(point, bounce, key, weight, sum);
       if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, light_numbers(bounce, key), weight, sum);
+        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), weight, sum);
       const SpecularPath::Next next = path.choose(point, scattered, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
@@ -94,7 +97,11 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
 
 void HemisphereGather::add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
                                   float* sum) const {
-  direct_->add_reflected_sample(y, light_numbers(bounce, key), 1, weight, sum);
+  const std::array<float, DirectLight::kDimensions> u = light_numbers(bounce, key);
+  direct_->add_reflected_sample(y, u, 1, weight, sum);
+  if (!caustics_.exists()) return;
+  const float* reflectance = room().surfaces().reflectance(y.triangle, y.front);
+  caustics_.add_reflected(y, key.part, true, u[2], {reflectance, std::numbers::inv_pi_v<float>}, weight, sum);
 }
 
 std::array<float, DirectLight::kDimensions> HemisphereGather::light_numbers(int bounce,
@@ -112,6 +119,7 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   const RayTracer& rays = gather_->room().rays();
   // Inside a body of glass most rays would go round for ever, and no one asks for light there.
   if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return;
+  gather_->add_photons(x, u0, u1, key, weight, sum);
   const Vec3f direction = sample_lambert(x.normal, u0, u1);
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(side_normal(rays, x)) > 0)) return;

@@ -1,9 +1,11 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "scenes/model/stop_token.h"
+#include "solver/gather/caustic_map.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/path_key.h"
 #include "solver/gather/radiance_field.h"
@@ -21,6 +23,8 @@ struct GatherSettings {
   int most_bounces = 4;  ///< Bounces after which a hit is read all the same [0, 64].
   /// Look for uneven zones before the first ray, which takes some shadow rays for each zone.
   bool continue_uneven = true;
+  /// Shoot photons for light over mirrors and glass before the first ray (CausticMap); else rays find it.
+  bool caustics = false;
   std::uint64_t seed = 1;
 };
 
@@ -28,8 +32,9 @@ struct GatherSettings {
 /// ([GI98] final gather). Self-emission of what they hit is not read: DirectLight has counted it.
 /// A hit y closer than about the size of its zone, or on a zone whose light is uneven (uneven_zones.h), is
 /// not read; its radiance is taken as rho_y/pi (E_direct(y) + pi L_reflected(z)) with its own shadow ray and
-/// one more cosine-distributed ray to z. Rays go on from mirrors and glass; a luminaire that they meet over a
-/// bent way counts, because no shadow ray finds it. Const members may be called from any thread.
+/// one more cosine-distributed ray to z. Rays go on from mirrors, gloss and glass; a luminaire that they meet
+/// over a bent way counts, because no shadow ray finds it, as far as photons do not. Const members may be
+/// called from any thread.
 class HemisphereGather {
  public:
   /// When `stop` (may be null) is requested, the look for uneven zones ends early, and what is gathered means
@@ -39,9 +44,21 @@ class HemisphereGather {
 
   const Room& room() const { return field_->room(); }
   std::size_t band_count() const { return field_->band_count(); }
+  /// What photons bring to a point is a part of what is gathered there: GatherBatch adds it.
+  const CausticMap& caustics() const { return caustics_; }
   /// True if a hit of this zone at this distance [normalised units] is continued instead of read.
   bool continues(ZoneId zone, float distance) const { return distance < reach_[zone.index()]; }
   const RadianceField& field() const { return *field_; }
+
+  /// An estimate of weight[b]/pi times the irradiance of photons at x for two uniform numbers, added to
+  /// sum[b]. A look at photons costs as much as several rays and has less noise: one in eight takes it.
+  void add_photons(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
+                   float* sum) const {
+    constexpr float kLooks = 0.125F;
+    if (caustics_.exists() && u1 < kLooks)
+      caustics_.add_reflected(x, key.part, false, u0, {white_.data(), std::numbers::inv_pi_v<float> / kLooks},
+                              weight, sum);
+  }
 
   /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
   /// on a mirror or glass, sends back along it to sum[b]. `weight` is used up.
@@ -57,6 +74,8 @@ class HemisphereGather {
 
   const RadianceField* field_;
   const DirectLight* direct_;
+  CausticMap caustics_;
+  std::vector<float> white_;  // by band: 1
   std::vector<float> reach_;  // by zone: hits nearer than this are continued
   int most_bounces_;
   CounterRng rng_;

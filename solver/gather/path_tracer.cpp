@@ -40,7 +40,8 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
     point = surface_point(rays, hit, direction);
     if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, weight, sum);
     if (specular) {
-      if (surfaces.spreads(hit.triangle)) direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, weight, sum);
+      if (surfaces.spreads(hit.triangle))
+        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, {}, weight, sum);
       survival = largest;
       const SpecularPath::Next next = path.choose(point, survival, weight);
       if (next == SpecularPath::Next::kEnds) return;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "solver/gather/caustic_map.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/path_key.h"
 #include "solver/room/room.h"
@@ -41,9 +42,12 @@ class SpecularPath {
 
   /// `pdf_per_sr`: density of the first ray, where it leaves a surface whose light of luminaires is divided
   /// between shadow rays and such rays (DirectLight::found_by_lobe); else 0.
-  SpecularPath(const Room& room, const SpecularNumbers& numbers, const PathKey& key, float pdf_per_sr = 0)
+  /// `photons`: as CausticShare.
+  SpecularPath(const Room& room, const SpecularNumbers& numbers, const PathKey& key,
+               const CausticMap* photons = nullptr, float pdf_per_sr = 0)
       : room_(&room),
         numbers_(&numbers),
+        caustic_{photons, false},
         key_(key),
         step_(room.surfaces().any_specular() ? room.band_count() : 0),
         pdf_per_sr_(pdf_per_sr) {}
@@ -56,12 +60,15 @@ class SpecularPath {
     way_ += hit.distance;
     surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body_), hit.distance, weight);
     if (!(is_bent_ || pdf_per_sr_ > 0) || !surfaces.emits(hit.triangle, hit.front)) return;
-    const float found = is_bent_ ? 1 : direct.found_by_lobe(hit.triangle, way_, pdf_per_sr_);
+    const float found = (is_bent_ ? 1 : direct.found_by_lobe(hit.triangle, way_, pdf_per_sr_)) *
+                        counted().of(surfaces.surface(hit.triangle));
     const SurfacePoint x = surface_point(room_->rays(), hit, along);
     const float* emitted = surfaces.emitted(x.triangle, x.front);
     const float shape = found * surfaces.emission_shape(x.triangle, std::fabs(x.normal.dot(x.towards)));
     for (std::size_t b = 0; b < surfaces.band_count(); ++b) sum[b] += weight[b] * shape * emitted[b];
   }
+  /// What of light over mirrors, glass and gloss to where it was scattered last this path is to count.
+  CausticShare counted() const { return is_wide_ ? CausticShare{} : caustic_; }
   /// What becomes of the path at x, a surface that sends rays on. It scatters with the chance `scattered`
   /// [0,1], which is lowered where it and the ways on add up to more than 1; or it goes on, from origin()
   /// along direction(), with weight[b] for that.
@@ -78,6 +85,7 @@ class SpecularPath {
     if (!surface.choose(x, u - scattered, spread, Survival::kRoulette, step_, 1 - scattered))
       return Next::kEnds;
     for (std::size_t b = 0; b < room_->band_count(); ++b) weight[b] *= step_.share()[b] / step_.chance;
+    is_wide_ = is_wide_ || step_.is_wide;
     if (step_.pdf_per_sr > 0) {
       is_bent_ = false;
       pdf_per_sr_ = step_.pdf_per_sr;
@@ -93,15 +101,18 @@ class SpecularPath {
   const Vec3f& direction() const { return step_.direction; }
   /// Light is scattered here: what comes next is seen by shadow rays again.
   void scatter() {
-    is_bent_ = false;
+    is_bent_ = is_wide_ = false;
     pdf_per_sr_ = 0;
+    caustic_.none = true;
   }
 
  private:
   const Room* room_;
   const SpecularNumbers* numbers_;
+  CausticShare caustic_;
   PathKey key_;
   SpecularStep step_;
+  bool is_wide_ = false;     // it came over a wide lobe
   bool is_bent_ = false;     // shadow rays do not find what it meets
   float pdf_per_sr_;         // of the ray that left a lobe last; 0 where none did
   float way_ = 0;            // from there

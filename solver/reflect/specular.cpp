@@ -32,6 +32,8 @@ SpecularSurface::SpecularSurface(const Material& material, double metres_per_uni
   const NonDiffusePart& part = material.non_diffuse;
   const auto bands = static_cast<std::size_t>(material.reflectance.size());
   const GlossLobe lobe = solid_ ? GlossLobe::kGgx : part.lobe;
+  wide_mirror_ = rough_mirror_ && part.roughness > kWide;
+  wide_across_ = rough_across_ && part.transmission_roughness > kWide;
   if (rough_mirror_) mirror_lobe_ = GlossModel(lobe, part.roughness);
   if (rough_across_) across_lobe_ = GlossModel(lobe, part.transmission_roughness);
   most_ = by_band(1 - material.reflectance, true, bands);
@@ -107,6 +109,7 @@ bool SpecularSurface::take(const SurfacePoint& x, bool crosses, const std::array
 bool SpecularSurface::turn(const SurfacePoint& x, const std::array<float, 2>& spread,
                            SpecularStep& step) const {
   step.pdf_per_sr = 0;
+  step.is_wide = step.crosses ? wide_across_ : wide_mirror_;
   if (step.crosses ? rough_across_ : rough_mirror_)
     return solid_ ? turn_at_facet(x, spread, step) : turn_by_lobe(x, spread, step);
   const float cosine = x.normal.dot(x.towards);
@@ -186,6 +189,7 @@ bool SpecularSurface::value(const SurfacePoint& x, const Vec3f& from, SpecularSt
   shares(v.half_cosine, x.front, step);
   for (float& share : step.share()) share *= v.brdf_per_sr;
   step.pdf_per_sr = v.pdf_per_sr;
+  step.is_wide = step.crosses ? wide_across_ : wide_mirror_;
   return true;
 }
 

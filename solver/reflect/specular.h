@@ -21,6 +21,7 @@ struct SpecularStep {
   bool front = true;               ///< Side of the surface that it leaves from.
   bool crosses = false;            ///< It is the transmitted one.
   bool bends = true;               ///< It is not the straight way on, so shadow rays do not find it.
+  bool is_wide = false;            ///< A lobe spreads it so far that shadow rays find its light best.
   float chance = 0;                ///< Of this choice (0,1].
   /// Density of the direction [1/sr] where DirectLight finds luminaires there too; 0 where it does not.
   float pdf_per_sr = 0;
@@ -78,6 +79,9 @@ class SpecularSurface {
   /// the units of the constructor.
   float left_inside(std::size_t band, float way) const;
 
+  /// Roughness above which SpecularStep::is_wide.
+  static constexpr double kWide = 0.2;
+
  private:
   /// Finds the direction of the way that `step` crosses or does not. False if a lobe sends it nowhere.
   bool turn(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
@@ -89,6 +93,8 @@ class SpecularSurface {
   bool solid_ = false;
   bool rough_mirror_ = false;
   bool rough_across_ = false;
+  bool wide_mirror_ = false;
+  bool wide_across_ = false;
   GlossModel mirror_lobe_, across_lobe_;
   AngleLaw law_ = AngleLaw::kConstant;
   double ior_ = 1;

@@ -31,6 +31,7 @@ enum class RngPurpose : std::uint32_t {
   kSpecularCamera,
   kSpread,
   kSpreadCamera,
+  kCaustic,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

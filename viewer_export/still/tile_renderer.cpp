@@ -39,6 +39,7 @@ TileRenderer::TileRenderer(const Room& room, const Solution& solution, const Pin
       gather_(field_, direct_,
               // The other integrators gather nothing; without close hits there is nothing to prepare.
               GatherSettings{.close_hit = settings.integrator == Integrator::kGather ? settings.close_hit : 0,
+                             .caustics = settings.integrator == Integrator::kGather,
                              .seed = settings.seed},
               &stop),
       path_(room, direct_, settings.seed),
@@ -246,7 +247,7 @@ void TileRenderer::add_highlights(const SurfacePoint& x, const float* through, i
   for (std::size_t b = 0; b < field_.band_count(); ++b)
     weight[b] = sums.share / static_cast<float>(shadow_rays) * through[b];
   for (int i = 0; i < shadow_rays; ++i)
-    direct_.add_lobe_sample(x, sums.sampler.light(sample, i, shadow_rays), weight.data(), sums.direct);
+    direct_.add_lobe_sample(x, sums.sampler.light(sample, i, shadow_rays), {}, weight.data(), sums.direct);
 }
 
 void TileRenderer::add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,

@@ -24,11 +24,12 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
       settings_(settings),
       field_(room, solution, kReplicates),
       direct_(room),
-      gather_(
-          field_, direct_,
-          // Means of zones gather nothing; without close hits there is nothing to prepare.
-          GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit, .seed = settings.seed},
-          &stop),
+      gather_(field_, direct_,
+              // Means of zones gather nothing; without close hits there is nothing to prepare.
+              GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit,
+                             .caustics = true,
+                             .seed = settings.seed},
+              &stop),
       path_(room, direct_, settings.seed),
       bands_(room.band_count()),
       gathers_per_point_(settings.gathers_per_point()),

@@ -1,0 +1,136 @@
+#include "solver/gather/caustic_photons.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "solver/reflect/specular.h"
+#include "solver/sampling/counter_rng.h"
+#include "solver/shoot/flight.h"
+#include "solver/trace/surface_point.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::uint32_t kPacketsPerTask = 1U << 14;
+/// Packets between mirrors end there: what is left of them lights nothing that could be seen.
+constexpr std::uint32_t kMostSteps = 1024;
+
+void append(CausticPhotons& all, const CausticPhotons& more) {
+  all.places.insert(all.places.end(), more.places.begin(), more.places.end());
+  all.normals.insert(all.normals.end(), more.normals.begin(), more.normals.end());
+  all.luminaires.insert(all.luminaires.end(), more.luminaires.begin(), more.luminaires.end());
+  all.power.insert(all.power.end(), more.power.begin(), more.power.end());
+}
+
+}  // namespace
+
+CausticShooter::CausticShooter(const Room& room, std::uint64_t seed)
+    : transport_(room), emission_(collect_packet_sources(transport_)), seed_(seed) {}
+
+std::vector<float> CausticShooter::density_of_surfaces(double packets) const {
+  const std::size_t bands = transport_.bands();
+  const double metres = transport_.rays().metres_per_unit();
+  std::vector<double> share(transport_.surfaces(), 0.0), area(transport_.surfaces(), 0.0);
+  double all = 0;
+  for (std::size_t s = 0; s < emission_.sources.size(); ++s) {
+    double quanta = 0;
+    for (std::size_t b = 0; b < bands; ++b) quanta += static_cast<double>(emission_.quanta[s * bands + b]);
+    all += quanta;
+    const ZoneId zone = emission_.sources[s].zone;
+    if (!zone.valid()) continue;
+    const std::size_t surface = transport_.mesh().zone_surface(zone).index();
+    share[surface] += quanta;
+    area[surface] += transport_.mesh().zone_area(zone) / (metres * metres);
+  }
+  std::vector<float> density(share.size(), 0.0F);
+  for (std::size_t s = 0; s < share.size(); ++s)
+    if (area[s] > 0) density[s] = static_cast<float>(packets * share[s] / (all * area[s]));
+  return density;
+}
+
+CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
+                                     const StopToken* stop) const {
+  CausticPhotons all;
+  if (emission_.sources.empty()) return all;
+  const std::size_t bands = transport_.bands();
+  const double offset = static_cast<double>(CounterRng(seed_, RngPurpose::kCaustic).uniform4(0, batch, 0)[0]);
+  const Flight flight = plan_first_flight(emission_, bands, packets, offset);
+  const FlightNumbers numbers(SamplingKind::kSobol, seed_ ^ 0x9e3779b97f4a7c15ULL, batch, 0);
+  const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
+  std::vector<CausticPhotons> of_task(tasks);
+  tbb::parallel_for(std::uint32_t{0}, tasks, [&](std::uint32_t task) {
+    const std::uint32_t begin = task * kPacketsPerTask;
+    const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
+    FlightCursor cursor(transport_, flight, begin);
+    Ray16 rays;
+    Hit16 hits;
+    std::vector<std::int64_t> quanta(16 * bands);
+    std::vector<float> power(bands);
+    for (std::uint32_t first = begin; first < end; first += 16) {
+      if (stop != nullptr && stop->requested()) return;
+      const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
+      cursor.start16(first, count, numbers, rays, quanta.data());
+      transport_.rays().closest16(rays, count, hits);
+      for (int lane = 0; lane < count; ++lane) {
+        if (hits.triangle[lane] == RayTracer::kMiss ||
+            !transport_.surface_model().is_specular(TriangleId(hits.triangle[lane]), hits.front[lane]))
+          continue;
+        const std::uint32_t id = first + static_cast<std::uint32_t>(lane);
+        const auto source = static_cast<std::size_t>(
+            std::upper_bound(flight.first_packet.begin(), flight.first_packet.end(), id) -
+            flight.first_packet.begin() - 1);
+        const ZoneId zone = flight.sources[source].zone;
+        const SurfaceId luminaire = zone.valid() ? transport_.mesh().zone_surface(zone) : SurfaceId();
+        for (std::size_t b = 0; b < bands; ++b)
+          power[b] =
+              static_cast<float>(emission_.watts_per_quantum[b] *
+                                 static_cast<double>(quanta[static_cast<std::size_t>(lane) * bands + b]));
+        follow(rays.origin(lane), rays.direction(lane), id, batch, luminaire, power, of_task[task]);
+      }
+    }
+  });
+  for (const CausticPhotons& photons : of_task) append(all, photons);
+  return all;
+}
+
+void CausticShooter::follow(const Vec3f& origin, const Vec3f& direction, std::uint32_t id,
+                            std::uint32_t batch, SurfaceId luminaire, std::vector<float>& power,
+                            CausticPhotons& result) const {
+  const RayTracer& rays = transport_.rays();
+  const SurfaceModel& surfaces = transport_.surface_model();
+  const std::size_t bands = transport_.bands();
+  const CounterRng choice(seed_, RngPurpose::kCaustic);
+  SpecularStep step(bands);
+  Vec3f from = origin;
+  Vec3f along = direction;
+  TriangleId body;
+  bool bent = false;
+  for (std::uint32_t n = 0; n < kMostSteps; ++n) {
+    Hit hit;
+    if (!rays.closest(from, along, hit)) return;
+    if (!transport_.mesh().has_zones(hit.triangle, hit.front)) return;
+    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, power.data());
+    const SurfacePoint x = surface_point(rays, hit, along);
+    const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+    if (bent && std::any_of(reflectance, reflectance + bands, [](float rho) { return rho > 0; })) {
+      result.places.push_back(from + hit.distance * along);
+      result.normals.push_back(x.normal);
+      result.luminaires.push_back(luminaire);
+      result.power.insert(result.power.end(), power.begin(), power.end());
+    }
+    if (!surfaces.is_specular(hit.triangle, hit.front)) return;
+    const std::array<float, 4> u = choice.uniform4(id, batch, n + 1);
+    if (!surfaces.specular(hit.triangle).choose(x, u[0], {u[1], u[2]}, Survival::kRoulette, step)) return;
+    if (step.is_wide) return;
+    for (std::size_t b = 0; b < bands; ++b) power[b] *= step.share()[b] / step.chance;
+    bent = bent || step.bends;
+    body = surfaces.body_beyond(hit.triangle, step.front, body);
+    from = rays.ray_origin(hit.triangle, hit.u, hit.v, step.front);
+    along = step.direction;
+  }
+}
+
+}  // namespace reemit
