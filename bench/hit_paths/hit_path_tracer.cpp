@@ -10,26 +10,14 @@
 
 #include <Eigen/Geometry>
 
+#include "bench/hit_paths/path_step.h"
+#include "bench/hit_paths/smooth_surface.h"
+
 namespace reemit::hit_paths {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// Bounces before chance may end a path, and the largest probability of going on.
-constexpr int kSafeBounces = 4;
-constexpr double kLongestSurvival = 0.98;
-
-double uniform(HitPathTracer::Random& random) {
-  return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-Vec3 cosine_direction(const Vec3& normal, HitPathTracer::Random& random) {
-  const double r = std::sqrt(uniform(random));
-  const double phi = 2 * kPi * uniform(random);
-  const Vec3 tangent = normal.unitOrthogonal();
-  return (r * std::cos(phi) * tangent + r * std::sin(phi) * normal.cross(tangent) +
-          std::sqrt(std::max(0.0, 1 - r * r)) * normal)
-      .normalized();
-}
+constexpr int kSafeBounces = 4;  ///< Before chance may end a path.
 
 /// What a light that no path can hit sends to a point.
 struct Arriving {
@@ -125,9 +113,9 @@ void HitPathTracer::add_lights(const RoomHit& hit, const Spectrum& weight, Rando
     const double cosine = hit.normal.dot(way) / distance;
     if (!(cosine > 0) || !(arriving.irradiance > 0).any()) return;
     const double share = 1 - std::min(0.5, clearance / distance);
-    if (!room_.visible({hit.point, hit.part}, hit.point + share * way)) return;
+    const Spectrum left = left_between({hit.point, hit.part}, hit.point + share * way);
     for (Eigen::Index b = 0; b < weight.size(); ++b)
-      sum[b] += weight[b] * hit.material->reflectance[b] / kPi * cosine * arriving.irradiance[b];
+      sum[b] += weight[b] * hit.material->reflectance[b] / kPi * cosine * arriving.irradiance[b] * left[b];
   };
   for (const PunctualLight& light : scene_->lights)
     add(std::visit(Arrive{hit.point, 10 * room_.diagonal()}, light), 0);
@@ -137,31 +125,51 @@ void HitPathTracer::add_lights(const RoomHit& hit, const Spectrum& weight, Rando
   }
 }
 
+Spectrum HitPathTracer::left_between(RayStart start, const Vec3& target) const {
+  Spectrum left = Spectrum::Ones(static_cast<Eigen::Index>(scene_->bands.count()));
+  double distance = (target - start.point).norm();
+  const Vec3 direction = (target - start.point) / distance;
+  const double rounding = 1e-9 * distance;
+  while ((left > 0).any()) {
+    const auto hit = room_.closest(start, direction, false);
+    if (!hit || hit->distance > distance - rounding) return left;
+    if (is_body(*hit->material)) break;
+    left *= smooth_shares(*hit->material, arrival_angle(*hit, direction), hit->front).crossing;
+    start = {hit->point, hit->part};
+    distance -= hit->distance;
+  }
+  return Spectrum::Zero(left.size());
+}
+
 void HitPathTracer::add_path(int x, int y, Random& random, double* sum) const {
   const double px = x + uniform(random);
   const double py = y + uniform(random);
   Vec3 direction = (corner_ + px * right_ + py * down_).normalized();
   RayStart start{eye_, RayStart::kFree};
   Spectrum weight = Spectrum::Ones(static_cast<Eigen::Index>(scene_->bands.count()));
+  const Material* body = nullptr;  // of glass that the path has entered
+  bool scattered = false;
   for (int bounce = 0;; ++bounce) {
     const auto hit = room_.closest(start, direction, bounce == 0);
-    if (bounce > 0)
+    // What is not seen is not seen in mirrors either.
+    if (scattered)
       add_openings(start, direction, hit ? hit->distance : std::numeric_limits<double>::infinity(), weight,
                    sum);
     if (!hit) return;
+    const bool comes_from_inside = !hit->front && is_body(*hit->material);
+    if (body == nullptr && comes_from_inside) body = hit->material;
+    if (body != nullptr) weight *= left_inside(*body, hit->distance);
     add_emission(*hit, direction, weight, sum);
     if (!hit->front && !hit->material->two_sided) return;
     add_lights(*hit, weight, random, sum);
-    weight *= hit->material->reflectance;
-    const double largest = weight.maxCoeff();
-    if (!(largest > 0)) return;
-    if (bounce >= kSafeBounces) {
-      const double survival = std::min(largest, kLongestSurvival);
-      if (uniform(random) >= survival) return;
-      weight /= survival;
-    }
+    const auto step = next_step(*hit, direction, bounce >= kSafeBounces, random);
+    if (!step) return;
+    weight *= step->weight;
+    if (!(weight > 0).any()) return;
+    scattered = scattered || step->scatters;
+    if (is_body(*hit->material)) body = step->crosses == hit->front ? hit->material : nullptr;
     start = {hit->point, hit->part};
-    direction = cosine_direction(hit->normal, random);
+    direction = step->direction;
   }
 }
 

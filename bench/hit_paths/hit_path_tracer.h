@@ -1,23 +1,24 @@
 #pragma once
 #include <filesystem>
-#include <random>
 #include <vector>
 
 #include "bench/hit_paths/opening_hit.h"
+#include "bench/hit_paths/path_step.h"
 #include "bench/hit_paths/polygon_room.h"
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
 
 namespace reemit::hit_paths {
 
-/// Radiance of pixels by paths that go on by cosine-distributed chance until they leave or are absorbed, and
-/// count emission where they hit it: no luminaire is ever sampled. Openings of measured luminaires, which are
-/// not seen, count where a path crosses them. Only lights that no path can hit (points, lines, spots,
-/// parallel light) are asked for with one shadow ray each. Slow, and without anything in common with what it
-/// checks.
+/// Radiance of pixels by paths that go on by chance, spread or over mirrors and through glass, until they
+/// leave or are absorbed, and count emission where they hit it: no luminaire is ever sampled. Openings of
+/// measured luminaires, which are not seen, count where a path crosses them that was spread before. Only
+/// lights that no path can hit (points, lines, spots, parallel light) are asked for with one shadow ray each,
+/// which panes and clear sheets let through; their light over mirrors is missing. Radiance inside glass is
+/// that outside of it (over n^2). Slow, and without anything in common with what it checks.
 class HitPathTracer {
  public:
-  using Random = std::mt19937_64;
+  using Random = PathRandom;
 
   /// `photometry`: IES file of all measured luminaires, which is read anew by a reader of the reference; if
   /// it is empty, the tables of the scene. Throws std::invalid_argument for what the reference does not know,
@@ -33,6 +34,8 @@ class HitPathTracer {
   void add_openings(const RayStart& start, const Vec3& direction, double far, const Spectrum& weight,
                     double* sum) const;
   void add_lights(const RoomHit& hit, const Spectrum& weight, Random& random, double* sum) const;
+  /// By band, the share of light from a point that comes straight to another: all, or what panes let through.
+  Spectrum left_between(RayStart start, const Vec3& target) const;
 
   /// A measured luminaire and what one candela of its file stands for.
   struct Measured {

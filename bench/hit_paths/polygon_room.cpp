@@ -284,11 +284,4 @@ std::optional<RoomHit> PolygonRoom::closest(const RayStart& start, const Vec3& d
   }
 }
 
-bool PolygonRoom::visible(const RayStart& start, const Vec3& target) const {
-  const Vec3 way = target - start.point;
-  const double distance = way.norm();
-  const auto hit = closest(start, way / distance, false);
-  return !hit || hit->distance > distance * (1 - 1e-9);
-}
-
 }  // namespace reemit::hit_paths

@@ -37,8 +37,6 @@ class PolygonRoom {
   /// Nearest surface along a ray of unit direction that is not the back of a one-sided face if
   /// `through_backs`.
   std::optional<RoomHit> closest(const RayStart& start, const Vec3& direction, bool through_backs) const;
-  /// True if nothing lies between the start and a point.
-  bool visible(const RayStart& start, const Vec3& target) const;
 
   double diagonal() const { return diagonal_; }  ///< Of the bounding box [m].
 

@@ -1,0 +1,26 @@
+#pragma once
+#include <optional>
+#include <random>
+
+#include "bench/hit_paths/polygon_room.h"
+
+namespace reemit::hit_paths {
+
+using PathRandom = std::mt19937_64;
+
+double uniform(PathRandom& random);  ///< [0,1)
+
+/// How a path goes on from a surface.
+struct PathStep {
+  Vec3 direction{0, 0, 1};
+  Spectrum weight;        ///< By band: share of the light, over the chance of this choice.
+  bool scatters = false;  ///< Chance chose the direction, not the path before it.
+  bool crosses = false;   ///< The surface.
+};
+
+/// Chooses one of the ways on: spread, as from a mirror, or across, each as often as its largest share over
+/// the bands says. With `roulette` the path may end, which is what no step means.
+std::optional<PathStep> next_step(const RoomHit& hit, const Vec3& direction, bool roulette,
+                                  PathRandom& random);
+
+}  // namespace reemit::hit_paths

@@ -1,0 +1,101 @@
+#include "bench/hit_paths/smooth_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/hit_paths/glass_shares.h"
+
+namespace reemit::hit_paths {
+namespace {
+
+bool reflects(const NonDiffusePart& part) {
+  return part.roughness <= NonDiffusePart::kSmooth &&
+         (part.angle_law == AngleLaw::kDielectric || NonDiffusePart::is_given(part.specular_reflectance));
+}
+
+bool transmits(const NonDiffusePart& part) {
+  return part.transmission_roughness <= NonDiffusePart::kSmooth &&
+         NonDiffusePart::is_given(part.specular_transmittance);
+}
+
+double in_band(const Spectrum& share, bool given, Eigen::Index band) {
+  return given && share.size() > 0 ? share[band] : 0.0;
+}
+
+/// Index of refraction behind a side over that before it.
+double index_ratio(const NonDiffusePart& part, bool front) {
+  return part.is_solid && !front ? 1 / part.index_of_refraction : part.index_of_refraction;
+}
+
+}  // namespace
+
+SmoothShares smooth_shares(const Material& material, double angle, bool front) {
+  const NonDiffusePart& part = material.non_diffuse;
+  const Eigen::Index bands = material.reflectance.size();
+  SmoothShares shares{Spectrum::Zero(bands), Spectrum::Zero(bands)};
+  const bool mirrors = reflects(part);
+  const bool clear = transmits(part);
+  if (!mirrors && !clear) return shares;
+  const double ratio = index_ratio(part, front);
+  const bool totally = part.is_solid && clear && refracted_angle(ratio, angle) < 0;
+  for (Eigen::Index b = 0; b < bands; ++b) {
+    const double left = 1 - material.reflectance[b];  // by the Lambertian part
+    double r = in_band(part.specular_reflectance, mirrors, b);
+    double t = in_band(part.specular_transmittance, clear, b);
+    switch (part.angle_law) {
+      case AngleLaw::kConstant:
+        break;
+      case AngleLaw::kSchlick: {
+        // What the mirror takes towards grazing angles is missing in what crosses.
+        const double steep = r;
+        r += std::max(0.0, left - r) * std::pow(1 - std::cos(angle), 5);
+        if (left > steep) t *= (left - r) / (left - steep);
+        break;
+      }
+      case AngleLaw::kDielectric: {
+        const GlassShares glass =
+            part.is_solid ? at_surface(ratio, angle) : at_pane(part.index_of_refraction, t, angle);
+        r = left * glass.reflected;
+        t = left * glass.transmitted * (part.is_solid ? t : 1);
+        break;
+      }
+    }
+    if (totally) {
+      r = part.angle_law == AngleLaw::kDielectric ? left : r + t;
+      t = 0;
+    }
+    if (mirrors || totally) shares.mirrored[b] = r;
+    if (clear) shares.crossing[b] = t;
+  }
+  return shares;
+}
+
+double arrival_angle(const RoomHit& hit, const Vec3& direction) {
+  // Well conditioned along the normal, where the arc cosine is not.
+  return std::atan2(hit.normal.cross(direction).norm(), -hit.normal.dot(direction));
+}
+
+Vec3 mirrored(const RoomHit& hit, const Vec3& direction) {
+  return (direction - 2 * hit.normal.dot(direction) * hit.normal).normalized();
+}
+
+Vec3 crossing(const RoomHit& hit, const Vec3& direction) {
+  const NonDiffusePart& part = hit.material->non_diffuse;
+  if (!part.is_solid) return direction;
+  // Snell's law for the part along the surface.
+  const Vec3 along = direction - hit.normal.dot(direction) * hit.normal;
+  const Vec3 bent = along / index_ratio(part, hit.front);
+  return (bent - std::sqrt(std::max(0.0, 1 - bent.squaredNorm())) * hit.normal).normalized();
+}
+
+bool is_body(const Material& material) {
+  return material.non_diffuse.is_solid && transmits(material.non_diffuse);
+}
+
+Spectrum left_inside(const Material& body, double way) {
+  const Spectrum& absorption = body.non_diffuse.absorption_per_m;
+  if (absorption.size() == 0) return Spectrum::Ones(body.reflectance.size());
+  return (-way * absorption).exp();
+}
+
+}  // namespace reemit::hit_paths
