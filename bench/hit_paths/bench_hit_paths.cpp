@@ -12,6 +12,8 @@
 #include "bench/hit_paths/block_comparison.h"
 #include "bench/hit_paths/touching_lamps.h"
 #include "scenes/io/scene_reader.h"
+#include "solver/room/room.h"
+#include "solver/zoning/build_zones.h"
 #include "viewer_export/still/default_cameras.h"
 
 namespace {
@@ -40,20 +42,39 @@ void print(const std::string& room, const Comparison& c) {
   std::fflush(stdout);
 }
 
-std::vector<Camera> cameras_of(const Scene& scene, std::size_t most) {
+/// Which cameras of a room are compared.
+struct CameraChoice {
+  std::size_t most = 1;
+  std::string name;  ///< The one of that name, if it is not empty.
+};
+
+std::vector<Camera> cameras_of(const Scene& scene, const CameraChoice& choice) {
   std::vector<Camera> cameras = scene.cameras;
   if (cameras.empty()) {
-    const ZoneMesh mesh = build_mesh(scene).mesh;
+    const ZoneMesh mesh = build_zones(scene).mesh;
     cameras = default_cameras(Room(scene, mesh));
   }
-  cameras.resize(std::min(cameras.size(), most));
+  if (!choice.name.empty()) {
+    std::erase_if(cameras, [&](const Camera& c) { return c.name != choice.name; });
+    if (cameras.empty()) throw std::runtime_error("the room has no camera " + choice.name);
+  }
+  cameras.resize(std::min(cameras.size(), choice.most));
   return cameras;
 }
 
+/// Stills are shaded with normals of the file, which turn what is seen in mirrors; the reference has those of
+/// the polygons.
+void drop_normals(Scene& scene) {
+  for (Surface& surface : scene.surfaces) {
+    surface.normals.clear();
+    for (Face& face : surface.faces) face.normals.clear();
+  }
+}
+
 std::size_t compare(const std::string& name, const Scene& scene, const ComparisonSettings& settings,
-                    std::size_t most_cameras) {
+                    const CameraChoice& cameras) {
   std::size_t different = 0;
-  for (const Camera& camera : cameras_of(scene, most_cameras)) {
+  for (const Camera& camera : cameras_of(scene, cameras)) {
     try {
       const Comparison c = compare_blocks(scene, camera, settings);
       if (c.reference_error > kMostReferenceError) {
@@ -80,7 +101,8 @@ int main(int argc, char** argv) {
   std::vector<std::filesystem::path> rooms;
   bool generated = false;
   bool one_room = false;
-  std::size_t cameras = 1;
+  bool flat = false;
+  CameraChoice cameras;
   ComparisonSettings settings;
   app.add_option("rooms", rooms, "Room files")->check(CLI::ExistingFile);
   app.add_flag("--generated", generated, "Compare the 20 generated rooms with touching lamps");
@@ -88,7 +110,16 @@ int main(int argc, char** argv) {
   app.add_option("--photometry", settings.photometry,
                  "IES file of the measured luminaires, read anew for the reference")
       ->check(CLI::ExistingFile);
-  app.add_option("--cameras", cameras, "Cameras of each room");
+  app.add_flag("--flat", flat, "Leave out the normals of files, which the reference does not know");
+  app.add_option("--cameras", cameras.most, "Cameras of each room");
+  app.add_option("--camera", cameras.name, "Camera by name, auto-1, auto-2, ... of rooms without any");
+  app.add_option(
+         "--still", settings.stills,
+         "Check this EXR file of `reemit render` instead of rendering. Several are of the same view,\n"
+         "each of a solution with another seed; of one alone the noise of its zones is not known")
+      ->check(CLI::ExistingFile);
+  app.add_option("--width", settings.width, "Of pictures that are rendered [px]")->capture_default_str();
+  app.add_option("--height", settings.height, "[px]")->capture_default_str();
   app.add_option("--seconds", settings.seconds, "For the reference of one picture [s]")
       ->capture_default_str();
   app.add_option("--passes", settings.passes,
@@ -106,6 +137,10 @@ int main(int argc, char** argv) {
   app.add_flag("--path", settings.by_path, "Check the path tracer instead of the gathered still");
   CLI11_PARSE(app, argc, argv);
   if (rooms.empty()) one_room = false;
+  if (!settings.stills.empty() && (generated || cameras.most != 1 || (rooms.size() != 1 && !one_room))) {
+    fmt::print(stderr, "bench_hit_paths: stills are of one camera in one room\n");
+    return 2;
+  }
   try {
     fmt::print(
         "| room | camera | blocks | reference error of blocks, median / largest [%] | paths [1e6] "
@@ -113,7 +148,8 @@ int main(int argc, char** argv) {
         "| largest beyond 5 standard errors [%] | blocks that differ |\n"
         "|---|---|---|---|---|---|---|---|---|\n");
     std::size_t different = 0;
-    const auto compare_next = [&](const std::string& name, const Scene& scene) {
+    const auto compare_next = [&](const std::string& name, Scene scene) {
+      if (flat) drop_normals(scene);
       different += compare(name, scene, settings, cameras);
       ++settings.seed;
     };

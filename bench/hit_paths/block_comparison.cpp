@@ -1,16 +1,13 @@
 #include "bench/hit_paths/block_comparison.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include <tbb/parallel_for.h>
 
+#include "bench/hit_paths/checked_picture.h"
 #include "bench/hit_paths/hit_path_tracer.h"
-#include "solver/progressive_solver.h"
-#include "solver/room/room.h"
 
 namespace reemit::hit_paths {
 namespace {
@@ -30,9 +27,8 @@ struct BlockSums {
 constexpr int kPassesAtOnce = 8;
 constexpr int kLeastPasses = 64;
 
-void add_passes(const HitPathTracer& tracer, const ComparisonSettings& settings, std::size_t block,
-                BlockSums& sums) {
-  const auto across = static_cast<std::size_t>(settings.width / kBlock);
+void add_passes(const HitPathTracer& tracer, const ComparisonSettings& settings, std::size_t across,
+                std::size_t block, BlockSums& sums) {
   const int x0 = static_cast<int>(block % across) * kBlock;
   const int y0 = static_cast<int>(block / across) * kBlock;
   const std::size_t bands = sums.sum.size();
@@ -67,15 +63,16 @@ double median(std::vector<double> values) {
 }
 
 std::vector<BlockSums> trace_reference(const Scene& scene, const Camera& camera,
-                                       const ComparisonSettings& settings) {
-  const HitPathTracer tracer(scene, camera, settings.width, settings.height, settings.photometry);
+                                       const ComparisonSettings& settings, const CheckedPicture& size) {
+  const HitPathTracer tracer(scene, camera, size.width, size.height, settings.photometry);
   const std::size_t bands = scene.bands.count();
-  const auto count = static_cast<std::size_t>((settings.width / kBlock) * (settings.height / kBlock));
+  const std::size_t count = size.count();
+  const auto across = static_cast<std::size_t>(size.across());
   std::vector<BlockSums> blocks(count, {std::vector<double>(bands), std::vector<double>(bands), 0});
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
     tbb::parallel_for(std::size_t{0}, count,
-                      [&](std::size_t i) { add_passes(tracer, settings, i, blocks[i]); });
+                      [&](std::size_t i) { add_passes(tracer, settings, across, i, blocks[i]); });
     if (settings.passes > 0 && blocks[0].passes >= settings.passes) return blocks;
     if (settings.passes > 0 || blocks[0].passes < kLeastPasses) continue;
     std::vector<double> errors;
@@ -83,65 +80,6 @@ std::vector<BlockSums> trace_reference(const Scene& scene, const Camera& camera,
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (seconds >= settings.seconds || median(errors) <= settings.reference_error) return blocks;
   }
-}
-
-/// Independent renderings of the still, each with a zone solution of its own: only so does their spread hold
-/// the noise of the zones, which the pixels of a block share.
-constexpr int kRenderings = 8;
-
-/// Mean radiance of one block in one band over the renderings.
-struct CheckedBlock {
-  std::vector<double> values;
-  double mean() const { return std::accumulate(values.begin(), values.end(), 0.0) / kRenderings; }
-  double standard_error() const {
-    double squares = 0;
-    for (const double v : values) squares += (v - mean()) * (v - mean());
-    return std::sqrt(squares / (kRenderings * (kRenderings - 1)));
-  }
-};
-
-double block_mean(const StillImage& image, int x0, int y0, std::size_t band) {
-  double sum = 0;
-  for (int y = y0; y < y0 + kBlock; ++y)
-    for (int x = x0; x < x0 + kBlock; ++x) {
-      const std::size_t pixel =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
-      sum += static_cast<double>(image.radiance[pixel * image.bands.count() + band]);
-    }
-  return sum / (kBlock * kBlock);
-}
-
-/// By block, then band.
-std::vector<CheckedBlock> render(const Scene& scene, const Camera& camera,
-                                 const ComparisonSettings& settings) {
-  const std::atomic<bool> never{false};
-  MeshSettings mesh_settings;
-  if (settings.zone_area > 0) mesh_settings.zone_area = settings.zone_area;
-  const MeshResult mesh = build_mesh(scene, mesh_settings);
-  SolverSettings solver;
-  if (settings.by_walks) solver.method = SolveMethod::kWalk;
-  solver.packets = settings.packets / kRenderings;
-  StillSettings still;
-  still.width = settings.width;
-  still.height = settings.height;
-  still.spp = std::max(1, settings.spp / kRenderings);
-  still.integrator = settings.by_path ? Integrator::kPath : Integrator::kGather;
-  const int across = settings.width / kBlock;
-  const int blocks = across * (settings.height / kBlock);
-  std::vector<CheckedBlock> found(static_cast<std::size_t>(blocks) * scene.bands.count());
-  for (int rendering = 0; rendering < kRenderings; ++rendering) {
-    solver.seed = settings.seed * kRenderings + static_cast<std::uint64_t>(rendering);
-    still.seed = solver.seed;
-    const Solution solution = solve_zones(scene, mesh, solver, {}, never);
-    const Room walls(scene, solution.mesh);
-    const StillImage image = render_still(walls, solution, camera, still, {}, never);
-    auto next = found.begin();
-    for (int i = 0; i < blocks; ++i)
-      for (std::size_t b = 0; b < scene.bands.count(); ++b)
-        (next++)->values.push_back((1 + settings.planted_bias) *
-                                   block_mean(image, i % across * kBlock, i / across * kBlock, b));
-  }
-  return found;
 }
 
 }  // namespace
@@ -156,31 +94,35 @@ std::size_t Comparison::different() const {
 }
 
 Comparison compare_blocks(const Scene& scene, const Camera& camera, const ComparisonSettings& settings) {
-  const std::vector<BlockSums> reference = trace_reference(scene, camera, settings);
-  const std::vector<CheckedBlock> checked = render(scene, camera, settings);
+  CheckedPicture checked{settings.width, settings.height, scene.bands.count(), {}};
+  if (!settings.stills.empty()) checked = read_checked(settings.stills, scene.bands);
+  const std::vector<BlockSums> reference = trace_reference(scene, camera, settings, checked);
+  if (settings.stills.empty()) checked = render_checked(scene, camera, settings);
   const std::size_t bands = scene.bands.count();
 
-  // Eight values know their spread badly: a block has at least the relative error of the median one.
+  // A few values know their spread badly: a block has at least the relative error of the median one.
   std::vector<double> spreads;
-  for (const CheckedBlock& c : checked)
+  for (const CheckedBlock& c : checked.blocks)
     if (c.mean() > 0) spreads.push_back(c.standard_error() / c.mean());
   const double least_spread = median(spreads);
 
   Comparison out;
   out.camera = camera.name;
   std::vector<double> errors;
-  std::vector<double> totals(kRenderings, 0.0);
+  CheckedBlock whole{std::vector<double>(checked.blocks.at(0).values.size()), 0};
   double sum_of_reference = 0;
   double variance_of_reference = 0;
-  const int across = settings.width / kBlock;
+  const int across = checked.across();
   for (std::size_t i = 0; i < reference.size(); ++i) {
     BlockDeviation worst;
     double worst_errors = -1;
     double standard_error = 0;  // of the reference over bands, which share their paths
+    double pixels_error = 0;    // likewise
     for (std::size_t b = 0; b < bands; ++b) {
-      const CheckedBlock& c = checked[i * bands + b];
+      const CheckedBlock& c = checked.blocks[i * bands + b];
       const double expected = reference[i].mean(b);
-      for (std::size_t r = 0; r < kRenderings; ++r) totals[r] += c.values[r];
+      for (std::size_t r = 0; r < c.values.size(); ++r) whole.values[r] += c.values[r];
+      pixels_error += c.pixels_error;
       sum_of_reference += expected;
       standard_error += reference[i].standard_error(b);
       if (c.mean() == 0 && expected == 0) continue;
@@ -192,6 +134,7 @@ Comparison compare_blocks(const Scene& scene, const Camera& camera, const Compar
       worst = d;
     }
     variance_of_reference += standard_error * standard_error;
+    whole.pixels_error = std::hypot(whole.pixels_error, pixels_error);
     if (worst_errors < 0) continue;  // black in both
     out.blocks.push_back(worst);
     const bool found =
@@ -202,7 +145,6 @@ Comparison compare_blocks(const Scene& scene, const Camera& camera, const Compar
     out.paths += static_cast<std::uint64_t>(reference[i].passes) * kBlock * kBlock;
   }
   if (sum_of_reference > 0) {
-    const CheckedBlock whole{totals};
     out.mean_deviation = whole.mean() / sum_of_reference - 1;
     out.mean_error = std::hypot(whole.standard_error(), std::sqrt(variance_of_reference)) / sum_of_reference;
   }

@@ -6,11 +6,8 @@
 
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
-#include "viewer_export/still/render_still.h"
 
 namespace reemit::hit_paths {
-
-constexpr int kBlock = 16;  ///< Pixels along an edge of a block.
 
 /// A block beyond both limits differs: one alone is chance (5 standard errors: odds of 1 in 1.7 million) or
 /// too little to see.
@@ -18,7 +15,7 @@ constexpr double kMostErrors = 5;
 constexpr double kMostDeviation = 0.03;
 
 struct ComparisonSettings {
-  int width = 128;  ///< [px], a multiple of kBlock.
+  int width = 128;  ///< [px]
   int height = 96;
   double seconds = 30;  ///< For the reference [s]; it stops sooner when its error is small enough.
   int passes = 0;  ///< Paths per pixel of the reference instead, a multiple of 8: the same on any machine.
@@ -30,6 +27,7 @@ struct ComparisonSettings {
   double planted_bias = 0;  ///< Added to the checked picture as a share, to see whether it would be noticed.
   bool by_walks = false;    ///< Solve the zones by walks instead of shooting.
   bool by_path = false;     ///< Check the path tracer instead of gathering.
+  std::vector<std::filesystem::path> stills;  ///< Checked instead of rendering; their size counts.
   std::filesystem::path photometry;  ///< IES file that the reference reads anew for measured luminaires.
 };
 
@@ -55,9 +53,9 @@ struct Comparison {
   std::size_t different() const;  ///< Blocks that differ.
 };
 
-/// Renders the still as the program does, and the reference by paths that only hit luminaires, and compares
-/// them block by block. Deterministic but for the number of reference paths, which the clock decides. Throws
-/// std::invalid_argument for rooms with luminaires that the reference does not know.
+/// Renders the still as the program does, or reads it, and the reference by paths that only hit luminaires,
+/// and compares them block by block. Deterministic but for the number of reference paths, which the clock
+/// decides. Throws std::invalid_argument for rooms with luminaires that the reference does not know.
 Comparison compare_blocks(const Scene& scene, const Camera& camera, const ComparisonSettings& settings);
 
 }  // namespace reemit::hit_paths

@@ -1,0 +1,102 @@
+#include "bench/hit_paths/checked_picture.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+
+#include "bench/hit_paths/block_comparison.h"
+#include "bench/hit_paths/still_file.h"
+#include "solver/progressive_solver.h"
+#include "solver/room/room.h"
+#include "solver/zoning/build_zones.h"
+#include "viewer_export/still/render_still.h"
+
+namespace reemit::hit_paths {
+namespace {
+
+constexpr int kRenderings = 8;
+
+CheckedPicture empty_picture(int width, int height, std::size_t bands) {
+  CheckedPicture picture{width, height, bands, {}};
+  picture.blocks.resize(picture.count() * bands);
+  return picture;
+}
+
+void add(const StillImage& image, double factor, CheckedPicture& picture) {
+  const bool has_errors = !image.radiance_stderr.empty();
+  for (std::size_t i = 0; i < picture.count(); ++i)
+    for (std::size_t b = 0; b < picture.bands; ++b) {
+      const int x0 = static_cast<int>(i) % picture.across() * kBlock;
+      const int y0 = static_cast<int>(i) / picture.across() * kBlock;
+      double sum = 0;
+      double variance = 0;
+      for (int y = y0; y < y0 + kBlock; ++y)
+        for (int x = x0; x < x0 + kBlock; ++x) {
+          const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                    static_cast<std::size_t>(x);
+          const std::size_t value = pixel * picture.bands + b;
+          sum += static_cast<double>(image.radiance[value]);
+          if (has_errors) variance += std::pow(static_cast<double>(image.radiance_stderr[value]), 2);
+        }
+      CheckedBlock& block = picture.blocks[i * picture.bands + b];
+      block.values.push_back(factor * sum / (kBlock * kBlock));
+      block.pixels_error = std::hypot(block.pixels_error, factor * std::sqrt(variance) / (kBlock * kBlock));
+    }
+}
+
+}  // namespace
+
+double CheckedBlock::mean() const {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double CheckedBlock::standard_error() const {
+  const auto n = static_cast<double>(values.size());
+  const double of_pixels = pixels_error / n;
+  if (values.size() < 2) return of_pixels;
+  double squares = 0;
+  for (const double v : values) squares += (v - mean()) * (v - mean());
+  // A few values may lie close by chance; the noise of pixels is known better.
+  return std::max(std::sqrt(squares / (n * (n - 1))), of_pixels);
+}
+
+CheckedPicture render_checked(const Scene& scene, const Camera& camera, const ComparisonSettings& settings) {
+  const std::atomic<bool> never{false};
+  MeshSettings mesh_settings;
+  if (settings.zone_area > 0) mesh_settings.zone_area = settings.zone_area;
+  const MeshResult mesh = build_zones(scene, mesh_settings);
+  SolverSettings solver;
+  if (settings.by_walks) solver.method = SolveMethod::kWalk;
+  solver.packets = settings.packets / kRenderings;
+  StillSettings still;
+  still.width = settings.width;
+  still.height = settings.height;
+  still.spp = std::max(1, settings.spp / kRenderings);
+  still.integrator = settings.by_path ? Integrator::kPath : Integrator::kGather;
+  CheckedPicture picture = empty_picture(settings.width, settings.height, scene.bands.count());
+  for (int rendering = 0; rendering < kRenderings; ++rendering) {
+    solver.seed = settings.seed * kRenderings + static_cast<std::uint64_t>(rendering);
+    still.seed = solver.seed;
+    const Solution solution = solve_zones(scene, mesh, solver, {}, never);
+    const Room walls(scene, solution.mesh);
+    add(render_still(walls, solution, camera, still, {}, never), 1 + settings.planted_bias, picture);
+  }
+  return picture;
+}
+
+CheckedPicture read_checked(const std::vector<std::filesystem::path>& files, const BandSet& bands) {
+  CheckedPicture picture;
+  for (const std::filesystem::path& file : files) {
+    const StillImage image = read_still(file, bands);
+    if (picture.blocks.empty()) picture = empty_picture(image.width, image.height, bands.count());
+    if (image.width != picture.width || image.height != picture.height)
+      throw std::invalid_argument(file.string() + " is of another size than the pictures before it");
+    add(image, 1, picture);
+  }
+  return picture;
+}
+
+}  // namespace reemit::hit_paths
