@@ -11,7 +11,8 @@
 #include <Eigen/Geometry>
 
 #include "bench/hit_paths/path_step.h"
-#include "bench/hit_paths/smooth_surface.h"
+#include "bench/hit_paths/rough_ways.h"
+#include "bench/hit_paths/surface_ways.h"
 
 namespace reemit::hit_paths {
 namespace {
@@ -105,17 +106,19 @@ void HitPathTracer::add_openings(const RayStart& start, const Vec3& direction, d
   }
 }
 
-void HitPathTracer::add_lights(const RoomHit& hit, const Spectrum& weight, Random& random,
-                               double* sum) const {
+void HitPathTracer::add_lights(const RoomHit& hit, const Vec3& direction, const Spectrum& weight,
+                               Random& random, double* sum) const {
   const auto add = [&](const Arriving& arriving, double clearance) {
     const Vec3 way = arriving.from - hit.point;
     const double distance = way.norm();
     const double cosine = hit.normal.dot(way) / distance;
-    if (!(cosine > 0) || !(arriving.irradiance > 0).any()) return;
+    Spectrum value = rough_value(hit, direction, way / distance);
+    if (cosine > 0) value += hit.material->reflectance / kPi;
+    if (!(arriving.irradiance * value > 0).any()) return;
     const double share = 1 - std::min(0.5, clearance / distance);
     const Spectrum left = left_between({hit.point, hit.part}, hit.point + share * way);
     for (Eigen::Index b = 0; b < weight.size(); ++b)
-      sum[b] += weight[b] * hit.material->reflectance[b] / kPi * cosine * arriving.irradiance[b] * left[b];
+      sum[b] += weight[b] * value[b] * std::abs(cosine) * arriving.irradiance[b] * left[b];
   };
   for (const PunctualLight& light : scene_->lights)
     add(std::visit(Arrive{hit.point, 10 * room_.diagonal()}, light), 0);
@@ -133,8 +136,8 @@ Spectrum HitPathTracer::left_between(RayStart start, const Vec3& target) const {
   while ((left > 0).any()) {
     const auto hit = room_.closest(start, direction, false);
     if (!hit || hit->distance > distance - rounding) return left;
-    if (is_body(*hit->material)) break;
-    left *= smooth_shares(*hit->material, arrival_angle(*hit, direction), hit->front).crossing;
+    if (is_body(*hit->material) || is_rough_across(*hit->material)) break;
+    left *= specular_shares(*hit->material, arrival_angle(*hit, direction), hit->front).crossing;
     start = {hit->point, hit->part};
     distance -= hit->distance;
   }
@@ -161,7 +164,7 @@ void HitPathTracer::add_path(int x, int y, Random& random, double* sum) const {
     if (body != nullptr) weight *= left_inside(*body, hit->distance);
     add_emission(*hit, direction, weight, sum);
     if (!hit->front && !hit->material->two_sided) return;
-    add_lights(*hit, weight, random, sum);
+    add_lights(*hit, direction, weight, random, sum);
     const auto step = next_step(*hit, direction, bounce >= kSafeBounces, random);
     if (!step) return;
     weight *= step->weight;

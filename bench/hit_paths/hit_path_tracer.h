@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bench/hit_paths/opening_hit.h"
-#include "bench/hit_paths/path_step.h"
+#include "bench/hit_paths/path_random.h"
 #include "bench/hit_paths/polygon_room.h"
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
@@ -14,7 +14,8 @@ namespace reemit::hit_paths {
 /// leave or are absorbed, and count emission where they hit it: no luminaire is ever sampled. Openings of
 /// measured luminaires, which are not seen, count where a path crosses them that was spread before. Only
 /// lights that no path can hit (points, lines, spots, parallel light) are asked for with one shadow ray each,
-/// which panes and clear sheets let through; their light over mirrors is missing. Radiance inside glass is
+/// which panes and clear sheets let through; their light over mirrors, and where rough bodies of glass
+/// refract it, is missing. Radiance inside glass is
 /// that outside of it (over n^2). Slow, and without anything in common with what it checks.
 class HitPathTracer {
  public:
@@ -33,7 +34,8 @@ class HitPathTracer {
   void add_emission(const RoomHit& hit, const Vec3& direction, const Spectrum& weight, double* sum) const;
   void add_openings(const RayStart& start, const Vec3& direction, double far, const Spectrum& weight,
                     double* sum) const;
-  void add_lights(const RoomHit& hit, const Spectrum& weight, Random& random, double* sum) const;
+  void add_lights(const RoomHit& hit, const Vec3& direction, const Spectrum& weight, Random& random,
+                  double* sum) const;
   /// By band, the share of light from a point that comes straight to another: all, or what panes let through.
   Spectrum left_between(RayStart start, const Vec3& target) const;
 

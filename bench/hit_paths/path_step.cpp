@@ -1,64 +1,71 @@
 #include "bench/hit_paths/path_step.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 
-#include <Eigen/Geometry>
-
-#include "bench/hit_paths/smooth_surface.h"
+#include "bench/hit_paths/rough_ways.h"
+#include "bench/hit_paths/surface_ways.h"
 
 namespace reemit::hit_paths {
 namespace {
 
-/// Largest chance of going on.
-constexpr double kLongestSurvival = 0.98;
+constexpr double kLongestSurvival = 0.98;  ///< Largest chance of going on.
 
-Vec3 cosine_direction(const Vec3& normal, PathRandom& random) {
-  const double r = std::sqrt(uniform(random));
-  const double phi = 2 * std::numbers::pi * uniform(random);
-  const Vec3 tangent = normal.unitOrthogonal();
-  return (r * std::cos(phi) * tangent + r * std::sin(phi) * normal.cross(tangent) +
-          std::sqrt(std::max(0.0, 1 - r * r)) * normal)
-      .normalized();
+/// How often ways are chosen, in proportion.
+struct Chances {
+  double spread = 0, mirror = 0, across = 0;
+  double sum() const { return spread + mirror + across; }
+};
+
+Chances chances(const Material& material, const SpecularShares& shares, bool front) {
+  Chances c{material.reflectance.maxCoeff(), shares.mirrored.maxCoeff(), shares.crossing.maxCoeff()};
+  // Facets of rough glass let light through even where the surface as a whole would reflect it all.
+  if (is_rough_across(material) && is_body(material))
+    c.across = std::max(c.across, 0.5 * specular_shares(material, 0, front).crossing.maxCoeff());
+  return c;
+}
+
+/// The mirrored way, or that across; its weight leaves out how often it is chosen.
+std::optional<PathStep> specular_step(const RoomHit& hit, const Vec3& direction, const SpecularShares& shares,
+                                      bool crosses, PathRandom& random) {
+  PathStep step;
+  step.crosses = crosses;
+  step.scatters = crosses ? is_rough_across(*hit.material) : is_rough_mirror(*hit.material);
+  if (!step.scatters) {
+    step.direction = crosses ? crossing(hit, direction) : mirrored(hit, direction);
+    step.weight = crosses ? shares.crossing : shares.mirrored;
+    return step;
+  }
+  auto way = crosses ? draw_rough_across(hit, direction, random) : draw_rough_mirror(hit, direction, random);
+  if (!way) return std::nullopt;
+  step.direction = way->direction;
+  step.weight = std::move(way->weight);
+  return step;
 }
 
 }  // namespace
 
-double uniform(PathRandom& random) {
-  return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 std::optional<PathStep> next_step(const RoomHit& hit, const Vec3& direction, bool roulette,
                                   PathRandom& random) {
-  const SmoothShares smooth = smooth_shares(*hit.material, arrival_angle(hit, direction), hit.front);
-  const double spread = hit.material->reflectance.maxCoeff();
-  const double mirror = smooth.mirrored.maxCoeff();
-  const double sum = spread + mirror + smooth.crossing.maxCoeff();
+  const Material& material = *hit.material;
+  const SpecularShares shares = specular_shares(material, arrival_angle(hit, direction), hit.front);
+  const Chances chance = chances(material, shares, hit.front);
+  const double sum = chance.sum();
   if (!(sum > 0)) return std::nullopt;
-  PathStep step;
   double survival = 1;
   if (roulette) {
     survival = std::min(sum, kLongestSurvival);
     if (uniform(random) >= survival) return std::nullopt;
   }
   // Rooms without mirrors and glass use no number here.
-  const double choice = sum > spread ? sum * uniform(random) : 0;
-  const auto weigh = [&](const Spectrum& share) {
-    step.weight = share * (sum / share.maxCoeff() / survival);
-  };
-  if (choice < spread) {
-    weigh(hit.material->reflectance);
-    step.direction = cosine_direction(hit.normal, random);
-    step.scatters = true;
-  } else if (choice < spread + mirror) {
-    weigh(smooth.mirrored);
-    step.direction = mirrored(hit, direction);
-  } else {
-    weigh(smooth.crossing);
-    step.direction = crossing(hit, direction);
-    step.crosses = true;
+  const double choice = sum > chance.spread ? sum * uniform(random) : 0;
+  if (choice < chance.spread) {
+    return PathStep{cosine_direction(hit.normal, random),
+                    material.reflectance * (sum / chance.spread / survival), true, false};
   }
+  const bool crosses = chance.across > 0 && choice >= chance.spread + chance.mirror;
+  auto step = specular_step(hit, direction, shares, crosses, random);
+  if (step) step->weight *= sum / (crosses ? chance.across : chance.mirror) / survival;
   return step;
 }
 

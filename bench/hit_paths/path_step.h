@@ -1,14 +1,10 @@
 #pragma once
 #include <optional>
-#include <random>
 
+#include "bench/hit_paths/path_random.h"
 #include "bench/hit_paths/polygon_room.h"
 
 namespace reemit::hit_paths {
-
-using PathRandom = std::mt19937_64;
-
-double uniform(PathRandom& random);  ///< [0,1)
 
 /// How a path goes on from a surface.
 struct PathStep {
@@ -18,7 +14,7 @@ struct PathStep {
   bool crosses = false;   ///< The surface.
 };
 
-/// Chooses one of the ways on: spread, as from a mirror, or across, each as often as its largest share over
+/// Chooses one of the ways on: spread evenly, mirrored, or across, each as often as its largest share over
 /// the bands says. With `roulette` the path may end, which is what no step means.
 std::optional<PathStep> next_step(const RoomHit& hit, const Vec3& direction, bool roulette,
                                   PathRandom& random);

@@ -3,16 +3,20 @@
 
 namespace reemit::hit_paths {
 
-/// By band, the shares of arriving light that a smooth surface sends on as a mirror does and that cross it.
-struct SmoothShares {
+/// By band, the shares of arriving light that a surface sends on as a mirror does and that cross it, sharply
+/// or spread by a lobe.
+struct SpecularShares {
   Spectrum mirrored;
   Spectrum crossing;
 };
 
-/// What docs/materials.md says of a material for light at an angle to the normal of one of its sides, worked
-/// out apart from the solver: mirrors, metals, clear sheets, panes and bodies of glass. Gloss has no part in
-/// it.
-SmoothShares smooth_shares(const Material& material, double angle, bool front);
+/// What docs/materials.md says of a material for light at an angle to the normal of one of its sides, or of a
+/// facet of it, worked out apart from the solver: mirrors, metals, clear sheets, panes and bodies of glass.
+SpecularShares specular_shares(const Material& material, double angle, bool front);
+
+/// Whether a lobe spreads what is mirrored or what crosses.
+bool is_rough_mirror(const Material& material);
+bool is_rough_across(const Material& material);
 
 /// Angle [rad] of a ray of unit direction to the normal where it met the room.
 double arrival_angle(const RoomHit& hit, const Vec3& direction);
@@ -20,6 +24,9 @@ double arrival_angle(const RoomHit& hit, const Vec3& direction);
 Vec3 mirrored(const RoomHit& hit, const Vec3& direction);
 /// Straight on, or bent by the surface of a body of glass. Pre: not all light is reflected.
 Vec3 crossing(const RoomHit& hit, const Vec3& direction);
+
+/// Index of refraction behind a side of a body of glass over that before it.
+double index_ratio(const Material& material, bool front);
 
 /// Whether light that crosses the material enters or leaves a body of glass.
 bool is_body(const Material& material);

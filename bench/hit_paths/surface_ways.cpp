@@ -1,4 +1,4 @@
-#include "bench/hit_paths/smooth_surface.h"
+#include "bench/hit_paths/surface_ways.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,34 +9,27 @@ namespace reemit::hit_paths {
 namespace {
 
 bool reflects(const NonDiffusePart& part) {
-  return part.roughness <= NonDiffusePart::kSmooth &&
-         (part.angle_law == AngleLaw::kDielectric || NonDiffusePart::is_given(part.specular_reflectance));
+  return part.angle_law == AngleLaw::kDielectric || NonDiffusePart::is_given(part.specular_reflectance);
 }
 
 bool transmits(const NonDiffusePart& part) {
-  return part.transmission_roughness <= NonDiffusePart::kSmooth &&
-         NonDiffusePart::is_given(part.specular_transmittance);
+  return NonDiffusePart::is_given(part.specular_transmittance);
 }
 
 double in_band(const Spectrum& share, bool given, Eigen::Index band) {
   return given && share.size() > 0 ? share[band] : 0.0;
 }
 
-/// Index of refraction behind a side over that before it.
-double index_ratio(const NonDiffusePart& part, bool front) {
-  return part.is_solid && !front ? 1 / part.index_of_refraction : part.index_of_refraction;
-}
-
 }  // namespace
 
-SmoothShares smooth_shares(const Material& material, double angle, bool front) {
+SpecularShares specular_shares(const Material& material, double angle, bool front) {
   const NonDiffusePart& part = material.non_diffuse;
   const Eigen::Index bands = material.reflectance.size();
-  SmoothShares shares{Spectrum::Zero(bands), Spectrum::Zero(bands)};
+  SpecularShares shares{Spectrum::Zero(bands), Spectrum::Zero(bands)};
   const bool mirrors = reflects(part);
   const bool clear = transmits(part);
   if (!mirrors && !clear) return shares;
-  const double ratio = index_ratio(part, front);
+  const double ratio = index_ratio(material, front);
   const bool totally = part.is_solid && clear && refracted_angle(ratio, angle) < 0;
   for (Eigen::Index b = 0; b < bands; ++b) {
     const double left = 1 - material.reflectance[b];  // by the Lambertian part
@@ -70,6 +63,20 @@ SmoothShares smooth_shares(const Material& material, double angle, bool front) {
   return shares;
 }
 
+bool is_rough_mirror(const Material& material) {
+  return reflects(material.non_diffuse) && material.non_diffuse.roughness > NonDiffusePart::kSmooth;
+}
+
+bool is_rough_across(const Material& material) {
+  return transmits(material.non_diffuse) &&
+         material.non_diffuse.transmission_roughness > NonDiffusePart::kSmooth;
+}
+
+double index_ratio(const Material& material, bool front) {
+  const NonDiffusePart& part = material.non_diffuse;
+  return part.is_solid && !front ? 1 / part.index_of_refraction : part.index_of_refraction;
+}
+
 double arrival_angle(const RoomHit& hit, const Vec3& direction) {
   // Well conditioned along the normal, where the arc cosine is not.
   return std::atan2(hit.normal.cross(direction).norm(), -hit.normal.dot(direction));
@@ -80,11 +87,10 @@ Vec3 mirrored(const RoomHit& hit, const Vec3& direction) {
 }
 
 Vec3 crossing(const RoomHit& hit, const Vec3& direction) {
-  const NonDiffusePart& part = hit.material->non_diffuse;
-  if (!part.is_solid) return direction;
+  if (!hit.material->non_diffuse.is_solid) return direction;
   // Snell's law for the part along the surface.
   const Vec3 along = direction - hit.normal.dot(direction) * hit.normal;
-  const Vec3 bent = along / index_ratio(part, hit.front);
+  const Vec3 bent = along / index_ratio(*hit.material, hit.front);
   return (bent - std::sqrt(std::max(0.0, 1 - bent.squaredNorm())) * hit.normal).normalized();
 }
 
