@@ -31,11 +31,18 @@ SpecularSurface::SpecularSurface(const Material& material, double metres_per_uni
       ior_(material.non_diffuse.index_of_refraction) {
   const NonDiffusePart& part = material.non_diffuse;
   const auto bands = static_cast<std::size_t>(material.reflectance.size());
-  const GlossLobe lobe = solid_ ? GlossLobe::kGgx : part.lobe;
-  wide_mirror_ = rough_mirror_ && part.roughness > kWide;
-  wide_across_ = rough_across_ && part.transmission_roughness > kWide;
-  if (rough_mirror_) mirror_lobe_ = GlossModel(lobe, part.roughness);
-  if (rough_across_) across_lobe_ = GlossModel(lobe, part.transmission_roughness);
+  double roughness = part.roughness;
+  double across = part.transmission_roughness;
+  GlossLobe lobe = part.lobe;
+  if (solid_ && transmits_ && is_rough()) {  // light is reflected and refracted at the same facets
+    roughness = across = std::max(roughness, across);
+    lobe = GlossLobe::kGgx;
+    rough_mirror_ = rough_across_ = true;
+  }
+  wide_mirror_ = rough_mirror_ && roughness > kWide;
+  wide_across_ = rough_across_ && across > kWide;
+  if (rough_mirror_) mirror_lobe_ = GlossModel(lobe, roughness);
+  if (rough_across_) across_lobe_ = GlossModel(lobe, across);
   most_ = by_band(1 - material.reflectance, true, bands);
   reflectance_ = by_band(part.specular_reflectance, reflects_, bands);
   transmittance_ = by_band(part.specular_transmittance, transmits_, bands);
@@ -84,7 +91,12 @@ bool SpecularSurface::choose(const SurfacePoint& x, float u, const std::array<fl
                              Survival survival, SpecularStep& step, float most) const {
   const float cosine = x.normal.dot(x.towards);
   if (!(cosine > 0 && most > 0)) return false;
-  const float sum = shares(cosine, x.front, step);
+  // What a facet of rough glass does depends on the angle to the facet: it may let light through where the
+  // whole surface would reflect everything.
+  const float facing =
+      is_rough_body() ? facet_of(x, spread).dot(Frame(x.normal).to_local(x.towards)) : cosine;
+  if (!(facing > 0)) return false;
+  const float sum = shares(facing, x.front, step);
   if (!(sum > 0)) return false;
   const bool certain = survival == Survival::kCertain || sum > most;
   const float scale = certain ? most / sum : 1;
@@ -103,7 +115,7 @@ bool SpecularSurface::take(const SurfacePoint& x, bool crosses, const std::array
   shares(cosine, x.front, step);
   step.crosses = crosses;
   step.chance = 1;
-  return largest(step.share()) > 0 && turn(x, spread, step);
+  return (is_rough_body() || largest(step.share()) > 0) && turn(x, spread, step);
 }
 
 bool SpecularSurface::turn(const SurfacePoint& x, const std::array<float, 2>& spread,
@@ -111,7 +123,7 @@ bool SpecularSurface::turn(const SurfacePoint& x, const std::array<float, 2>& sp
   step.pdf_per_sr = 0;
   step.is_wide = step.crosses ? wide_across_ : wide_mirror_;
   if (step.crosses ? rough_across_ : rough_mirror_)
-    return solid_ ? turn_at_facet(x, spread, step) : turn_by_lobe(x, spread, step);
+    return is_rough_body() ? turn_at_facet(x, spread, step) : turn_by_lobe(x, spread, step);
   const float cosine = x.normal.dot(x.towards);
   step.bends = !step.crosses || solid_;
   step.front = step.crosses != x.front;
@@ -147,12 +159,16 @@ bool SpecularSurface::turn_by_lobe(const SurfacePoint& x, const std::array<float
   return true;
 }
 
+Vec3f SpecularSurface::facet_of(const SurfacePoint& x, const std::array<float, 2>& spread) const {
+  return mirror_lobe_.sample_facet(Frame(x.normal).to_local(x.towards), spread[0], spread[1]);
+}
+
 bool SpecularSurface::turn_at_facet(const SurfacePoint& x, const std::array<float, 2>& spread,
                                     SpecularStep& step) const {
   const GlossModel& lobe = step.crosses ? across_lobe_ : mirror_lobe_;
   const Frame frame(x.normal);
   const Vec3f from = frame.to_local(x.towards);
-  const Vec3f facet = lobe.sample_facet(from, spread[0], spread[1]);
+  const Vec3f facet = facet_of(x, spread);
   const float cosine = from.dot(facet);
   if (!(cosine > 0)) return false;
   shares(cosine, x.front, step);

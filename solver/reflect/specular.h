@@ -86,6 +86,9 @@ class SpecularSurface {
   /// Finds the direction of the way that `step` crosses or does not. False if a lobe sends it nowhere.
   bool turn(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
   bool turn_by_lobe(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
+  bool is_rough_body() const { return solid_ && rough_across_; }
+  /// Facet that light seen from x.towards meets on rough glass, in the frame of the normal.
+  Vec3f facet_of(const SurfacePoint& x, const std::array<float, 2>& spread) const;
   bool turn_at_facet(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
 
   bool reflects_ = false;
