@@ -165,7 +165,6 @@ Vec3f SpecularSurface::facet_of(const SurfacePoint& x, const std::array<float, 2
 
 bool SpecularSurface::turn_at_facet(const SurfacePoint& x, const std::array<float, 2>& spread,
                                     SpecularStep& step) const {
-  const GlossModel& lobe = step.crosses ? across_lobe_ : mirror_lobe_;
   const Frame frame(x.normal);
   const Vec3f from = frame.to_local(x.towards);
   const Vec3f facet = facet_of(x, spread);
@@ -182,9 +181,9 @@ bool SpecularSurface::turn_at_facet(const SurfacePoint& x, const std::array<floa
   to.normalize();
   if (step.crosses ? !(to.z() < 0) : !(to.z() > 0)) return false;
   // Reflected light leaves over the heights that it came by; refracted light finds others [WAL07, eq. 41].
-  float unmasked = lobe.unmasked(to);
+  float unmasked = mirror_lobe_.unmasked(to);
   if (!step.crosses) {
-    const GlossValue v = lobe.value(from, to);
+    const GlossValue v = mirror_lobe_.value(from, to);
     unmasked = v.brdf_per_sr * to.z() / v.pdf_per_sr;
   }
   for (float& share : step.share()) share *= unmasked;

@@ -236,10 +236,9 @@ TEST(SpecularSurface, RoughGlassKeepsMostLight) {
   part.roughness = part.transmission_roughness = 0.3;
   for (const bool front : {true, false})
     for (const double angle : {0.0, 30.0, 60.0}) {
-      if (!front && angle > 30) continue;  // most of it is totally reflected
       const std::array<double, 2> shares = carried(material_of(0, part), angle, front);
       EXPECT_LT(shares[0] + shares[1], 1.001) << angle;
-      EXPECT_GT(shares[0] + shares[1], front ? 0.93 : 0.75) << angle;
+      EXPECT_GT(shares[0] + shares[1], front ? 0.93 : 0.77) << front << ' ' << angle;
     }
   part.roughness = part.transmission_roughness = 0.0201;
   const std::array<double, 2> smooth = carried(material_of(0, part), 40);
