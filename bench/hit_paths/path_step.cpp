@@ -13,12 +13,14 @@ constexpr double kLongestSurvival = 0.98;  ///< Largest chance of going on.
 
 /// How often ways are chosen, in proportion.
 struct Chances {
-  double spread = 0, mirror = 0, across = 0;
-  double sum() const { return spread + mirror + across; }
+  double spread = 0, through = 0, mirror = 0, across = 0;
+  double lambertian() const { return spread + through; }
+  double sum() const { return lambertian() + mirror + across; }
 };
 
 Chances chances(const Material& material, const SpecularShares& shares, bool front) {
-  Chances c{material.reflectance.maxCoeff(), shares.mirrored.maxCoeff(), shares.crossing.maxCoeff()};
+  Chances c{material.reflectance.maxCoeff(), let_through(material).maxCoeff(), shares.mirrored.maxCoeff(),
+            shares.crossing.maxCoeff()};
   // Facets of rough glass let light through even where the surface as a whole would reflect it all.
   if (is_rough_across(material) && is_body(material))
     c.across = std::max(c.across, 0.5 * specular_shares(material, 0, front).crossing.maxCoeff());
@@ -63,7 +65,11 @@ std::optional<PathStep> next_step(const RoomHit& hit, const Vec3& direction, boo
     return PathStep{cosine_direction(hit.normal, random),
                     material.reflectance * (sum / chance.spread / survival), true, false};
   }
-  const bool crosses = chance.across > 0 && choice >= chance.spread + chance.mirror;
+  if (choice < chance.lambertian()) {
+    return PathStep{cosine_direction(-hit.normal, random),
+                    let_through(material) * (sum / chance.through / survival), true, true};
+  }
+  const bool crosses = chance.across > 0 && choice >= chance.lambertian() + chance.mirror;
   auto step = specular_step(hit, direction, shares, crosses, random);
   if (step) step->weight *= sum / (crosses ? chance.across : chance.mirror) / survival;
   return step;

@@ -14,8 +14,8 @@ struct PathStep {
   bool crosses = false;   ///< The surface.
 };
 
-/// Chooses one of the ways on: spread evenly, mirrored, or across, each as often as its largest share over
-/// the bands says. With `roulette` the path may end, which is what no step means.
+/// Chooses one of the ways on: spread evenly on either side, mirrored, or across, each as often as its
+/// largest share over the bands says. With `roulette` the path may end, which is what no step means.
 std::optional<PathStep> next_step(const RoomHit& hit, const Vec3& direction, bool roulette,
                                   PathRandom& random);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "bench/hit_paths/glass_shares.h"
 
@@ -30,9 +31,10 @@ SpecularShares specular_shares(const Material& material, double angle, bool fron
   const bool clear = transmits(part);
   if (!mirrors && !clear) return shares;
   const double ratio = index_ratio(material, front);
+  const Spectrum opal = let_through(material);
   const bool totally = part.is_solid && clear && refracted_angle(ratio, angle) < 0;
   for (Eigen::Index b = 0; b < bands; ++b) {
-    const double left = 1 - material.reflectance[b];  // by the Lambertian part
+    const double left = 1 - material.reflectance[b] - opal[b];  // by the Lambertian parts
     double r = in_band(part.specular_reflectance, mirrors, b);
     double t = in_band(part.specular_transmittance, clear, b);
     switch (part.angle_law) {
@@ -43,6 +45,16 @@ SpecularShares specular_shares(const Material& material, double angle, bool fron
         const double steep = r;
         r += std::max(0.0, left - r) * std::pow(1 - std::cos(angle), 5);
         if (left > steep) t *= (left - r) / (left - steep);
+        break;
+      }
+      case AngleLaw::kConductor: {
+        // Amplitudes of both polarisations with a complex refracted wave.
+        const std::complex<double> n(part.metal_eta[b], -part.metal_k[b]);
+        const double c = std::cos(angle);
+        const std::complex<double> wave = std::sqrt(n * n - std::pow(std::sin(angle), 2));
+        const auto across = (c - wave) / (c + wave);
+        const auto within = (n * n * c - wave) / (n * n * c + wave);
+        r *= left * 0.5 * (std::norm(across) + std::norm(within));
         break;
       }
       case AngleLaw::kDielectric: {
@@ -61,6 +73,11 @@ SpecularShares specular_shares(const Material& material, double angle, bool fron
     if (clear) shares.crossing[b] = t;
   }
   return shares;
+}
+
+Spectrum let_through(const Material& material) {
+  const Spectrum& through = material.non_diffuse.diffuse_transmittance;
+  return through.size() > 0 ? through : Spectrum::Zero(material.reflectance.size());
 }
 
 bool is_rough_mirror(const Material& material) {

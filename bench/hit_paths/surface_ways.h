@@ -14,6 +14,9 @@ struct SpecularShares {
 /// facet of it, worked out apart from the solver: mirrors, metals, clear sheets, panes and bodies of glass.
 SpecularShares specular_shares(const Material& material, double angle, bool front);
 
+/// By band, the share that is let through into all directions.
+Spectrum let_through(const Material& material);
+
 /// Whether a lobe spreads what is mirrored or what crosses.
 bool is_rough_mirror(const Material& material);
 bool is_rough_across(const Material& material);

@@ -34,6 +34,14 @@ MaterialId CodeRoom::mirror(double reflectance) {
   return id;
 }
 
+MaterialId CodeRoom::opal(double reflectance, double transmittance) {
+  const MaterialId id = paint(reflectance);
+  scene_.materials.back().two_sided = true;
+  scene_.materials.back().non_diffuse.diffuse_transmittance =
+      Spectrum::Constant(static_cast<Eigen::Index>(scene_.bands.count()), transmittance);
+  return id;
+}
+
 MaterialId CodeRoom::pane(double index_of_refraction, double once) {
   return glass(index_of_refraction, once, false);
 }

@@ -18,6 +18,8 @@ class CodeRoom {
   MaterialId paint(double reflectance, double exitance = 0);
   /// A mirror of this reflectance at every angle, else black; its back absorbs.
   MaterialId mirror(double reflectance);
+  /// A sheet that reflects and lets through so much on either side, into all directions.
+  MaterialId opal(double reflectance, double transmittance);
   /// A clear thin pane by Fresnel's equations; `once`: left by one pass across it at normal incidence.
   MaterialId pane(double index_of_refraction, double once = 1);
   /// The surface of a body of clear glass that lies behind its faces.

@@ -26,6 +26,7 @@ std::vector<Family> families() {
         "radiosity_mirror_continuous"},
        evaluate_mirrors},
       {"glass", {"slab_direct", "fresnel_slab", "fresnel_hemi"}, evaluate_glass},
+      {"opal sheets", {"opal_between_plates", "opal_panel_point"}, evaluate_opal},
       {"zonal systems",
        {"zone_box", "zone_cube_NxN", "zone_cube_triangles", "zone_icosphere", "zone_cylinder", "lroom_zone"},
        evaluate_zonal}};

@@ -39,6 +39,9 @@ std::vector<ValidationRow> evaluate_mirrors(const std::vector<ReferenceCase>& ca
 /// What thin panes and surfaces of glass reflect and let through: slab_direct, fresnel_slab, fresnel_hemi.
 std::vector<ValidationRow> evaluate_glass(const std::vector<ReferenceCase>& cases, const Effort& effort);
 
+/// Light that comes diffusely through sheets: opal_between_plates, opal_panel_point.
+std::vector<ValidationRow> evaluate_opal(const std::vector<ReferenceCase>& cases, const Effort& effort);
+
 /// Zone values against the exact zonal system: zone_*, lroom_zone.
 std::vector<ValidationRow> evaluate_zonal(const std::vector<ReferenceCase>& cases, const Effort& effort);
 

@@ -44,8 +44,12 @@ class Hasher {
 /// Nothing is added for a material without such a part.
 void add_non_diffuse(Hasher& hash, const NonDiffusePart& part) {
   const NonDiffusePart none;
-  const Spectrum* shares[] = {&part.specular_reflectance, &part.diffuse_transmittance,
-                              &part.specular_transmittance, &part.absorption_per_m};
+  const Spectrum* shares[] = {&part.specular_reflectance,
+                              &part.diffuse_transmittance,
+                              &part.specular_transmittance,
+                              &part.absorption_per_m,
+                              &part.metal_eta,
+                              &part.metal_k};
   const auto numbers_of = [](const NonDiffusePart& p) {
     return std::array{p.roughness,
                       p.transmission_roughness,

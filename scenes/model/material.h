@@ -10,6 +10,7 @@ namespace reemit {
 enum class AngleLaw {
   kConstant,    ///< They do not: the numbers hold at every angle.
   kSchlick,     ///< R = r + (1-r) (1 - cos)^5, r at normal incidence: metals [SCH94, eq. 15].
+  kConductor,   ///< Fresnel's equations for metal_eta and metal_k, times specular_reflectance as a tint.
   kDielectric,  ///< Fresnel's equations for the index of refraction; no specular_reflectance is given.
 };
 
@@ -23,9 +24,11 @@ struct NonDiffusePart {
   static constexpr double kLargestIndex = 100;  ///< Of refraction.
 
   Spectrum specular_reflectance;  ///< [0,1]; size 0 = none.
+  /// Index of refraction eta - i k of a metal, by band; > 0 and >= 0. Of kConductor, else size 0.
+  Spectrum metal_eta, metal_k;
   /// alpha of GGX and Ward's lobe [0,1], 0 = mirror; Phong's exponent is 2/alpha^2 - 2 [WAL07].
   double roughness = 0;
-  Spectrum diffuse_transmittance;  ///< [0,1]; size 0 = none. Not modelled: this light is absorbed.
+  Spectrum diffuse_transmittance;  ///< Into all directions beyond [0,1]; size 0 = none.
   /// [0,1]; size 0 = none. With kDielectric, of the glass alone: of a pane, for one pass across it at normal
   /// incidence; of a solid, a tint of what crosses the surface. Else of the whole.
   Spectrum specular_transmittance;
@@ -45,6 +48,7 @@ struct NonDiffusePart {
     return angle_law == AngleLaw::kDielectric || is_given(specular_reflectance);
   }
   bool transmits_specularly() const { return is_given(specular_transmittance); }
+  bool transmits_diffusely() const { return is_given(diffuse_transmittance); }
   bool has_gloss() const { return reflects_specularly() && roughness > kSmooth; }
   bool has_glossy_transmission() const { return transmits_specularly() && transmission_roughness > kSmooth; }
 };
@@ -61,13 +65,25 @@ struct Material {
   bool emits_both_sides = false;  ///< Else only the front emits. Needs two_sided.
   NonDiffusePart non_diffuse;
 
-  /// Reflected and transmitted by band, all together. The tint of glass (kDielectric) is no share of its own.
+  double diffuse_transmittance(std::size_t band) const {
+    const Spectrum& tau = non_diffuse.diffuse_transmittance;
+    return tau.size() > 0 ? tau[static_cast<Eigen::Index>(band)] : 0;
+  }
+  /// Reflected and transmitted diffusely, by band.
+  Spectrum lambertian_share() const {
+    return non_diffuse.transmits_diffusely() ? Spectrum(reflectance + non_diffuse.diffuse_transmittance)
+                                             : reflectance;
+  }
+  /// Reflected and transmitted by band, all together. The tint of glass (kDielectric), as that of metals
+  /// (kConductor), is no share of its own.
   Spectrum share_of_light() const {
     Spectrum sum = reflectance;
     const Spectrum none;
     const bool is_tint = non_diffuse.angle_law == AngleLaw::kDielectric;
-    for (const Spectrum* s : {&non_diffuse.specular_reflectance, &non_diffuse.diffuse_transmittance,
-                              is_tint ? &none : &non_diffuse.specular_transmittance})
+    const bool is_metal = non_diffuse.angle_law == AngleLaw::kConductor;
+    for (const Spectrum* s :
+         {is_metal ? &none : &non_diffuse.specular_reflectance, &non_diffuse.diffuse_transmittance,
+          is_tint ? &none : &non_diffuse.specular_transmittance})
       if (s->size() > 0) sum += *s;
     return sum;
   }

@@ -52,8 +52,9 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
     const NonDiffusePart& rest = m.non_diffuse;
-    for (const Spectrum* s : {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance,
-                              &rest.specular_transmittance, &rest.absorption_per_m})
+    for (const Spectrum* s :
+         {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance, &rest.diffuse_transmittance,
+          &rest.specular_transmittance, &rest.absorption_per_m, &rest.metal_eta, &rest.metal_k})
       if (used[i] && s->size() > 0 && !is_grey(*s)) return;
   }
   for (const PunctualLight& light : scene.lights)
@@ -61,45 +62,14 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
 
   for (Material& m : scene.materials) {
     NonDiffusePart& rest = m.non_diffuse;
-    for (Spectrum* s : {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance,
-                        &rest.diffuse_transmittance, &rest.specular_transmittance, &rest.absorption_per_m})
+    for (Spectrum* s :
+         {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance, &rest.diffuse_transmittance,
+          &rest.specular_transmittance, &rest.absorption_per_m, &rest.metal_eta, &rest.metal_k})
       reduce(*s, scene.bands);
   }
   for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);
   scene.bands = BandSet::grey();
   scene.notes.push_back("No surface or light has a colour: one grey band is transported.");
-}
-
-/// A part of a material that is read but not modelled.
-struct IgnoredPart {
-  const char* kind;
-  std::string text;
-};
-
-std::vector<IgnoredPart> ignored_parts(const Material& m, const BandSet& bands) {
-  const NonDiffusePart& rest = m.non_diffuse;
-  std::vector<IgnoredPart> parts;
-  const auto add = [&](const char* kind, const char* what, const Spectrum& s) {
-    if (NonDiffusePart::is_given(s))
-      parts.push_back({kind, fmt::format("{} {:.3g}", what, luminous_mean(s, bands))});
-  };
-  add("diffuse_transmittance", "diffuse transmittance", rest.diffuse_transmittance);
-  return parts;
-}
-
-void warn_of_ignored_parts(Scene& scene, const std::vector<bool>& used) {
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& m = scene.materials[i];
-    if (!used[i]) continue;
-    std::string text;
-    for (const IgnoredPart& part : ignored_parts(m, scene.bands)) {
-      ++scene.not_modelled[part.kind];
-      text += (text.empty() ? "" : ", ") + part.text;
-    }
-    if (!text.empty())
-      scene.warnings.push_back(
-          fmt::format("Material '{}': not modelled (this light is absorbed): {}.", m.name, text));
-  }
 }
 
 // Rays from a camera or a vertex cannot meet what has no area.
@@ -151,7 +121,6 @@ void finish_scene(Scene& scene) {
   check_cameras(scene);
   const std::vector<bool> used = used_materials(scene);
   reduce_to_grey_if_colourless(scene, used);
-  warn_of_ignored_parts(scene, used);
   warn_of_light_over_mirrors(scene, used);
   warn_if_dark(scene, used);
   warn_of_units(scene);

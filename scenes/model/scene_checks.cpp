@@ -80,7 +80,7 @@ void limit_to_all_light(Material& m, Scene& scene, const std::string& where) {
     excess -= taken;
   };
   if (rest.angle_law != AngleLaw::kDielectric) take(rest.specular_transmittance);
-  take(rest.specular_reflectance);
+  if (rest.angle_law != AngleLaw::kConductor) take(rest.specular_reflectance);
   take(rest.diffuse_transmittance);
 }
 
@@ -93,6 +93,19 @@ void check_specular(Material& m, Scene& scene, const std::string& where) {
   if (!(rest.index_of_refraction >= 1 && rest.index_of_refraction <= NonDiffusePart::kLargestIndex))
     throw InputError(where, fmt::format("index of refraction {}", rest.index_of_refraction),
                      "Give 1 (no refraction) to 100; window glass has 1.52, water 1.33.");
+  if (rest.angle_law == AngleLaw::kConductor) {
+    check_size(rest.metal_eta, scene, where, "eta of the metal");
+    check_size(rest.metal_k, scene, where, "k of the metal");
+    constexpr double kMost = NonDiffusePart::kLargestIndex;
+    if (!(rest.metal_eta > 0 && rest.metal_eta <= kMost).all() ||
+        !(rest.metal_k >= 0 && rest.metal_k <= kMost).all())
+      throw InputError(
+          where, fmt::format("eta {} and k {} of a metal", listed(rest.metal_eta), listed(rest.metal_k)),
+          "Give an eta above 0 and a k of 0 or more, neither above 100.");
+    if (rest.transmits_specularly())
+      throw InputError(where, "a metal with eta and k that lets light through",
+                       "Give the shares of a half-silvered sheet as mirror and transmittance.");
+  }
   if (rest.absorption_per_m.size() > 0) {
     check_size(rest.absorption_per_m, scene, where, "absorption");
     if (!rest.absorption_per_m.isFinite().all() || (rest.absorption_per_m < 0).any())
@@ -101,7 +114,7 @@ void check_specular(Material& m, Scene& scene, const std::string& where) {
   }
   limit_to_all_light(m, scene, where);
   // Light that crosses a face meets its back on the way out.
-  if (rest.transmits_specularly()) m.two_sided = true;
+  if (rest.transmits_specularly() || rest.transmits_diffusely()) m.two_sided = true;
 }
 
 void check_material(Material& m, Scene& scene, const std::string& where) {

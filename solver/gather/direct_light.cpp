@@ -93,24 +93,28 @@ void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<f
 }
 
 void DirectLight::add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
-                                  const CausticShare& counted, const float* weight, float* sum) const {
+                                  const CausticShare& counted, DiffuseWay diffuse, const float* weight,
+                                  float* sum) const {
   if (empty()) return;
   const SpecularSurface& surface = surfaces_->specular(x.triangle);
-  if (surface.spreads_reflected()) add_lobe_of(x, x, u, counted, weight, sum);
-  if (!surface.spreads_transmitted()) return;
+  if (surface.spreads(SpecularWayOn::kMirror))
+    add_lobe_of(x, SpecularWayOn::kMirror, x, u, counted, weight, sum);
   SurfacePoint beyond = x;
   beyond.front = !x.front;
   beyond.normal = -x.normal;
-  add_lobe_of(x, beyond, u, counted, weight, sum);
+  if (surface.spreads(SpecularWayOn::kAcross))
+    add_lobe_of(x, SpecularWayOn::kAcross, beyond, u, counted, weight, sum);
+  if (surface.diffuses() && diffuse == DiffuseWay::kFollowed)
+    add_lobe_of(x, SpecularWayOn::kDiffuse, beyond, u, counted, weight, sum);
 }
 
-void DirectLight::add_lobe_of(const SurfacePoint& x, const SurfacePoint& lit,
+void DirectLight::add_lobe_of(const SurfacePoint& x, SpecularWayOn way, const SurfacePoint& lit,
                               const std::array<float, kDimensions>& u, const CausticShare& counted,
                               const float* weight, float* sum) const {
   const Arrival light = estimate(lit, ray_origin(*rays_, lit), u);
   if (light.strength == nullptr) return;
   SpecularStep step(band_count());
-  if (!surfaces_->specular(x.triangle).value(x, light.towards.normalized(), step)) return;
+  if (!surfaces_->specular(x.triangle).value(x, way, light.towards.normalized(), step)) return;
   const SurfaceId luminaire = table_.surface_of(light.entry);
   float share = step.is_wide ? 1 : counted.of(luminaire);
   if (luminaire.valid())

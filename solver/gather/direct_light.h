@@ -48,9 +48,10 @@ class DirectLight {
 
   /// One sample of what the lobes of a rough surface at x send towards x.towards (SpecularSurface::value):
   /// adds weight[b] times that to sum[b], of areas only the share that rays drawn from the lobe do not find,
-  /// of narrow lobes only what is `counted`.
+  /// of narrow lobes only what is `counted`; diffuse transmission only where it is followed.
   void add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
-                       const CausticShare& counted, const float* weight, float* sum) const;
+                       const CausticShare& counted, DiffuseWay diffuse, const float* weight,
+                       float* sum) const;
   /// The share of an area's light that is left to rays drawn from a lobe: the balance heuristic [VG95], with
   /// the luminaires of a surface taken as drawn evenly by area. `way`: from the lobe to a point of the
   /// triangle.
@@ -73,9 +74,10 @@ class DirectLight {
 
     float pane(std::size_t b) const { return panes.empty() ? 1.0F : panes[b]; }
   };
-  /// add_lobe_sample by the side of the surface that light falls on.
-  void add_lobe_of(const SurfacePoint& x, const SurfacePoint& lit, const std::array<float, kDimensions>& u,
-                   const CausticShare& counted, const float* weight, float* sum) const;
+  /// add_lobe_sample by one way; `lit` is x on the side of the surface that light falls on.
+  void add_lobe_of(const SurfacePoint& x, SpecularWayOn way, const SurfacePoint& lit,
+                   const std::array<float, kDimensions>& u, const CausticShare& counted, const float* weight,
+                   float* sum) const;
   /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival.
   bool passes(const Vec3f& origin, const LuminaireSample& sample, std::vector<float>& panes) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;

@@ -63,11 +63,12 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     float scattered = 1;  // chance that the ray goes on from here as scattered light
     if (specular) {
       const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+      const DiffuseWay diffuse = is_read ? DiffuseWay::kNotFollowed : DiffuseWay::kFollowed;
       scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
       if (scattered > 0) add_direct(point, bounce, key, weight, sum);
       if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), weight, sum);
-      const SpecularPath::Next next = path.choose(point, scattered, weight);
+        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), diffuse, weight, sum);
+      const SpecularPath::Next next = path.choose(point, diffuse, scattered, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
         along = path.direction();

@@ -41,9 +41,9 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
     if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, weight, sum);
     if (specular) {
       if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, {}, weight, sum);
+        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, {}, DiffuseWay::kFollowed, weight, sum);
       survival = largest;
-      const SpecularPath::Next next = path.choose(point, survival, weight);
+      const SpecularPath::Next next = path.choose(point, DiffuseWay::kFollowed, survival, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
         direction = path.direction();

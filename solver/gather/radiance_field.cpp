@@ -9,6 +9,7 @@
 
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
+#include "solver/solution/opposite_zones.h"
 
 namespace reemit {
 
@@ -53,21 +54,47 @@ void RadianceField::read_zones(const Solution& solution) {
       const auto reflectance = static_cast<float>(rho[b]);
       reflected_direct_[k] =
           lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / weight));
-      for (std::size_t p = 0; p < parts_; ++p) {
-        double total = 0;
-        if (parts_ == 1)
-          total = sums.direct[k] + sums.indirect[k];
-        else
-          for (std::size_t g = p; g < ZoneSums::kGroups; g += parts_)
-            total += static_cast<double>(sums.group_total[g * values_ + k]);
-        const auto irradiance = static_cast<float>(total / part_weight[p]);
-        reflected_[p * values_ + k] = lambert_reflected_radiance(reflectance, irradiance);
-      }
+      for (std::size_t p = 0; p < parts_; ++p)
+        reflected_[p * values_ + k] =
+            lambert_reflected_radiance(reflectance, irradiance(sums, p, part_weight[p], k));
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, zones, 4096), [&](const auto& range) {
     for (std::size_t z = range.begin(); z != range.end(); ++z) read(z);
   });
+  add_transmitted(solution, part_weight);
+}
+
+float RadianceField::irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t k) const {
+  double total = 0;
+  if (parts_ == 1)
+    total = sums.direct[k] + sums.indirect[k];
+  else
+    for (std::size_t g = part; g < ZoneSums::kGroups; g += parts_)
+      total += static_cast<double>(sums.group_total[g * values_ + k]);
+  return static_cast<float>(total / weight);
+}
+
+void RadianceField::add_transmitted(const Solution& solution, const std::vector<double>& part_weight) {
+  const Scene& scene = room_->scene();
+  const ZoneSums& sums = solution.sums;
+  const auto weight = static_cast<double>(sums.weight());
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
+    const SurfaceId surface = solution.mesh.zone_surface(ZoneId(z));
+    const Material& material = scene.material_of(scene.surfaces[surface.index()]);
+    if (!material.non_diffuse.transmits_diffusely()) continue;
+    for (const ZoneShare& behind : opposite_zones(solution.mesh, ZoneId(z)))
+      for (std::size_t b = 0; b < bands_; ++b) {
+        const auto through = static_cast<float>(behind.share * material.diffuse_transmittance(b));
+        const std::size_t to = z * bands_ + b;
+        const std::size_t from = behind.zone.index() * bands_ + b;
+        reflected_direct_[to] +=
+            lambert_reflected_radiance(through, static_cast<float>(sums.direct[from] / weight));
+        for (std::size_t p = 0; p < parts_; ++p)
+          reflected_[p * values_ + to] +=
+              lambert_reflected_radiance(through, irradiance(sums, p, part_weight[p], from));
+      }
+  }
 }
 
 }  // namespace reemit

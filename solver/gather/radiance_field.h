@@ -20,12 +20,12 @@ class RadianceField {
   /// Parts that there are: one (the whole solution) or independent estimates from disjoint sets of batches.
   std::size_t parts() const { return parts_; }
 
-  /// Reflected radiance rho (E_direct + E_indirect)/pi [W/(m2 sr)] of a zone; self-emission is not in it.
-  /// Zero where there is no zone.
+  /// Reflected radiance rho (E_direct + E_indirect)/pi of a zone, and what comes through diffusely, tau/pi
+  /// times that of the other side [W/(m2 sr)]; self-emission is not in it. Zero where there is no zone.
   const float* reflected(ZoneId zone, std::size_t part = 0) const {
     return zone.valid() ? &reflected_[part * values_ + zone.index() * bands_] : zero_.data();
   }
-  /// The share rho E_direct/pi of reflected(), from all parts [W/(m2 sr)].
+  /// The share of E_direct in reflected(), from all parts [W/(m2 sr)].
   const float* reflected_direct(ZoneId zone) const {
     return zone.valid() ? &reflected_direct_[zone.index() * bands_] : zero_.data();
   }
@@ -34,6 +34,9 @@ class RadianceField {
 
  private:
   void read_zones(const Solution& solution);
+  /// Of value k of a part, whose batches weigh `weight` together [W/m2].
+  float irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t k) const;
+  void add_transmitted(const Solution& solution, const std::vector<double>& part_weight);
 
   const Room* room_;
   std::size_t bands_;

@@ -72,14 +72,15 @@ class SpecularPath {
   /// What becomes of the path at x, a surface that sends rays on. It scatters with the chance `scattered`
   /// [0,1], which is lowered where it and the ways on add up to more than 1; or it goes on, from origin()
   /// along direction(), with weight[b] for that.
-  Next choose(const SurfacePoint& x, float& scattered, float* weight) {
+  Next choose(const SurfacePoint& x, DiffuseWay diffuse, float& scattered, float* weight) {
     if (steps_ == SpecularNumbers::kMostSteps) return Next::kEnds;
     const SpecularSurface& surface = room_->surfaces().specular(x.triangle);
+    step_.diffuse_way = diffuse;
     const float on = surface.shares(x.normal.dot(x.towards), x.front, step_);
     if (scattered + on > 1) scattered /= scattered + on;
     const float u = numbers_->at(key_, steps_);
     std::array<float, 2> spread{};
-    if (surface.is_rough()) spread = numbers_->spread(key_, steps_);
+    if (surface.is_spread()) spread = numbers_->spread(key_, steps_);
     ++steps_;
     if (u < scattered) return Next::kScatters;
     if (!surface.choose(x, u - scattered, spread, Survival::kRoulette, step_, 1 - scattered))

@@ -27,6 +27,20 @@ inline FresnelShares fresnel(double eta, double cosine) {
   return {s * s, p * p};
 }
 
+/// Share of the light that a metal of index of refraction eta - i k reflects, seen from air, at a cosine in
+/// [0,1] [BW99, sec. 14.2].
+inline FresnelShares fresnel_of_metal(double eta, double k, double cosine) {
+  const double c2 = cosine * cosine;
+  const double s2 = 1 - c2;
+  const double real = eta * eta - k * k - s2;
+  const double both = std::sqrt(real * real + 4 * eta * eta * k * k);  // a^2 + b^2 of the refracted wave
+  const double a = std::sqrt(std::max(0.0, 0.5 * (both + real)));
+  const double s = (both + c2 - 2 * a * cosine) / (both + c2 + 2 * a * cosine);
+  const double beyond = c2 * both + s2 * s2;
+  const double turned = 2 * a * cosine * s2;
+  return {s, s * (beyond - turned) / (beyond + turned)};
+}
+
 /// What a pane reflects and lets through, all reflections between its two surfaces added up as power: for one
 /// polarisation, r at a surface and `once` the share that a pass across the glass leaves [BW99, sec. 1.6.4].
 struct PaneShares {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/reflect/fresnel.h"
+#include "solver/reflect/lambert.h"
 
 namespace reemit {
 namespace {
@@ -24,11 +25,14 @@ float largest(const std::vector<float>& values) {
 SpecularSurface::SpecularSurface(const Material& material, double metres_per_unit)
     : reflects_(material.non_diffuse.reflects_specularly()),
       transmits_(material.non_diffuse.transmits_specularly()),
+      diffuses_(material.non_diffuse.transmits_diffusely()),
       solid_(material.non_diffuse.is_solid),
       rough_mirror_(material.non_diffuse.has_gloss()),
       rough_across_(material.non_diffuse.has_glossy_transmission()),
       law_(material.non_diffuse.angle_law),
-      ior_(material.non_diffuse.index_of_refraction) {
+      ior_(material.non_diffuse.index_of_refraction),
+      eta_(material.non_diffuse.metal_eta.begin(), material.non_diffuse.metal_eta.end()),
+      k_(material.non_diffuse.metal_k.begin(), material.non_diffuse.metal_k.end()) {
   const NonDiffusePart& part = material.non_diffuse;
   const auto bands = static_cast<std::size_t>(material.reflectance.size());
   double roughness = part.roughness;
@@ -43,9 +47,10 @@ SpecularSurface::SpecularSurface(const Material& material, double metres_per_uni
   wide_across_ = rough_across_ && across > kWide;
   if (rough_mirror_) mirror_lobe_ = GlossModel(lobe, roughness);
   if (rough_across_) across_lobe_ = GlossModel(lobe, across);
-  most_ = by_band(1 - material.reflectance, true, bands);
+  most_ = by_band(1 - material.lambertian_share(), true, bands);
   reflectance_ = by_band(part.specular_reflectance, reflects_, bands);
   transmittance_ = by_band(part.specular_transmittance, transmits_, bands);
+  diffuse_ = by_band(part.diffuse_transmittance, diffuses_, bands);
   if (transmits_ && solid_ && part.absorption_per_m.size() > 0 && (part.absorption_per_m > 0).any()) {
     absorption_ = by_band(part.absorption_per_m, true, bands);
     for (float& a : absorption_) a *= static_cast<float>(metres_per_unit);
@@ -67,6 +72,8 @@ float SpecularSurface::shares(float cosine, bool front, SpecularStep& step) cons
       const float most = std::max(most_[b], reflectance_[b]);
       reflected = schlick(reflectance_[b], most, cosine);
       if (reflectance_[b] < most) transmitted *= (most - reflected) / (most - reflectance_[b]);
+    } else if (law_ == AngleLaw::kConductor) {
+      reflected *= most_[b] * static_cast<float>(fresnel_of_metal(eta_[b], k_[b], c).mean());
     } else if (law_ == AngleLaw::kDielectric && solid_) {
       reflected = most_[b] * static_cast<float>(surface.mean());
       transmitted *= most_[b] - reflected;
@@ -84,7 +91,11 @@ float SpecularSurface::shares(float cosine, bool front, SpecularStep& step) cons
     if (!reflects_) reflected = solid_ && !(beyond > 0) ? reflected : 0;
     if (!transmits_) transmitted = 0;
   }
-  return largest(step.reflected) + largest(step.transmitted);
+  if (step.diffuse_way == DiffuseWay::kFollowed)
+    step.diffuse = diffuse_;
+  else
+    std::fill(step.diffuse.begin(), step.diffuse.end(), 0.0F);
+  return largest(step.reflected) + largest(step.transmitted) + largest(step.diffuse);
 }
 
 bool SpecularSurface::choose(const SurfacePoint& x, float u, const std::array<float, 2>& spread,
@@ -103,17 +114,21 @@ bool SpecularSurface::choose(const SurfacePoint& x, float u, const std::array<fl
   if (!certain && u >= sum) return false;
   const float mirror = largest(step.reflected);
   const float across = largest(step.transmitted);
-  step.crosses = across > 0 && u >= scale * mirror;
-  step.chance = scale * (step.crosses ? across : mirror);
+  const float diffuse = largest(step.diffuse);
+  step.way = SpecularWayOn::kMirror;
+  if (u >= scale * mirror && across + diffuse > 0)
+    step.way = diffuse > 0 && (u >= scale * (mirror + across) || !(across > 0)) ? SpecularWayOn::kDiffuse
+                                                                                : SpecularWayOn::kAcross;
+  step.chance = scale * largest(step.share());
   return step.chance > 0 && turn(x, spread, step);
 }
 
-bool SpecularSurface::take(const SurfacePoint& x, bool crosses, const std::array<float, 2>& spread,
+bool SpecularSurface::take(const SurfacePoint& x, SpecularWayOn way, const std::array<float, 2>& spread,
                            SpecularStep& step) const {
   const float cosine = x.normal.dot(x.towards);
   if (!(cosine > 0)) return false;
   shares(cosine, x.front, step);
-  step.crosses = crosses;
+  step.way = way;
   step.chance = 1;
   return (is_rough_body() || largest(step.share()) > 0) && turn(x, spread, step);
 }
@@ -121,13 +136,18 @@ bool SpecularSurface::take(const SurfacePoint& x, bool crosses, const std::array
 bool SpecularSurface::turn(const SurfacePoint& x, const std::array<float, 2>& spread,
                            SpecularStep& step) const {
   step.pdf_per_sr = 0;
-  step.is_wide = step.crosses ? wide_across_ : wide_mirror_;
-  if (step.crosses ? rough_across_ : rough_mirror_)
+  const bool crosses = step.crosses();
+  if (step.way == SpecularWayOn::kDiffuse) {
+    turn_anywhere_across(x, spread, step);
+    return true;
+  }
+  step.is_wide = crosses ? wide_across_ : wide_mirror_;
+  if (crosses ? rough_across_ : rough_mirror_)
     return is_rough_body() ? turn_at_facet(x, spread, step) : turn_by_lobe(x, spread, step);
   const float cosine = x.normal.dot(x.towards);
-  step.bends = !step.crosses || solid_;
-  step.front = step.crosses != x.front;
-  if (!step.crosses)
+  step.bends = !crosses || solid_;
+  step.front = crosses != x.front;
+  if (!crosses)
     step.direction = (2 * cosine * x.normal - x.towards).normalized();
   else if (!solid_)
     step.direction = -x.towards;
@@ -141,9 +161,18 @@ bool SpecularSurface::turn(const SurfacePoint& x, const std::array<float, 2>& sp
   return true;
 }
 
+void SpecularSurface::turn_anywhere_across(const SurfacePoint& x, const std::array<float, 2>& spread,
+                                           SpecularStep& step) const {
+  step.direction = sample_lambert(-x.normal, spread[0], spread[1]);
+  step.pdf_per_sr = cosine_hemisphere_pdf_per_sr(-step.direction.dot(x.normal));
+  step.is_wide = step.bends = true;
+  step.front = !x.front;
+}
+
 bool SpecularSurface::turn_by_lobe(const SurfacePoint& x, const std::array<float, 2>& spread,
                                    SpecularStep& step) const {
-  const GlossModel& lobe = step.crosses ? across_lobe_ : mirror_lobe_;
+  const bool crosses = step.crosses();
+  const GlossModel& lobe = crosses ? across_lobe_ : mirror_lobe_;
   const Frame frame(x.normal);
   const Vec3f from = frame.to_local(x.towards);
   Vec3f to;
@@ -154,8 +183,8 @@ bool SpecularSurface::turn_by_lobe(const SurfacePoint& x, const std::array<float
   for (float& share : step.share()) share *= v.brdf_per_sr * to.z() / v.pdf_per_sr;
   step.pdf_per_sr = v.pdf_per_sr;
   step.bends = true;
-  step.front = step.crosses != x.front;
-  step.direction = frame.to_world(step.crosses ? Vec3f(to.x(), to.y(), -to.z()) : to);
+  step.front = crosses != x.front;
+  step.direction = frame.to_world(crosses ? Vec3f(to.x(), to.y(), -to.z()) : to);
   return true;
 }
 
@@ -165,6 +194,7 @@ Vec3f SpecularSurface::facet_of(const SurfacePoint& x, const std::array<float, 2
 
 bool SpecularSurface::turn_at_facet(const SurfacePoint& x, const std::array<float, 2>& spread,
                                     SpecularStep& step) const {
+  const bool crosses = step.crosses();
   const Frame frame(x.normal);
   const Vec3f from = frame.to_local(x.towards);
   const Vec3f facet = facet_of(x, spread);
@@ -172,39 +202,46 @@ bool SpecularSurface::turn_at_facet(const SurfacePoint& x, const std::array<floa
   if (!(cosine > 0)) return false;
   shares(cosine, x.front, step);
   Vec3f to = 2 * cosine * facet - from;
-  if (step.crosses) {
+  if (crosses) {
     const float eta = static_cast<float>(x.front ? ior_ : 1 / ior_);
     const auto beyond =
         static_cast<float>(refracted_cosine(static_cast<double>(eta), static_cast<double>(cosine)));
     to = (cosine / eta - beyond) * facet - from / eta;
   }
   to.normalize();
-  if (step.crosses ? !(to.z() < 0) : !(to.z() > 0)) return false;
+  if (crosses ? !(to.z() < 0) : !(to.z() > 0)) return false;
   // Reflected light leaves over the heights that it came by; refracted light finds others [WAL07, eq. 41].
   float unmasked = mirror_lobe_.unmasked(to);
-  if (!step.crosses) {
+  if (!crosses) {
     const GlossValue v = mirror_lobe_.value(from, to);
     unmasked = v.brdf_per_sr * to.z() / v.pdf_per_sr;
   }
   for (float& share : step.share()) share *= unmasked;
   step.bends = true;
-  step.front = step.crosses != x.front;
+  step.front = crosses != x.front;
   step.direction = frame.to_world(to);
   return true;
 }
 
-bool SpecularSurface::value(const SurfacePoint& x, const Vec3f& from, SpecularStep& step) const {
+bool SpecularSurface::value(const SurfacePoint& x, SpecularWayOn way, const Vec3f& from,
+                            SpecularStep& step) const {
+  step.way = way;
   const Frame frame(x.normal);
   Vec3f light = frame.to_local(from);
-  step.crosses = light.z() < 0;
-  if (!(step.crosses ? spreads_transmitted() : spreads_reflected())) return false;
+  if (!spreads(way) || step.crosses() != (light.z() < 0)) return false;
   light.z() = std::fabs(light.z());
-  const GlossValue v = (step.crosses ? across_lobe_ : mirror_lobe_).value(frame.to_local(x.towards), light);
+  if (way == SpecularWayOn::kDiffuse) {
+    for (std::size_t b = 0; b < diffuse_.size(); ++b) step.diffuse[b] = lambert_brdf_per_sr(diffuse_[b]);
+    step.pdf_per_sr = cosine_hemisphere_pdf_per_sr(light.z());
+    step.is_wide = true;
+    return true;
+  }
+  const GlossValue v = (step.crosses() ? across_lobe_ : mirror_lobe_).value(frame.to_local(x.towards), light);
   if (!(v.brdf_per_sr > 0)) return false;
   shares(v.half_cosine, x.front, step);
   for (float& share : step.share()) share *= v.brdf_per_sr;
   step.pdf_per_sr = v.pdf_per_sr;
-  step.is_wide = step.crosses ? wide_across_ : wide_mirror_;
+  step.is_wide = step.crosses() ? wide_across_ : wide_mirror_;
   return true;
 }
 

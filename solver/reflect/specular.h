@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "scenes/model/material.h"
@@ -9,27 +10,44 @@
 
 namespace reemit {
 
-/// How light goes on from a surface as one ray: into the mirror direction, or across, or near these where the
-/// surface is rough. To be used from hit to hit, so that memory is asked for once; a room without such
-/// surfaces needs one of no bands.
+/// A way on from a surface.
+enum class SpecularWayOn {
+  kMirror,   ///< Into the mirror direction, or near it where the surface is rough.
+  kAcross,   ///< Straight on or refracted, or near that.
+  kDiffuse,  ///< Across, into all directions alike.
+};
+
+/// What becomes of diffuse transmission where a ray meets it.
+enum class DiffuseWay {
+  kFollowed,     ///< It is one of the ways on.
+  kNotFollowed,  ///< It is found apart: in what zones hold (RadianceField), or by light on the other side.
+};
+
+/// How light goes on from a surface as one ray. To be used from hit to hit, so that memory is asked for once;
+/// a room without such surfaces needs one of no bands.
 struct SpecularStep {
-  explicit SpecularStep(std::size_t bands) : reflected(bands), transmitted(bands) {}
+  explicit SpecularStep(std::size_t bands) : reflected(bands), transmitted(bands), diffuse(bands) {}
 
   std::vector<float> reflected;    ///< By band, share of the arriving light [0,1].
-  std::vector<float> transmitted;  ///< Likewise.
+  std::vector<float> transmitted;  ///< Likewise, straight on or refracted.
+  std::vector<float> diffuse;      ///< Likewise, let through into all directions.
   Vec3f direction{0, 0, 1};        ///< Of the way that was chosen; unit.
   bool front = true;               ///< Side of the surface that it leaves from.
-  bool crosses = false;            ///< It is the transmitted one.
-  bool bends = true;               ///< It is not the straight way on, so shadow rays do not find it.
-  bool is_wide = false;            ///< A lobe spreads it so far that shadow rays find its light best.
-  float chance = 0;                ///< Of this choice (0,1].
+  SpecularWayOn way = SpecularWayOn::kMirror;
+  bool bends = true;     ///< It is not the straight way on, so shadow rays do not find it.
+  bool is_wide = false;  ///< A lobe spreads it so far that shadow rays find its light best.
+  float chance = 0;      ///< Of this choice (0,1].
+  DiffuseWay diffuse_way = DiffuseWay::kFollowed;  ///< Set by whoever asks.
   /// Density of the direction [1/sr] where DirectLight finds luminaires there too; 0 where it does not.
   float pdf_per_sr = 0;
 
   /// By band, the share of the arriving light that goes this way; of rough surfaces, what their lobe sends
   /// there over the density.
-  const std::vector<float>& share() const { return crosses ? transmitted : reflected; }
-  std::vector<float>& share() { return crosses ? transmitted : reflected; }
+  const std::vector<float>& share() const {
+    return way == SpecularWayOn::kMirror ? reflected : way == SpecularWayOn::kAcross ? transmitted : diffuse;
+  }
+  std::vector<float>& share() { return const_cast<std::vector<float>&>(std::as_const(*this).share()); }
+  bool crosses() const { return way != SpecularWayOn::kMirror; }
 };
 
 /// How often the ways on from a surface are chosen.
@@ -38,7 +56,8 @@ enum class Survival {
   kCertain,   ///< In proportion to these; the ray always goes on.
 };
 
-/// What of a material is carried on by rays: reflection and transmission, sharp or as the lobes of gloss.h.
+/// What of a material is carried on by rays: reflection and transmission, sharp or as the lobes of gloss.h,
+/// and diffuse transmission, whose radiance is tau/pi times the irradiance of the other side.
 /// What a rough thin sheet lets through is what it would reflect, mirrored at it; rough bodies of glass
 /// refract at the facets of GGX [WAL07]. With the Lambertian part it never adds up to more than the light
 /// that arrives. Light that goes on and back along the same way meets the same shares, so a ray may be
@@ -49,17 +68,26 @@ class SpecularSurface {
   /// `metres_per_unit`: of the space in which distances are given.
   SpecularSurface(const Material& material, double metres_per_unit);
 
-  bool exists() const { return reflects_ || transmits_; }
+  bool exists() const { return reflects_ || transmits_ || diffuses_; }
   bool transmits() const { return transmits_; }
+  /// Light is let through into all directions.
+  bool diffuses() const { return diffuses_; }
   /// Light crosses it straight on.
   bool is_pane() const { return transmits_ && !solid_ && !rough_across_; }
   /// Light is bent where it crosses; the back is the inside of a body.
   bool is_body() const { return transmits_ && solid_; }
   bool absorbs_inside() const { return !absorption_.empty(); }
   bool is_rough() const { return rough_mirror_ || rough_across_; }
-  /// Light that DirectLight finds is scattered: by the reflected lobe, by that of a thin sheet.
-  bool spreads_reflected() const { return rough_mirror_ && !solid_; }
-  bool spreads_transmitted() const { return rough_across_ && !solid_; }
+  /// By band, the share that is let through into all directions.
+  const std::vector<float>& diffuse_transmittance() const { return diffuse_; }
+  /// Ways on are drawn with two numbers besides that which chooses one.
+  bool is_spread() const { return is_rough() || diffuses_; }
+  /// Whether light that DirectLight finds is spread on a way: by the reflected lobe, by that of a thin sheet,
+  /// by diffuse transmission.
+  bool spreads(SpecularWayOn way) const {
+    if (way == SpecularWayOn::kDiffuse) return diffuses_;
+    return (way == SpecularWayOn::kMirror ? rough_mirror_ : rough_across_) && !solid_;
+  }
 
   /// Shares of the light that arrives at `cosine` (0,1] to the normal of a side. Returns the sum of the
   /// chances that the ways would have by roulette; it may be above 1 where bands differ.
@@ -68,13 +96,13 @@ class SpecularSurface {
   /// what all chances may add up to. Two uniform numbers spread it. False if it ends here.
   bool choose(const SurfacePoint& x, float u, const std::array<float, 2>& spread, Survival survival,
               SpecularStep& step, float most = 1) const;
-  /// Takes one of the two ways for certain. False if nothing goes there.
-  bool take(const SurfacePoint& x, bool crosses, const std::array<float, 2>& spread,
+  /// Takes one of the ways for certain. False if nothing goes there.
+  bool take(const SurfacePoint& x, SpecularWayOn way, const std::array<float, 2>& spread,
             SpecularStep& step) const;
-  /// For light that comes from a unit direction, on either side: step.share() becomes the BRDF or BTDF [1/sr]
-  /// by band, seen from x.towards, and step.pdf_per_sr the density with which the way would be drawn there.
-  /// False if nothing is spread there.
-  bool value(const SurfacePoint& x, const Vec3f& from, SpecularStep& step) const;
+  /// For light that comes by one of the ways from a unit direction: step.share() becomes the BRDF or BTDF
+  /// [1/sr] by band, seen from x.towards, and step.pdf_per_sr the density with which the way would be drawn
+  /// there. False if it spreads nothing there.
+  bool value(const SurfacePoint& x, SpecularWayOn way, const Vec3f& from, SpecularStep& step) const;
   /// What is left of light after a way inside the body that ended on this surface, of one band; the way is in
   /// the units of the constructor.
   float left_inside(std::size_t band, float way) const;
@@ -83,8 +111,10 @@ class SpecularSurface {
   static constexpr double kWide = 0.2;
 
  private:
-  /// Finds the direction of the way that `step` crosses or does not. False if a lobe sends it nowhere.
+  /// Finds the direction of the way of `step`. False if a lobe sends it nowhere.
   bool turn(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
+  void turn_anywhere_across(const SurfacePoint& x, const std::array<float, 2>& spread,
+                            SpecularStep& step) const;
   bool turn_by_lobe(const SurfacePoint& x, const std::array<float, 2>& spread, SpecularStep& step) const;
   bool is_rough_body() const { return solid_ && rough_across_; }
   /// Facet that light seen from x.towards meets on rough glass, in the frame of the normal.
@@ -93,6 +123,7 @@ class SpecularSurface {
 
   bool reflects_ = false;
   bool transmits_ = false;
+  bool diffuses_ = false;
   bool solid_ = false;
   bool rough_mirror_ = false;
   bool rough_across_ = false;
@@ -101,9 +132,11 @@ class SpecularSurface {
   GlossModel mirror_lobe_, across_lobe_;
   AngleLaw law_ = AngleLaw::kConstant;
   double ior_ = 1;
-  std::vector<float> most_;           // by band: what the Lambertian part leaves
+  std::vector<double> eta_, k_;       // by band, of metals
+  std::vector<float> most_;           // by band: what the Lambertian parts leave
   std::vector<float> reflectance_;    // by band
   std::vector<float> transmittance_;  // by band
+  std::vector<float> diffuse_;        // by band
   std::vector<float> absorption_;     // by band, per unit; empty = none
 };
 

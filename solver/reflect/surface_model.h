@@ -54,7 +54,9 @@ class SurfaceModel {
   }
   /// Whether DirectLight finds light that lobes of a specular triangle spread.
   bool spreads(TriangleId t) const {
-    return specular(t).spreads_reflected() || specular(t).spreads_transmitted();
+    const SpecularSurface& s = specular(t);
+    return s.spreads(SpecularWayOn::kMirror) || s.spreads(SpecularWayOn::kAcross) ||
+           s.spreads(SpecularWayOn::kDiffuse);
   }
   /// The body of glass that absorbed light on a way that ended on a side of a triangle: `known`, where a ray
   /// has been sent into one, else the one whose inside that side is. Not valid if there is none.

@@ -89,7 +89,8 @@ class WayOut {
     SpecularStep at_normal(transport_.bands());
     surfaces.specular(t).shares(1, hits.front[lane], at_normal);
     const auto mirrored = static_cast<double>(at_normal.reflected[band_]);
-    const auto crossing = static_cast<double>(at_normal.transmitted[band_]);
+    const auto crossing =
+        static_cast<double>(at_normal.transmitted[band_]) + static_cast<double>(at_normal.diffuse[band_]);
     constexpr double kRounding = 1e-6;
     if (surfaces.specular(t).absorbs_inside() || kept + mirrored + crossing < 1 - kRounding) return true;
     if (crossing > 0 && crosses)

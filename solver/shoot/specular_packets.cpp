@@ -59,7 +59,7 @@ void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
 void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
                                float u, float most, WaitingPackets& next) {
   std::array<float, 2> spread{};
-  if (surfaces_.specular(TriangleId(hits.triangle[lane])).is_rough()) {
+  if (surfaces_.specular(TriangleId(hits.triangle[lane])).is_spread()) {
     const std::array<float, 4> numbers = rng_.uniform4(number_of(block, lane), batch_, step);
     spread = {numbers[1], numbers[2]};
   }

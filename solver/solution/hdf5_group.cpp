@@ -186,6 +186,10 @@ bool Hdf5Group::has_attribute(const std::string& name) const {
   return H5Aexists(id_.get(), name.c_str()) > 0;
 }
 
+bool Hdf5Group::has_dataset(const std::string& name) const {
+  return H5Lexists(id_.get(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
 void Hdf5Group::read_raw_attribute(const std::string& name, hid_t type, void* value) const {
   const std::string what = "no usable attribute " + name + " of " + path_;
   const Hdf5Id attribute(H5Aopen(id_.get(), name.c_str(), H5P_DEFAULT), H5Aclose, what);

@@ -90,6 +90,7 @@ class Hdf5Group {
   void write(const std::string& name, std::span<const std::string> texts,
              const std::string& description) const;
 
+  bool has_dataset(const std::string& name) const;
   /// Shape of a dataset.
   Hdf5Shape shape(const std::string& name) const;
   /// Reads a dataset of the given shape and kind of number. Throws Hdf5Error for another shape, and when the

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "solver/solution/opposite_zones.h"
+
 namespace reemit {
 namespace {
 
@@ -129,12 +131,32 @@ double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {
   return material.exitance()[to_index(band)];
 }
 
-Estimate Solution::radiosity(ZoneId z, std::size_t band) const {
+Estimate Solution::transmitted(ZoneId z, std::size_t band, Irradiance of) const {
+  const double through = zone_material(z).diffuse_transmittance(band);
+  if (!(through > 0)) return {};
+  Estimate sum;
+  double variance = 0;
+  for (const ZoneShare& behind : opposite_zones(mesh, z)) {
+    const Estimate there = (this->*of)(behind.zone, band);
+    sum.mean += through * behind.share * there.mean;
+    variance += std::pow(through * behind.share * there.stderr_of_mean, 2);
+  }
+  return {sum.mean, std::sqrt(variance)};
+}
+
+Estimate Solution::scattered(ZoneId z, std::size_t band, Irradiance of) const {
   const double reflectance = zone_material(z).reflectance[to_index(band)];
-  const Estimate e = irradiance(z, band);
+  const Estimate e = (this->*of)(z, band);
+  const Estimate through = transmitted(z, band, of);
   // A black zone reflects nothing however little is known about its irradiance.
   const double error = reflectance > 0 ? reflectance * e.stderr_of_mean : 0;
-  return {emitted_radiosity(z, band) + reflectance * e.mean, error};
+  return {reflectance * e.mean + through.mean,
+          through.stderr_of_mean > 0 ? std::hypot(error, through.stderr_of_mean) : error};
+}
+
+Estimate Solution::radiosity(ZoneId z, std::size_t band) const {
+  const Estimate e = scattered(z, band, &Solution::irradiance);
+  return {emitted_radiosity(z, band) + e.mean, e.stderr_of_mean};
 }
 
 std::vector<std::string> room_files(const Solution& solution) {
@@ -151,7 +173,12 @@ void keep_surfaces(const Scene& scene, Solution& solution) {
     solution.surface_materials.push_back(surface.material);
   }
   solution.materials = scene.materials;
-  for (Material& material : solution.materials) material.non_diffuse = {};
+  for (Material& material : solution.materials) {
+    NonDiffusePart kept;
+    if (material.non_diffuse.transmits_diffusely())
+      kept.diffuse_transmittance = material.non_diffuse.diffuse_transmittance;
+    material.non_diffuse = std::move(kept);
+  }
 }
 
 }  // namespace reemit

@@ -118,7 +118,8 @@ struct SolveRecord {
 };
 
 /// The view-independent solution of a room and all that later questions need.
-/// Zone values are irradiances; radiosity follows as B = M_e + rho E with the zone's material.
+/// Zone values are irradiances; radiosity follows as B = M_e + rho E + tau E', with the zone's material and
+/// the irradiance E' of the other side.
 struct Solution {
   std::string program_version;
   std::string room_path;                     ///< As given to solve, made absolute.
@@ -131,8 +132,8 @@ struct Solution {
   BandSet bands = BandSet::grey();
   std::vector<std::string> surface_names;     ///< By SurfaceId.
   std::vector<MaterialId> surface_materials;  ///< By SurfaceId, into materials.
-  std::vector<Material>
-      materials;  ///< As in the room, without their non-diffuse parts. Filled by keep_surfaces.
+  /// As in the room; of their non-diffuse parts diffuse transmission alone. Filled by keep_surfaces.
+  std::vector<Material> materials;
   MeshReport mesh_report;
   ZoneMesh mesh{BaseMesh{}};
   ZoneSums sums;
@@ -153,8 +154,14 @@ struct Solution {
     return materials[surface_materials[mesh.zone_surface(z).index()].index()];
   }
   double emitted_radiosity(ZoneId z,
-                           std::size_t band) const;      ///< M_e = pi L_e of the side the zone is on [W/m2].
-  Estimate radiosity(ZoneId z, std::size_t band) const;  ///< B = M_e + rho E [W/m2].
+                           std::size_t band) const;  ///< M_e = pi L_e of the side the zone is on [W/m2].
+  using Irradiance = Estimate (Solution::*)(ZoneId, std::size_t) const;
+  /// What comes through a zone in all directions of some irradiance of the zones behind, such as
+  /// direct_irradiance: tau E' [W/m2]. The errors of these zones count as independent.
+  Estimate transmitted(ZoneId z, std::size_t band, Irradiance of) const;
+  /// That and what the zone reflects of its own: rho E + tau E' [W/m2].
+  Estimate scattered(ZoneId z, std::size_t band, Irradiance of) const;
+  Estimate radiosity(ZoneId z, std::size_t band) const;  ///< B = M_e + rho E + tau E' [W/m2].
 };
 
 /// The files of its room, one or more, in order.

@@ -113,12 +113,16 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
   const auto reflectance = group.read<double>("reflectance", {count, bands});
   const auto emitted = group.read<double>("emitted_radiance", {count, bands});
   const auto exponent = group.read<double>("emission_exponent", {count});
+  const bool any_translucent = group.has_dataset("diffuse_transmittance");
+  const auto through = any_translucent ? group.read<double>("diffuse_transmittance", {count, bands})
+                                       : std::vector<double>(count * bands, 0.0);
   const auto two_sided = group.read<std::uint8_t>("two_sided", {count});
   const auto emits_both_sides = group.read<std::uint8_t>("emits_both_sides", {count});
   const auto in_range = [](double low, double high) {
     return [low, high](double x) { return x >= low && x <= high; };
   };
   require(std::all_of(reflectance.begin(), reflectance.end(), in_range(0, 1)), "reflectance outside [0,1]");
+  require(std::all_of(through.begin(), through.end(), in_range(0, 1)), "diffuse transmittance outside [0,1]");
   require(std::all_of(emitted.begin(), emitted.end(), in_range(0, std::numeric_limits<double>::max())),
           "negative or infinite emission");
   require(std::all_of(exponent.begin(), exponent.end(), in_range(0, 1e4)), "emission exponent out of range");
@@ -129,6 +133,8 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
     material.reflectance = Spectrum::Map(reflectance.data() + m * bands, size);
     material.emitted_radiance = Spectrum::Map(emitted.data() + m * bands, size);
     material.emission_exponent = exponent[m];
+    const auto row = Spectrum::Map(through.data() + m * bands, size);
+    if ((row > 0).any()) material.non_diffuse.diffuse_transmittance = row;
     material.two_sided = two_sided[m] != 0;
     material.emits_both_sides = emits_both_sides[m] != 0;
     solution.materials.push_back(std::move(material));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -150,6 +151,14 @@ void write_surfaces(const Hdf5Group& root, const Solution& solution) {
             flattened<double>(solution.materials,
                               [](const Material& m) -> const Spectrum& { return m.reflectance; }),
             bands, "1", "diffuse reflectance");
+  if (std::any_of(solution.materials.begin(), solution.materials.end(),
+                  [](const Material& m) { return m.non_diffuse.transmits_diffusely(); })) {
+    std::vector<double> through;
+    for (const Material& m : solution.materials)
+      for (std::size_t b = 0; b < bands; ++b) through.push_back(m.diffuse_transmittance(b));
+    put_bands(materials, "diffuse_transmittance", through, bands, "1",
+              "share of the light on one side that leaves the other in all directions");
+  }
   put_bands(materials, "emitted_radiance",
             flattened<double>(solution.materials,
                               [](const Material& m) -> const Spectrum& { return m.emitted_radiance; }),
@@ -249,20 +258,18 @@ void write_zone_geometry(const Hdf5Group& zones, const ZoneMesh& mesh) {
 }
 
 void write_zone_values(const Hdf5Group& zones, const Solution& s) {
-  const auto reflectance = [&s](ZoneId z, std::size_t band) {
-    return s.zone_material(z).reflectance[static_cast<Eigen::Index>(band)];
-  };
   put_zone_bands(zones, s, "radiosity", "emitted + direct + indirect",
                  [&](ZoneId z, std::size_t b) { return s.radiosity(z, b).mean; });
   put_zone_bands(zones, s, "radiosity_stderr", "standard error of radiosity",
                  [&](ZoneId z, std::size_t b) { return s.radiosity(z, b).stderr_of_mean; });
   put_zone_bands(zones, s, "emitted", "part of radiosity that the zone emits by itself",
                  [&](ZoneId z, std::size_t b) { return s.emitted_radiosity(z, b); });
-  put_zone_bands(zones, s, "direct", "part of radiosity that came straight from a luminaire",
-                 [&](ZoneId z, std::size_t b) { return reflectance(z, b) * s.direct_irradiance(z, b).mean; });
+  put_zone_bands(
+      zones, s, "direct", "part of radiosity that came straight from a luminaire",
+      [&](ZoneId z, std::size_t b) { return s.scattered(z, b, &Solution::direct_irradiance).mean; });
   put_zone_bands(
       zones, s, "indirect", "part of radiosity that was reflected before",
-      [&](ZoneId z, std::size_t b) { return reflectance(z, b) * s.indirect_irradiance(z, b).mean; });
+      [&](ZoneId z, std::size_t b) { return s.scattered(z, b, &Solution::indirect_irradiance).mean; });
   put_zone_bands(zones, s, "irradiance", "incident power per area",
                  [&](ZoneId z, std::size_t b) { return s.irradiance(z, b).mean; });
   put_zone_bands(zones, s, "irradiance_stderr", "standard error of irradiance",

@@ -37,6 +37,10 @@ inline Vec3f ray_origin(const RayTracer& rays, const SurfacePoint& x) {
 inline SurfacePoint surface_point(const RayTracer& rays, TriangleId t, float u, float v, bool front) {
   return {t, u, v, front, side_normal(rays, t, u, v, front)};
 }
+/// The same place on the other side, with the geometric normal.
+inline SurfacePoint other_side(const RayTracer& rays, const SurfacePoint& x) {
+  return surface_point(rays, x.triangle, x.u, x.v, !x.front);
+}
 /// Where a ray of this direction (unit) met the room.
 inline SurfacePoint surface_point(const RayTracer& rays, const Hit& hit, const Vec3f& direction) {
   SurfacePoint point = surface_point(rays, hit.triangle, hit.u, hit.v, hit.front);

@@ -19,12 +19,16 @@ constexpr std::uint64_t kPilotSeed = 1;  // nothing of a solution should depend 
 constexpr std::uint64_t kPackets = 1 << 18;
 /// Independent parts of the solution: a point is looked at once with each.
 constexpr int kHalves = 2;
-/// Surfaces reflect no more than this in it, so that it ends soon whatever the room.
+/// Surfaces reflect and diffusely transmit no more than this in it, so that it ends soon whatever the room.
 constexpr double kMostReflectance = 0.9;
 
 Scene dimmed(Scene scene) {
-  for (Material& material : scene.materials)
+  for (Material& material : scene.materials) {
     material.reflectance = material.reflectance.min(kMostReflectance);
+    if (material.non_diffuse.transmits_diffusely())
+      material.non_diffuse.diffuse_transmittance =
+          material.non_diffuse.diffuse_transmittance.min(kMostReflectance - material.reflectance);
+  }
   return scene;
 }
 

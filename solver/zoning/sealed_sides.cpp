@@ -40,9 +40,9 @@ class Reach {
     for (std::uint32_t s = 0; s < sides_; ++s) {
       const TriangleId t = triangle_of(SideId(s));
       if (room.surfaces().emits(t, is_front(SideId(s)))) sets_.join(s, light_);
-      // Light comes through glass to what lies behind.
-      if (is_front(SideId(s)) && has_zones(s) && room.surfaces().any_transmits() &&
-          room.surfaces().specular(t).transmits())
+      // Light comes through glass and opal sheets to what lies behind.
+      if (is_front(SideId(s)) && has_zones(s) && room.surfaces().any_specular() &&
+          (room.surfaces().specular(t).transmits() || room.surfaces().specular(t).diffuses()))
         sets_.join(s, side_of(t, false).index());
     }
     join_lights(room.scene());

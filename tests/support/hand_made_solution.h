@@ -11,7 +11,7 @@ namespace reemit::test {
 inline Solution uniform_solution(const RoomBuilder& room, double direct, double indirect) {
   Solution solution;
   solution.bands = room.scene().bands;
-  for (const Surface& s : room.scene().surfaces) solution.surface_names.push_back(s.name);
+  keep_surfaces(room.scene(), solution);
   solution.mesh = room.mesh().mesh;
   const std::size_t values = solution.mesh.zone_count() * solution.bands.count();
   ZoneSums& sums = solution.sums;

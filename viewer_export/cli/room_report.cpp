@@ -100,14 +100,13 @@ std::vector<std::string> models_of(const Material& material) {
     models.emplace_back("clear sheet");
   if (is_glass && (part.has_gloss() || part.has_glossy_transmission())) models.back().insert(0, "rough ");
   if (part.reflects_specularly() && !is_glass) {
-    const bool is_metal = part.angle_law == AngleLaw::kSchlick;
+    const bool is_metal = part.angle_law == AngleLaw::kSchlick || part.angle_law == AngleLaw::kConductor;
     if (part.has_gloss())
       models.emplace_back(is_metal ? "rough metal" : "gloss");
     else
       models.emplace_back(is_metal ? "metal" : "mirror");
   }
-  if (NonDiffusePart::is_given(part.diffuse_transmittance))
-    models.emplace_back("diffuse transmission (not modelled)");
+  if (part.transmits_diffusely()) models.emplace_back("diffuse transmission");
   return models;
 }
 

@@ -167,6 +167,7 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
   const SurfaceModel& surfaces = room_->surfaces();
   const PathKey key{sums.index, sums.batch, static_cast<std::uint32_t>(sample - sums.found.earlier), 0};
   SpecularStep step(field_.band_count());
+  step.diffuse_way = DiffuseWay::kNotFollowed;  // add_light does
   std::uint32_t numbers = 0;
   std::vector<Look> looks;
   looks.push_back({x, all_, 0, {}, 0, 0});
@@ -205,14 +206,14 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
       add_highlights(look.x, look.through.data(), sample, sums);
     std::array<float, 2> spread{};
     if (look.steps < kSplitSteps) {
-      for (const bool crosses : {false, true}) {
-        if (surface.is_rough()) spread = specular_.spread(key, numbers++);
-        if (surface.take(look.x, crosses, spread, step)) follow(look);
+      for (const SpecularWayOn way_on : {SpecularWayOn::kMirror, SpecularWayOn::kAcross}) {
+        if (surface.is_spread()) spread = specular_.spread(key, numbers++);
+        if (surface.take(look.x, way_on, spread, step)) follow(look);
       }
       continue;
     }
     const Survival survival = look.steps < kCertainSteps ? Survival::kCertain : Survival::kRoulette;
-    if (surface.is_rough()) spread = specular_.spread(key, numbers);
+    if (surface.is_spread()) spread = specular_.spread(key, numbers);
     if (surface.choose(look.x, specular_.at(key, numbers++), spread, survival, step)) follow(look);
   }
 }
@@ -247,32 +248,45 @@ void TileRenderer::add_highlights(const SurfacePoint& x, const float* through, i
   for (std::size_t b = 0; b < field_.band_count(); ++b)
     weight[b] = sums.share / static_cast<float>(shadow_rays) * through[b];
   for (int i = 0; i < shadow_rays; ++i)
-    direct_.add_lobe_sample(x, sums.sampler.light(sample, i, shadow_rays), {}, weight.data(), sums.direct);
+    direct_.add_lobe_sample(x, sums.sampler.light(sample, i, shadow_rays), {}, DiffuseWay::kNotFollowed,
+                            weight.data(), sums.direct);
 }
 
 void TileRenderer::add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
                              GatherBatch& batch) const {
+  const SurfaceModel& surfaces = room_->surfaces();
+  add_scattered(x, surfaces.reflectance(x.triangle, x.front), sums.index, through, sample, sums, batch);
+  if (!surfaces.is_specular(x.triangle, x.front) || !surfaces.specular(x.triangle).diffuses()) return;
+  constexpr std::uint64_t kOfOtherSides = std::uint64_t{1} << 40;  // random numbers that no pixel has
+  SurfacePoint behind = x;
+  behind.front = !x.front;
+  behind.normal = -x.normal;
+  add_scattered(behind, surfaces.specular(x.triangle).diffuse_transmittance().data(),
+                sums.index + kOfOtherSides, through, sample, sums, batch);
+}
+
+void TileRenderer::add_scattered(const SurfacePoint& x, const float* share, std::uint64_t index,
+                                 const float* through, int sample, PixelSums& sums,
+                                 GatherBatch& batch) const {
   const std::size_t bands = field_.band_count();
-  const float* reflectance = room_->surfaces().reflectance(x.triangle, x.front);
-  if (std::all_of(reflectance, reflectance + bands, [](float rho) { return rho == 0; })) return;
+  if (std::all_of(share, share + bands, [](float s) { return s == 0; })) return;
   std::vector<float>& weight = *sums.weight;
 
   const int shadow_rays = settings_->light_samples;
   for (std::size_t b = 0; b < bands; ++b)
-    weight[b] =
-        lambert_brdf_per_sr(reflectance[b]) * sums.share / static_cast<float>(shadow_rays) * through[b];
+    weight[b] = lambert_brdf_per_sr(share[b]) * sums.share / static_cast<float>(shadow_rays) * through[b];
   for (int i = 0; i < shadow_rays; ++i)
     direct_.add_sample(x, sums.sampler.light(sample, i, shadow_rays), weight.data(), sums.direct);
 
-  // Reflected radiance is rho/pi times pi times the mean radiance over cosine-distributed rays.
+  // Scattered radiance is share/pi times pi times the mean radiance over cosine-distributed rays.
   const bool path = settings_->integrator == Integrator::kPath;
   const int gathers = path ? 1 : settings_->gathers;
   for (int i = 0; i < gathers; ++i) {
     const std::array<float, 2> u = sums.sampler.hemisphere(sample, i, gathers);
     const auto ray = static_cast<std::uint32_t>((sample - sums.found.earlier) * gathers + i);
-    const PathKey key{sums.index, sums.batch, ray, sums.part};
+    const PathKey key{index, sums.batch, ray, sums.part};
     for (std::size_t b = 0; b < bands; ++b)
-      weight[b] = reflectance[b] * sums.share / static_cast<float>(gathers) * through[b];
+      weight[b] = share[b] * sums.share / static_cast<float>(gathers) * through[b];
     if (path)
       path_.add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect);
     else

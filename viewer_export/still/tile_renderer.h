@@ -66,6 +66,10 @@ class TileRenderer {
   void add_highlights(const SurfacePoint& x, const float* through, int sample, PixelSums& sums) const;
   void add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
                  GatherBatch& batch) const;
+  /// What comes of the light at x that a share of it, by band, is scattered into all directions. `index`
+  /// chooses the random numbers.
+  void add_scattered(const SurfacePoint& x, const float* share, std::uint64_t index, const float* through,
+                     int sample, PixelSums& sums, GatherBatch& batch) const;
   /// What is seen over x, a mirror, gloss or glass that a ray of length `way` met.
   void add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums, GatherBatch& batch) const;
   SurfacePoint seen_point(const Hit& hit, const Vec3f& direction) const;

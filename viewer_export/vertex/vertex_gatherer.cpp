@@ -32,6 +32,8 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
               &stop),
       path_(room, direct_, settings.seed),
       bands_(room.band_count()),
+      is_translucent_(std::any_of(room.scene().materials.begin(), room.scene().materials.end(),
+                                  [](const Material& m) { return m.non_diffuse.transmits_diffusely(); })),
       gathers_per_point_(settings.gathers_per_point()),
       log2_points_(std::countr_zero(static_cast<unsigned>(most_points))) {}
 
@@ -47,12 +49,19 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
   const ReplicateEffort effort{block.count, gathers_per_point_, block.first};
   float* next = found.data();
   for (std::size_t v = first; v < last; ++v)
-    for (std::size_t r = 0; r < kReplicates; ++r, next += 2 * bands_) {
+    for (std::size_t r = 0; r < kReplicates; ++r, next += values_per_replicate()) {
       const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, static_cast<int>(r), log2_points_);
       const PathKey key{v, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % field_.parts())};
       add_replicate(
           direct_, sampler, effort, key, [&](const std::array<float, 2>& u) { return point_beside(v, u); },
           batch, next, next + bands_);
+      if (diffuse_transmittance(v) == nullptr) continue;
+      PathKey behind = key;
+      behind.index += rings_.size();  // random numbers that no vertex has
+      add_replicate(
+          direct_, sampler, effort, behind,
+          [&](const std::array<float, 2>& u) { return other_side(room_.rays(), point_beside(v, u)); }, batch,
+          next + 2 * bands_, next + 3 * bands_);
     }
   batch.flush();
   const float share = static_cast<float>(block.count) / static_cast<float>(block.first + block.count);
@@ -103,25 +112,47 @@ SurfacePoint VertexGatherer::point_beside(std::size_t v, const std::array<float,
                        inside.front);
 }
 
+const Spectrum* VertexGatherer::diffuse_transmittance(std::size_t v) const {
+  if (!is_translucent_) return nullptr;
+  const Scene& scene = room_.scene();
+  const SurfaceId surface = room_.mesh().zone_surface(rings_.begin(v)->zone);
+  const NonDiffusePart& part = scene.material_of(scene.surfaces[surface.index()]).non_diffuse;
+  return part.transmits_diffusely() ? &part.diffuse_transmittance : nullptr;
+}
+
 void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) const {
   const ZoneId zone = rings_.begin(v)->zone;
   const float* own = emitted(v);
   const float* reflectance = room_.zone_reflectance(zone);
+  const Spectrum* tau = diffuse_transmittance(v);
   for (std::size_t b = 0; b < bands_; ++b) {
-    const auto value_of = [&](std::size_t r) {
-      const float* replicate = means + r * 2 * bands_;
+    const auto irradiance_of = [&](std::size_t r, std::size_t side) {
+      const float* replicate = means + r * values_per_replicate() + side * 2 * bands_;
       return static_cast<double>(replicate[b] + kPi * replicate[bands_ + b]);
     };
-    const auto [mean, squared_error] = mean_of_replicates(kReplicates, field_.parts(), value_of);
-    double direct = 0;
-    for (std::size_t r = 0; r < kReplicates; ++r)
-      direct += static_cast<double>(means[r * 2 * bands_ + b]) / kReplicates;
+    const auto direct_of = [&](std::size_t side) {
+      double direct = 0;
+      for (std::size_t r = 0; r < kReplicates; ++r)
+        direct +=
+            static_cast<double>(means[r * values_per_replicate() + side * 2 * bands_ + b]) / kReplicates;
+      return direct;
+    };
+    const auto [mean, squared_error] =
+        mean_of_replicates(kReplicates, field_.parts(), [&](std::size_t r) { return irradiance_of(r, 0); });
     const double brdf = lambert_brdf_per_sr(reflectance[b]);
     const std::size_t k = v * bands_ + b;
     data.irradiance[k] = static_cast<float>(mean);
     data.radiance[k] = own[b] + static_cast<float>(brdf * mean);
     data.radiance_stderr[k] = static_cast<float>(brdf * std::sqrt(squared_error));
-    data.direct_radiance[k] = static_cast<float>(brdf * direct);
+    data.direct_radiance[k] = static_cast<float>(brdf * direct_of(0));
+    if (tau == nullptr) continue;
+    const double btdf = (*tau)[static_cast<Eigen::Index>(b)] / static_cast<double>(kPi);
+    const auto [radiance, squared] = mean_of_replicates(kReplicates, field_.parts(), [&](std::size_t r) {
+      return brdf * irradiance_of(r, 0) + btdf * irradiance_of(r, 1);
+    });
+    data.radiance[k] = own[b] + static_cast<float>(radiance);
+    data.radiance_stderr[k] = static_cast<float>(std::sqrt(squared));
+    data.direct_radiance[k] = static_cast<float>(brdf * direct_of(0) + btdf * direct_of(1));
   }
 }
 

@@ -36,11 +36,12 @@ class VertexGatherer {
   /// Self-emitted radiance of the surface a vertex belongs to, one number per band [W/(m2 sr)].
   const float* emitted(std::size_t v) const;
   /// Replicates of one vertex take this many numbers in `means` below.
-  std::size_t values_per_vertex() const { return kReplicates * 2 * bands_; }
+  std::size_t values_per_vertex() const { return kReplicates * values_per_replicate(); }
 
   /// Adds a block of points to the means of vertices first .. last-1. means: per vertex and replicate, direct
-  /// irradiance [W/m2] and mean reflected radiance over the hemisphere [W/(m2 sr)] per band; the first vertex
-  /// at means[0]. Then overwrites the values of these vertices in `data`.
+  /// irradiance [W/m2] and mean reflected radiance over the hemisphere [W/(m2 sr)] per band, in rooms with
+  /// diffuse transmission also those of the other side; the first vertex at means[0]. Then overwrites the
+  /// values of these vertices in `data`.
   void gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
               VertexData& data) const;
 
@@ -50,6 +51,9 @@ class VertexGatherer {
 
  private:
   SurfacePoint point_beside(std::size_t v, const std::array<float, 2>& u) const;
+  std::size_t values_per_replicate() const { return (is_translucent_ ? 4 : 2) * bands_; }
+  /// Share of the light on the other side that comes through at a vertex; null where none does.
+  const Spectrum* diffuse_transmittance(std::size_t v) const;
   void store(std::size_t v, const float* means, VertexData& data) const;
 
   const Room& room_;
@@ -60,6 +64,7 @@ class VertexGatherer {
   HemisphereGather gather_;
   PathTracer path_;
   std::size_t bands_;
+  bool is_translucent_;  // some surface of the room transmits diffusely
   int gathers_per_point_;
   int log2_points_;
 };

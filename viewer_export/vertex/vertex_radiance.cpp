@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,21 @@ void check(const VertexSettings& s) {
   require(s.threads >= 0, "number of threads", "0 (all cores) or more.");
 }
 
+/// Exitance of a vertex by light that comes through from the other side [W/m2].
+struct Through {
+  double all = 0;
+  double direct = 0;
+  double variance = 0;  ///< Of `all`; zones count as independent.
+
+  void add(const Solution& solution, ZoneId zone, std::size_t band, double share) {
+    if (!(solution.zone_material(zone).diffuse_transmittance(band) > 0)) return;
+    const Estimate e = solution.transmitted(zone, band, &Solution::irradiance);
+    all += share * e.mean;
+    direct += share * solution.transmitted(zone, band, &Solution::direct_irradiance).mean;
+    variance += std::pow(share * e.stderr_of_mean, 2);
+  }
+};
+
 /// Vertex values as area-weighted means of the zones around. With two parts of the zone solution or more
 /// their spread gives the error, which knows how the zones' errors go together; else zones count as
 /// independent.
@@ -50,11 +66,13 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       double direct = 0;
       double all = 0;
       double variance = 0;
+      Through through;
       for (const RingCell* r = rings.begin(v); r != rings.end(v); ++r) {
         const double share = r->area / area;
         const Estimate e = solution.irradiance(r->zone, b);
         direct += share * solution.direct_irradiance(r->zone, b).mean;
         all += share * e.mean;
+        through.add(solution, r->zone, b, share);
         // Cells of one group share its value and its error.
         double same = 0;
         for (const RingCell* q = rings.begin(v); q != rings.end(v); ++q)
@@ -65,7 +83,8 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       const TriangleId t = mesh.zone_triangle(zone);
       const bool front = mesh.zone_is_front(zone);
       const double brdf = lambert_brdf_per_sr(surfaces.reflectance(t, front)[b]);
-      double error = brdf * std::sqrt(variance);
+      double error =
+          std::hypot(brdf * std::sqrt(variance), std::sqrt(through.variance) * std::numbers::inv_pi);
       if (field.parts() > 1) {
         const auto radiance_of = [&](std::size_t part) {
           double radiance = 0;
@@ -77,9 +96,10 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       }
       const std::size_t k = v * bands + b;
       data.irradiance[k] = static_cast<float>(all);
-      data.radiance[k] = surfaces.emitted(t, front)[b] + static_cast<float>(brdf * all);
+      data.radiance[k] =
+          surfaces.emitted(t, front)[b] + static_cast<float>(brdf * all + through.all * std::numbers::inv_pi);
       data.radiance_stderr[k] = static_cast<float>(error);
-      data.direct_radiance[k] = static_cast<float>(brdf * direct);
+      data.direct_radiance[k] = static_cast<float>(brdf * direct + through.direct * std::numbers::inv_pi);
     }
 }
 

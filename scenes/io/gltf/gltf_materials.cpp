@@ -18,6 +18,7 @@ using Rgb = Eigen::Array3d;
 
 constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
+constexpr const char* kDiffuseTransmission = "KHR_materials_diffuse_transmission";
 constexpr const char* kVolume = "KHR_materials_volume";
 
 /// Reads the materials of one file.
@@ -35,8 +36,11 @@ class MaterialReader {
       if (scene_.materials.back().name.empty()) scene_.materials.back().name = fmt::format("material {}", i);
       for (const auto& [name, value] : source.extensions) {
         static const std::set<std::string> known{"KHR_materials_emissive_strength",
-                                                 "KHR_materials_transmission", "KHR_materials_ior", kVolume,
-                                                 kSpecularGlossiness};
+                                                 "KHR_materials_transmission",
+                                                 "KHR_materials_ior",
+                                                 kVolume,
+                                                 kSpecularGlossiness,
+                                                 kDiffuseTransmission};
         if (!known.contains(name)) ignored.insert(name);
       }
     }
@@ -136,7 +140,12 @@ class MaterialReader {
     const double roughness = checked(pbr.roughnessFactor, 1, within + "roughnessFactor") * packed[1];
     material.non_diffuse.roughness = roughness * roughness;  // alpha, by the definition of the format
     const double transmitted = number(source, "KHR_materials_transmission", "transmissionFactor", 0, 1);
-    material.reflectance = base * ((1 - metallic) * (1 - transmitted));
+    const double through = number(source, kDiffuseTransmission, "diffuseTransmissionFactor", 0, 1);
+    const double diffuse = (1 - metallic) * (1 - transmitted);
+    material.reflectance = base * (diffuse * (1 - through));
+    if (through > 0)
+      material.non_diffuse.diffuse_transmittance =
+          triple(source, kDiffuseTransmission, "diffuseTransmissionColorFactor") * (diffuse * through);
     if (metallic > 0) {
       material.non_diffuse.specular_reflectance = base * metallic;
       material.non_diffuse.angle_law = AngleLaw::kSchlick;

@@ -1,5 +1,6 @@
 #include "scenes/io/mgf/mgf_material.h"
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -60,6 +61,21 @@ Material convert_mgf_material(const MgfMaterial& m, const std::string& name, con
   rest.transmission_roughness = m.ts_roughness;
   rest.lobe = GlossLobe::kWard;
   if (m.ir_real > 1 && m.ir_imaginary == 0) rest.index_of_refraction = m.ir_real;
+  if (m.ir_imaginary != 0 && m.ir_real > 0 && m.rs.value > 0 && !(m.ts.value > 0)) {
+    // rs is that of normal incidence, so the tint is what it leaves of Fresnel's equations to explain; where
+    // it is more than they say, they tell nothing of it.
+    const double n = m.ir_real;
+    const double k = std::fabs(m.ir_imaginary);
+    const double normal = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
+    const Spectrum most = normal * (1 - material.lambertian_share()).max(0);
+    rest.angle_law = AngleLaw::kSchlick;
+    if ((rest.specular_reflectance <= most).all()) {
+      rest.angle_law = AngleLaw::kConductor;
+      rest.metal_eta = Spectrum::Constant(material.reflectance.size(), n);
+      rest.metal_k = Spectrum::Constant(material.reflectance.size(), k);
+      rest.specular_reflectance = (most > 0).select(rest.specular_reflectance / most, 0);
+    }
+  }
   if (m.sides == 1 && rest.index_of_refraction > 1 && m.ts.value > 0 && rest.transmits_specularly()) {
     // One-sided and refracting: the surface of a body of glass. rs and ts are those of one passage through it
     // at normal incidence, so the tint is what Fresnel's equations leave to explain.
@@ -74,10 +90,6 @@ Material convert_mgf_material(const MgfMaterial& m, const std::string& name, con
   if (changed)
     warnings.push_back(fmt::format(
         "{}: material '{}' has a colour outside Rec.709; it was made paler, its luminance was kept.", where,
-        name));
-  if (m.ir_imaginary != 0)
-    warnings.push_back(fmt::format(
-        "{}: material '{}' is a metal; the imaginary part of its index of refraction is not kept.", where,
         name));
   return material;
 }

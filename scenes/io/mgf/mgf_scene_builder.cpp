@@ -88,7 +88,6 @@ MaterialId MgfSceneBuilder::material_id(const Target& target) {
     const int version =
         ++material_names_[base];  // a context that was changed after use counts as a new material
     const std::string name = version == 1 ? base : fmt::format("{}#{}", base, version);
-    if (target.material.ir_imaginary != 0) ++not_modelled["metals"];
     materials_.push_back(
         convert_mgf_material(target.material, name, at_line(target.file, target.line), warnings));
   }
@@ -100,7 +99,6 @@ void MgfSceneBuilder::finish(Scene& scene) {
   scene.materials = std::move(materials_);
   tell_surfaces_apart(scene);
   add_counts(refused, scene.refused);
-  add_counts(not_modelled, scene.not_modelled);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
 }
 

@@ -35,7 +35,7 @@ class MgfSceneBuilder {
   void finish(Scene& scene);
 
   std::vector<std::string> warnings;
-  KindCounts refused, not_modelled;  ///< As in Scene.
+  KindCounts refused;  ///< As in Scene.
 
  private:
   MaterialId material_id(const Target& target);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "scenes/io/common/surface_geometry.h"
+#include "scenes/io/native/named_metals.h"
 #include "scenes/model/limits.h"
 
 namespace reemit {
@@ -62,24 +63,56 @@ void read_gloss(const JsonCursor& at, NonDiffusePart& part) {
   part.lobe = name == "ward" ? GlossLobe::kWard : name == "phong" ? GlossLobe::kPhong : GlossLobe::kGgx;
 }
 
-/// The keys of what goes on as a ray: "mirror" or "metal", "transmittance", or "glass" alone.
+/// A metal by its share at normal incidence, its name, or its "eta" and "k".
+void read_metal(const JsonCursor& at, const BandSet& bands, NonDiffusePart& part) {
+  const auto count = static_cast<Eigen::Index>(bands.count());
+  const bool has_constants = at.is_object() && (at.find("eta") || at.find("k"));
+  if (!at.is_string() && !has_constants) {
+    part.angle_law = AngleLaw::kSchlick;
+    part.specular_reflectance = read_reflectance(at, bands);
+    return;
+  }
+  part.angle_law = AngleLaw::kConductor;
+  part.specular_reflectance = Spectrum::Ones(count);
+  if (at.is_string()) {
+    OpticalConstants constants = metal_constants(at.choice(metal_names()), bands);
+    part.metal_eta = std::move(constants.eta);
+    part.metal_k = std::move(constants.k);
+    return;
+  }
+  at.expect_object({"eta", "k"});
+  part.metal_eta = read_optical_constant(at.at("eta"), bands);
+  part.metal_k = read_optical_constant(at.at("k"), bands);
+  if (!(part.metal_eta > 0).all()) at.at("eta").fail("an eta of 0", "Give more than 0 in every band.");
+}
+
+/// The keys of what goes on as a ray: "mirror" or "metal", "transmittance", "diffuse_transmittance", or
+/// "glass" alone.
 void read_specular(const JsonCursor& at, const BandSet& bands, Material& material) {
   NonDiffusePart& part = material.non_diffuse;
   const auto mirror = at.find("mirror");
   const auto metal = at.find("metal");
   const auto clear = at.find("transmittance");
+  const auto opal = at.find("diffuse_transmittance");
   const auto glass = at.find("glass");
   if (mirror && metal)
     metal->fail("the material is already a mirror", "Keep one of \"mirror\" and \"metal\".");
-  if (glass && (mirror || metal || clear))
-    glass->fail("glass already says what it reflects and lets through",
-                "Remove \"mirror\", \"metal\" and \"transmittance\", or \"glass\".");
-  if (metal) part.angle_law = AngleLaw::kSchlick;
-  if (mirror || metal) part.specular_reflectance = read_reflectance(mirror ? *mirror : *metal, bands);
+  if (glass && (mirror || metal || clear || opal))
+    glass->fail(
+        "glass already says what it reflects and lets through",
+        "Remove \"mirror\", \"metal\", \"transmittance\" and \"diffuse_transmittance\", or \"glass\".");
+  if (mirror) part.specular_reflectance = read_reflectance(*mirror, bands);
+  if (metal) read_metal(*metal, bands, part);
+  if (clear && part.angle_law == AngleLaw::kConductor)
+    clear->fail("a metal with eta and k lets nothing through",
+                "Give the shares of a half-silvered sheet as \"mirror\" and \"transmittance\".");
   if (clear) part.specular_transmittance = read_reflectance(*clear, bands);
+  if (opal) part.diffuse_transmittance = read_reflectance(*opal, bands);
   if (const double most = material.share_of_light().maxCoeff(); most > Material::kAllLight)
     at.fail(fmt::format("the surface reflects and transmits {:.6g} of the light in one band", most),
-            "Make its \"reflectance\", \"mirror\" or \"metal\", and \"transmittance\" add up to at most 1.");
+            "Make its \"reflectance\", \"mirror\" or \"metal\", \"transmittance\" and "
+            "\"diffuse_transmittance\" add up "
+            "to at most 1.");
   if (!glass) return;
   glass->expect_object({"ior", "transmittance", "solid", "transmittance_per_m"});
   part.angle_law = AngleLaw::kDielectric;
@@ -108,7 +141,8 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
   for (const auto& [name, at] : materials.members()) {
     at.expect_object({"reflectance", "radiance", "exitance", "luminance_cd_m2", "exitance_lm_m2",
                       "total_power", "total_flux_lm", "emission_color", "emission_exponent", "sides",
-                      "emission_sides", "mirror", "metal", "transmittance", "glass", "roughness", "lobe"});
+                      "emission_sides", "mirror", "metal", "transmittance", "diffuse_transmittance", "glass",
+                      "roughness", "lobe"});
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;
     material.name = name;

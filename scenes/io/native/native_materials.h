@@ -14,6 +14,9 @@ namespace reemit {
 /// see docs/room_format.md. Sampled spectra are averaged over each band, which needs a spectral room.
 Spectrum read_reflectance(const JsonCursor& at, const BandSet& bands);
 
+/// A spectrum of eta or k of a metal, 0 to 100.
+Spectrum read_optical_constant(const JsonCursor& at, const BandSet& bands);
+
 /// A spectrum of non-negative emission. Sampled spectra are densities per nm and are integrated over each
 /// band.
 Spectrum read_emission(const JsonCursor& at, const BandSet& bands);

@@ -102,11 +102,13 @@ void demand_spectral(const JsonCursor& at, const BandSet& bands) {
   }
 }
 
-enum class Quantity { kReflectance, kEmission };
+enum class Quantity { kReflectance, kEmission, kOpticalConstant };
 
 Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quantity) {
   const auto count = static_cast<Eigen::Index>(bands.count());
-  const double most = quantity == Quantity::kReflectance ? 1 : std::numeric_limits<double>::max();
+  const double most = quantity == Quantity::kReflectance ? 1
+                      : quantity == Quantity::kEmission  ? std::numeric_limits<double>::max()
+                                                         : NonDiffusePart::kLargestIndex;
   if (at.is_number()) return Spectrum::Constant(count, at.number_in(0, most));
   if (at.is_array()) {
     at.expect_array(bands.count(), bands.count());
@@ -122,7 +124,7 @@ Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quan
   }
   if (at.find("srgb")) return read_srgb(at, bands);
   demand_spectral(at, bands);
-  const Samples samples = read_samples(at, quantity == Quantity::kReflectance);
+  const Samples samples = read_samples(at, quantity != Quantity::kEmission);
   const JsonCursor listed = at.at("value");
   for (std::size_t i = 0; i < samples.value.size(); ++i) listed[i].number_in(0, most);
   const std::vector<double>& centres = bands.centres_nm();
@@ -146,6 +148,10 @@ Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quan
 
 Spectrum read_reflectance(const JsonCursor& at, const BandSet& bands) {
   return read_spectrum(at, bands, Quantity::kReflectance);
+}
+
+Spectrum read_optical_constant(const JsonCursor& at, const BandSet& bands) {
+  return read_spectrum(at, bands, Quantity::kOpticalConstant);
 }
 
 Spectrum read_emission(const JsonCursor& at, const BandSet& bands) {

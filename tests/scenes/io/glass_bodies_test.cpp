@@ -42,7 +42,9 @@ TEST(NativeMaterials, MirrorsAndGlass) {
   const Scene scene = read_text(room(
       R"("bands": "rgb", "materials": {"a": {"reflectance": 0.1, "mirror": [0.9, 0.8, 0.7]}, "b": {"metal": 0.6},
          "c": {"transmittance": 0.8, "mirror": 0.1}, "d": {"glass": {"ior": 1.52, "transmittance": 0.9}},
-         "e": {"glass": {"ior": 1.33, "solid": true, "transmittance_per_m": 0.5}}}, "objects": [])"));
+         "e": {"glass": {"ior": 1.33, "solid": true, "transmittance_per_m": 0.5}},
+         "g": {"metal": "copper"}, "h": {"metal": {"eta": [1, 2, 3], "k": 4}},
+         "f": {"reflectance": 0.3, "diffuse_transmittance": [0.5, 0.4, 0.3], "sides": "front"}}, "objects": [])"));
   const auto part = [&](std::size_t k) { return scene.materials[k].non_diffuse; };
   EXPECT_EQ(part(0).specular_reflectance[1], 0.8);
   EXPECT_EQ(part(0).angle_law, AngleLaw::kConstant);
@@ -53,6 +55,12 @@ TEST(NativeMaterials, MirrorsAndGlass) {
   EXPECT_FALSE(part(3).is_solid);
   EXPECT_TRUE(part(4).is_solid);
   EXPECT_NEAR(part(4).absorption_per_m[0], std::log(2.0), 1e-12);
+  EXPECT_EQ(part(5).diffuse_transmittance[1], 0.4);
+  EXPECT_EQ(part(6).angle_law, AngleLaw::kConductor);
+  EXPECT_GT(part(6).metal_k[0], part(6).metal_k[2]) << "copper is red";
+  EXPECT_NEAR(part(6).metal_eta[2], 1.1584, 1e-4) << "between samples at 442.8 and 476.9 nm";
+  EXPECT_EQ(part(7).metal_eta[2], 3);
+  EXPECT_EQ(part(7).metal_k[1], 4);
 }
 
 TEST(NativeMaterials, RefuseWhatCannotBe) {

@@ -122,7 +122,26 @@ TEST(MgfMaterialConversion, NeutralIsExactlyGreyAndImpossibleColoursArePaled) {
   EXPECT_GE(m.reflectance.minCoeff(), 0);
   EXPECT_LE(m.reflectance.maxCoeff(), 1);
   EXPECT_NEAR((rec709_luminance_weights() * m.reflectance.head<3>()).sum(), 0.5, 1e-12);
-  EXPECT_EQ(warnings.size(), 2U) << "colour, imaginary index";
+  EXPECT_EQ(warnings.size(), 1U) << "colour";
+}
+
+TEST(MgfMaterialConversion, ImaginaryIndicesAreThoseOfMetals) {
+  std::vector<std::string> warnings;
+  MgfMaterial chrome;
+  chrome.rd = {0.1, {}};
+  chrome.rs = {0.45, {}};
+  chrome.ir_real = 3;
+  chrome.ir_imaginary = -3.3;
+  const NonDiffusePart metal = convert_mgf_material(chrome, "chrome", "room:1", warnings).non_diffuse;
+  EXPECT_EQ(metal.angle_law, AngleLaw::kConductor);
+  EXPECT_EQ(metal.metal_eta[0], 3);
+  EXPECT_EQ(metal.metal_k[0], 3.3);
+  const double normal = (4 + 3.3 * 3.3) / (16 + 3.3 * 3.3);
+  EXPECT_NEAR(0.9 * metal.specular_reflectance[0] * normal, 0.45, 1e-12) << "rs is that of normal incidence";
+  chrome.rs = {0.6, {}};  // more than Fresnel's equations say
+  EXPECT_EQ(convert_mgf_material(chrome, "chrome", "room:1", warnings).non_diffuse.angle_law,
+            AngleLaw::kSchlick);
+  EXPECT_TRUE(warnings.empty());
 }
 
 TEST(MgfMaterialConversion, OneSidedRefractingSurfacesAreBodiesOfGlass) {

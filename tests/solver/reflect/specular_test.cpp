@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -79,6 +80,21 @@ TEST(Fresnel, IsTheSameFromBothSides) {
   }
 }
 
+TEST(Fresnel, OfMetals) {
+  // Amplitudes with a complex refracted wave [BW99, sec. 14.2].
+  for (const std::complex<double> n :
+       {std::complex(0.958, -6.69), std::complex(3.0, -3.3), std::complex(0.2, -3.4)})
+    for (const double angle : {0.0, 30.0, 60.0, 80.0, 89.0}) {
+      const double c = std::cos(angle * kDegree);
+      const auto wave = std::sqrt(n * n - std::pow(std::sin(angle * kDegree), 2));
+      const FresnelShares f = fresnel_of_metal(n.real(), -n.imag(), c);
+      EXPECT_NEAR(f.s, std::norm((c - wave) / (c + wave)), 1e-12) << n << angle;
+      EXPECT_NEAR(f.p, std::norm((n * n * c - wave) / (n * n * c + wave)), 1e-12) << n << angle;
+    }
+  EXPECT_NEAR(fresnel_of_metal(1.5, 0, 0.6).p, fresnel(1.5, 0.6).p, 1e-12) << "glass";
+  EXPECT_NEAR(fresnel_of_metal(0.958, 6.69, 0).mean(), 1, 1e-12) << "grazing";
+}
+
 TEST(SpecularSurface, PanesReflectAndTransmitAsTheirTwoSurfacesTogether) {
   // Clear slab, n = 1.5, and one of n = 1.52 with an optical thickness of 0.1; closed form.
   const SpecularSurface clear(material_of(0, glass(1.5, false)), 1);
@@ -143,7 +159,7 @@ TEST(SpecularSurface, RaysAreBentBySnellsLawAndComeBackTheSameWay) {
   for (const double angle : {0.0, 20.0, 50.0, 80.0}) {
     SpecularStep step(1);
     ASSERT_TRUE(body.choose(seen_at(angle), 0.9999F, {}, Survival::kCertain, step));
-    ASSERT_TRUE(step.crosses && step.bends);
+    ASSERT_TRUE(step.crosses() && step.bends);
     EXPECT_FALSE(step.front) << "it leaves from the other side";
     EXPECT_NEAR(step.direction.norm(), 1, 1e-6);
     EXPECT_NEAR(-step.direction.x(), std::sin(angle * kDegree) / 1.5, 1e-6);
@@ -153,13 +169,13 @@ TEST(SpecularSurface, RaysAreBentBySnellsLawAndComeBackTheSameWay) {
     inside.towards = step.direction;
     SpecularStep back(1);
     ASSERT_TRUE(body.choose(inside, 0.9999F, {}, Survival::kCertain, back));
-    ASSERT_TRUE(back.crosses);
+    ASSERT_TRUE(back.crosses());
     EXPECT_NEAR((back.direction - seen_at(angle).towards).norm(), 0, 2e-6);
     EXPECT_NEAR(back.transmitted[0], step.transmitted[0], 2e-6) << "reciprocity";
   }
   SpecularStep inside(1);
   ASSERT_TRUE(body.choose(seen_at(50, false), 0.9999F, {}, Survival::kCertain, inside));
-  EXPECT_FALSE(inside.crosses) << "total reflection";
+  EXPECT_FALSE(inside.crosses()) << "total reflection";
   EXPECT_EQ(inside.reflected[0], 1);
 }
 
@@ -167,12 +183,12 @@ TEST(SpecularSurface, PanesLetLightStraightOnAndMirrorsTurnIt) {
   SpecularStep step(1);
   const SpecularSurface pane(material_of(0, glass(1.5, false)), 1);
   ASSERT_TRUE(pane.choose(seen_at(40), 0.9F, {}, Survival::kRoulette, step));
-  EXPECT_TRUE(step.crosses);
+  EXPECT_TRUE(step.crosses());
   EXPECT_FALSE(step.bends);
   EXPECT_EQ((step.direction + seen_at(40).towards).norm(), 0);
   const SpecularSurface silver(material_of(0, mirror(0.9)), 1);
   ASSERT_TRUE(silver.choose(seen_at(40), 0.2F, {}, Survival::kRoulette, step));
-  EXPECT_FALSE(step.crosses);
+  EXPECT_FALSE(step.crosses());
   EXPECT_TRUE(step.front && step.bends);
   const Vec3f& towards = seen_at(40).towards;
   EXPECT_NEAR((step.direction - Vec3f(-towards.x(), 0, towards.z())).norm(), 0, 1e-6);
@@ -191,7 +207,8 @@ TEST(SpecularSurface, ChancesAddUp) {
         SpecularStep step(1);
         const float u = most * (static_cast<float>(i) + 0.5F) / kNumbers;
         if (!surface.choose(seen_at(30), u, {}, survival, step, most)) continue;
-        carried[step.crosses ? 1 : 0] += static_cast<double>(step.share()[0] / step.chance * most) / kNumbers;
+        carried[step.crosses() ? 1 : 0] +=
+            static_cast<double>(step.share()[0] / step.chance * most) / kNumbers;
       }
       EXPECT_NEAR(carried[0], 0.3, 1e-4);
       EXPECT_NEAR(carried[1], 0.5, 1e-4);
@@ -209,7 +226,7 @@ std::array<double, 2> carried(const Material& m, double angle, bool front = true
     const auto at = [i](double root) { return static_cast<float>(i * root - std::floor(i * root)); };
     if (surface.choose(seen_at(angle, front), at(0.8191725134), {at(0.6710436067), at(0.5497004779)},
                        Survival::kRoulette, step))
-      sum[step.crosses ? 1 : 0] += static_cast<double>(step.share()[0] / step.chance);
+      sum[step.crosses() ? 1 : 0] += static_cast<double>(step.share()[0] / step.chance);
   }
   for (double& share : sum) share /= kPoints;
   return sum;
@@ -248,16 +265,17 @@ TEST(SpecularSurface, RoughGlassKeepsMostLight) {
 
 TEST(SpecularSurface, LobesAreTheSameForRaysAndForShadowRays) {
   NonDiffusePart part = mirror(0.3, AngleLaw::kSchlick);
-  part.specular_transmittance = Spectrum::Constant(1, 0.4);
+  part.specular_transmittance = Spectrum::Constant(1, 0.2);
+  part.diffuse_transmittance = Spectrum::Constant(1, 0.2);
   part.roughness = part.transmission_roughness = 0.3;
   const SpecularSurface surface(material_of(0.1, part), 1);
   SpecularStep ray(1), value(1);
   const SurfacePoint x = seen_at(35);
-  for (const bool crosses : {false, true})
+  for (const SpecularWayOn way : {SpecularWayOn::kMirror, SpecularWayOn::kAcross, SpecularWayOn::kDiffuse})
     for (float u = 0.05F; u < 1; u += 0.1F) {
-      if (!surface.take(x, crosses, {u, 0.3F}, ray)) continue;
-      ASSERT_TRUE(surface.value(x, ray.direction, value));
-      EXPECT_EQ(value.crosses, crosses);
+      if (!surface.take(x, way, {u, 0.3F}, ray)) continue;
+      ASSERT_TRUE(surface.value(x, way, ray.direction, value));
+      EXPECT_EQ(value.crosses(), ray.direction.dot(x.normal) < 0);
       EXPECT_NEAR(value.pdf_per_sr, ray.pdf_per_sr, 1e-3F * ray.pdf_per_sr);
       const float cosine = std::fabs(ray.direction.z());
       EXPECT_NEAR(value.share()[0] * cosine, ray.share()[0] * ray.pdf_per_sr,

@@ -129,6 +129,34 @@ TEST(SpecularRooms, PaneBetweenPlates) {
   }
 }
 
+TEST(SpecularRooms, OpalSheetBetweenPlates) {
+  // Irradiances t, b on the sheet and h1, h2 on the plates: h1 = r t + tau b, h2 = tau t + r b,
+  // t = E1 + r1 h1, b = r2 h2; r = 0.35, tau = 0.55, r1 = 0.8, r2 = 0.3, E1 = 10.
+  constexpr double kTop = 15.6523259881077, kBottom = 2.88562434417629;
+  RoomBuilder room = plates(plate(0.3, 0), plate(0.8, 10));
+  const MaterialId opal = room.material("opal", 0.35, 0, true);
+  room.scene().materials[opal.index()].non_diffuse.diffuse_transmittance = one_band(0.55);
+  room.quad(opal, {Vec3(0, 0, 0.3), Vec3(1, 0, 0.3), Vec3(1, 1.3, 0.3), Vec3(0, 1.3, 0.3)}, 2);
+  constexpr std::size_t kSheet = 6;
+  for (const SolveMethod method : kMethods) {
+    const Solution s = solved(room, method, 640'000);
+    EXPECT_TRUE(is_at(mean_irradiance(s, kCeiling), 7.06540748513466));
+    EXPECT_TRUE(is_at(mean_irradiance(s, kFloor), 9.61874781392095));
+    EXPECT_TRUE(is_at(mean_irradiance(s, kSheet, true), kTop));
+    EXPECT_TRUE(is_at(mean_irradiance(s, kSheet, false), kBottom));
+    EXPECT_FALSE(is_at(mean_irradiance(s, kSheet, false), 1.02 * kBottom)) << "a bias of 2 % went unseen";
+    // Solutions hold what the sheet sends on from either side.
+    double sent = 0, area = 0;
+    for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
+      if (s.mesh.zone_surface(ZoneId(z)).index() != kSheet || s.mesh.zone_is_front(ZoneId(z))) continue;
+      sent += s.mesh.zone_area(ZoneId(z)) * s.radiosity(ZoneId(z), 0).mean;
+      area += s.mesh.zone_area(ZoneId(z));
+    }
+    EXPECT_NEAR(sent / area, mean_irradiance(s, kFloor).mean(), 0.01 * sent / area);
+    expect_closed_books(s);
+  }
+}
+
 TEST(SpecularRooms, GreyGlassTakesWhatBeerSays) {
   // A slab that nothing is reflected at (n = 1) between plates: exp(-a d / cos) over the hemisphere is
   // 2 E3(a d); E3(0.5) = 0.22160436.

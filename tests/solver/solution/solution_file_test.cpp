@@ -147,6 +147,16 @@ TEST_F(SolutionFile, KeepsUnsetZoneAreaEmptyRoomAndUnknownError) {
   EXPECT_EQ(loaded.record.error, saved.record.error);
 }
 
+TEST_F(SolutionFile, KeepsDiffuseTransmittance) {
+  Solution solution = sample_solution(BandSet::rgb());
+  solution.materials[0].non_diffuse.diffuse_transmittance = Eigen::Array3d(0.2, 0.1, 0.05);
+  save_solution(solution, file_);
+  const Solution read = load_solution(file_);
+  EXPECT_EQ(read.materials[0].diffuse_transmittance(1), 0.1);
+  EXPECT_EQ(read.materials[1].diffuse_transmittance(1), 0);
+  EXPECT_EQ(read.radiosity(ZoneId(0), 1).mean, solution.radiosity(ZoneId(0), 1).mean);
+}
+
 TEST_F(SolutionFile, SavingTwiceGivesTheSameBytes) {
   const Solution solution = sample_solution(BandSet::rgb());
   save_solution(solution, file_);

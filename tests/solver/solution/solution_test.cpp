@@ -3,9 +3,12 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "solver/solution/opposite_zones.h"
 #include "tests/solver/solution/sample_solution.h"
 
 namespace reemit {
@@ -84,6 +87,36 @@ TEST(SolutionEstimates, RadiosityIsEmissionPlusReflection) {
   EXPECT_DOUBLE_EQ(b.stderr_of_mean, reflectance * s.irradiance(ZoneId(0), 0).stderr_of_mean);
   const ZoneId lamp(s.mesh.zone_count() - 1);
   EXPECT_DOUBLE_EQ(s.radiosity(lamp, 0).mean, std::numbers::pi * s.materials[1].emitted_radiance[0]);
+}
+
+TEST(SolutionEstimates, OpalSheetsSendOnWhatArrivesBehindThem) {
+  Solution s = with_batches({{1, 2}, {3, 6}});
+  s.materials[0].non_diffuse.diffuse_transmittance = Spectrum::Constant(1, 0.2);
+  // Cell 0 of the front lies before cell 0 of the back.
+  const ZoneId back = s.mesh.first_zone(TriangleId(0), false);
+  EXPECT_NEAR(s.radiosity(back, 0).mean, 0.2 * 6, 1e-12);
+  EXPECT_NEAR(s.radiosity(back, 0).stderr_of_mean, 0.2 * s.irradiance(ZoneId(0), 0).stderr_of_mean, 1e-12);
+  EXPECT_NEAR(s.radiosity(ZoneId(0), 0).mean, s.materials[0].reflectance[0] * 6, 1e-12);
+}
+
+TEST(OppositeZones, ShareTheAreaOfAZone) {
+  BaseMesh base;
+  base.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  base.triangles = {BaseTriangle{{0, 1, 2}, {}, SurfaceId(0), 0, 2, true},
+                    BaseTriangle{{0, 2, 3}, {}, SurfaceId(0), 0, 2, true}};
+  for (BaseTriangle& t : base.triangles) t.normal.fill(BaseTriangle::kFlat);
+  // The two fronts are one zone, the backs have four cells each.
+  ZoneGroups groups;
+  groups.count = 1;
+  groups.of_side = {0, ZoneGroups::kOwn, 0, ZoneGroups::kOwn};
+  const ZoneMesh mesh(std::move(base), std::move(groups));
+  const std::vector<ZoneShare> behind = opposite_zones(mesh, mesh.first_zone(TriangleId(0), true));
+  ASSERT_EQ(behind.size(), 8U);
+  for (const ZoneShare& b : behind) EXPECT_NEAR(b.share, 0.125, 1e-12);
+  const std::vector<ZoneShare> before = opposite_zones(mesh, mesh.first_zone(TriangleId(1), false));
+  ASSERT_EQ(before.size(), 1U);
+  EXPECT_TRUE(mesh.is_group(before[0].zone));
+  EXPECT_NEAR(before[0].share, 1, 1e-12);
 }
 
 TEST(SolutionEstimates, OnlyMarkedMaterialsEmitFromTheBack) {

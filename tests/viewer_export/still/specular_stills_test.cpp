@@ -1,6 +1,7 @@
 // What cameras see of mirrors and glass.
 
 #include <atomic>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -98,6 +99,22 @@ TEST(SpecularStills, LampsAreSeenInMirrorsAndPanesWithTheirShare) {
     EXPECT_NEAR(brightness(mirror), 0.7, 1e-5) << to_string(integrator);
     EXPECT_NEAR(brightness(pane), 1 / 13.0, 1e-4) << to_string(integrator);
     EXPECT_NEAR(brightness(surface), 0.04, 1e-4) << to_string(integrator);
+  }
+}
+
+TEST(SpecularStills, OpalSheetsGlowByTheLampBehindThem) {
+  NonDiffusePart opal;
+  opal.diffuse_transmittance = Spectrum::Constant(1, 0.6);
+  // A square seen from above its middle fills this share of the cosine-weighted hemisphere.
+  const double side = 9 / std::sqrt(82.0);
+  const double truth = 0.6 * 4 / std::numbers::pi * side * std::atan(side);
+  for (const Integrator integrator : {Integrator::kGather, Integrator::kPath}) {
+    const StillImage image = look_down(opal, integrator, true, 64);
+    MeanTest mean;
+    for (std::size_t p = 0; p < image.pixel_count(); ++p)
+      mean.add(static_cast<double>(image.direct[p] + image.indirect[p]));
+    EXPECT_TRUE(mean.agrees_with(truth)) << to_string(integrator) << " " << mean.mean() << " " << truth;
+    EXPECT_TRUE(mean.would_notice(0.02, truth)) << to_string(integrator);
   }
 }
 

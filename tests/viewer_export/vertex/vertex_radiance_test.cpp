@@ -62,6 +62,30 @@ TEST(CutIntoTriangles, uses_every_vertex_and_keeps_the_area_without_slivers) {
   }
 }
 
+TEST(GatherVertices, opal_sheets_in_a_furnace_are_as_bright_as_its_walls) {
+  // rho + tau of the light is sent on from either side of the sheet, and the rest emitted.
+  constexpr double kIrradiance = 2;
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 0.5 * kIrradiance);
+  room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, wall, wall}, 3);
+  const MaterialId opal = room.material("opal", 0.2, 0.3 * kIrradiance, true);
+  room.scene().materials[opal.index()].emits_both_sides = true;
+  room.scene().materials[opal.index()].non_diffuse.diffuse_transmittance = room.flat(0.5);
+  room.quad(opal, {Vec3(0.3, 0.2, 0.5), Vec3(0.7, 0.2, 0.5), Vec3(0.7, 0.8, 0.6), Vec3(0.3, 0.8, 0.6)}, 4);
+  const Solution solution = test::uniform_solution(room, 0, kIrradiance);
+  for (const bool average_zones : {false, true}) {
+    VertexSettings settings;
+    settings.average_zones = average_zones;
+    const VertexData data = gather(room, solution, settings);
+    MeanTest sheet;
+    for (std::size_t v = 0; v < data.vertex_count(); ++v)
+      if (data.surfaces[v].index() == 6) sheet.add(static_cast<double>(data.radiance[v]));
+    ASSERT_EQ(sheet.count(), 50U) << "both sides";
+    EXPECT_TRUE(sheet.agrees_with(kIrradiance / pi)) << average_zones;
+    EXPECT_TRUE(sheet.would_notice(0.02, kIrradiance / pi)) << average_zones;
+  }
+}
+
 TEST(GatherVertices, furnace_is_the_same_at_every_vertex) {
   const double m = 3;
   const double rho = 0.5;
