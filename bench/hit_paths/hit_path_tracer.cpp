@@ -151,6 +151,7 @@ void HitPathTracer::add_path(int x, int y, Random& random, double* sum) const {
   RayStart start{eye_, RayStart::kFree};
   Spectrum weight = Spectrum::Ones(static_cast<Eigen::Index>(scene_->bands.count()));
   const Material* body = nullptr;  // of glass that the path has entered
+  bool entered = false;            // from outside, or it was met from inside
   bool scattered = false;
   for (int bounce = 0;; ++bounce) {
     const auto hit = room_.closest(start, direction, bounce == 0);
@@ -162,15 +163,20 @@ void HitPathTracer::add_path(int x, int y, Random& random, double* sum) const {
     const bool comes_from_inside = !hit->front && is_body(*hit->material);
     if (body == nullptr && comes_from_inside) body = hit->material;
     if (body != nullptr) weight *= left_inside(*body, hit->distance);
-    add_emission(*hit, direction, weight, sum);
+    // Paths carry radiance as that outside of glass, into which light from inside is spread by n^2.
+    const double n = entered ? body->non_diffuse.index_of_refraction : 1;
+    add_emission(*hit, direction, weight / (n * n), sum);
     if (!hit->front && !hit->material->two_sided) return;
-    add_lights(*hit, direction, weight, random, sum);
+    add_lights(*hit, direction, weight / (n * n), random, sum);
     const auto step = next_step(*hit, direction, bounce >= kSafeBounces, random);
     if (!step) return;
     weight *= step->weight;
     if (!(weight > 0).any()) return;
     scattered = scattered || step->scatters;
-    if (is_body(*hit->material)) body = step->crosses == hit->front ? hit->material : nullptr;
+    if (is_body(*hit->material)) {
+      body = step->crosses == hit->front ? hit->material : nullptr;
+      entered = body != nullptr;
+    }
     start = {hit->point, hit->part};
     direction = step->direction;
   }

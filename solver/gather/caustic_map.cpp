@@ -22,6 +22,9 @@ constexpr double kTypicalRays = 256;
 
 constexpr double kTypicalRadius = 0.3 * static_cast<double>(CausticMap::kLargestRadius);
 
+/// Rays along a face look for what stands on it at this share of the radius above it.
+constexpr float kLift = 0.1F;
+
 /// Least cosine between normals of points of one face, or of faces that go on about as each other do.
 constexpr float kSameSide = 0.8F;
 
@@ -52,12 +55,14 @@ CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, 
   for (std::size_t p = 0; p < parts; ++p)
     parts_[p].all = shooter.shoot(static_cast<std::uint32_t>(packets / static_cast<double>(parts)),
                                   static_cast<std::uint32_t>(p), stop);
-  tbb::parallel_for(std::size_t{0}, parts,
-                    [&](std::size_t p) { parts_[p] = in_grids(std::move(parts_[p].all)); });
+  tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t p) {
+    parts_[p] = in_grids(std::move(parts_[p].all));
+    find_walls(parts_[p]);
+  });
 }
 
 CausticMap::Photons CausticMap::in_grids(CausticPhotons photons) {
-  Photons result{std::move(photons), {}};
+  Photons result{std::move(photons), {}, {}};
   for (std::size_t level = 0; level < kLevels; ++level)
     result.grids[level] = PhotonGrid(result.all.places, 2 * radius_of(level));
   return result;
@@ -82,23 +87,41 @@ float CausticMap::radius_at(const SurfacePoint& x, const Vec3f& place) const {
   return kLargestRadius;
 }
 
+void CausticMap::find_walls(Photons& photons) const {
+  constexpr int kDirections = 8;
+  const RayTracer& rays = room_->rays();
+  photons.beside_wall.assign(photons.all.size(), 0);
+  tbb::parallel_for(std::size_t{0}, photons.all.size(), [&](std::size_t i) {
+    const Vec3f& normal = photons.all.normals[i];
+    const Frame frame(normal);
+    const Vec3f from = photons.all.places[i] + kLift * kLargestRadius * normal;
+    for (int k = 0; k < kDirections && photons.beside_wall[i] == 0; ++k) {
+      const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
+      const Vec3f to = from + kLargestRadius * frame.to_world({std::cos(phi), std::sin(phi), 0});
+      if (!rays.visible(from, to)) photons.beside_wall[i] = 1;
+    }
+  });
+}
+
+bool CausticMap::is_inside_triangle(const SurfacePoint& x, float radius) const {
+  const RayTracer& rays = room_->rays();
+  if (x.triangle.index() >= room_->mesh().flat_count()) return false;
+  const std::array<Vec3f, 3> corner{rays.point(x.triangle, 0, 0), rays.point(x.triangle, 1, 0),
+                                    rays.point(x.triangle, 0, 1)};
+  const float area2 = (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
+  const std::array<float, 3> opposite{(corner[2] - corner[1]).norm(), (corner[2] - corner[0]).norm(),
+                                      (corner[1] - corner[0]).norm()};
+  const std::array<float, 3> barycentric{1 - x.u - x.v, x.u, x.v};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (barycentric[k] * area2 < radius * opposite[k]) return false;
+  return true;
+}
+
 float CausticMap::share_on_face(const SurfacePoint& x, const Vec3f& place, float radius, float turn) const {
   const RayTracer& rays = room_->rays();
-  const ZoneMesh& mesh = room_->mesh();
-  if (x.triangle.index() < mesh.flat_count()) {
-    const std::array<Vec3f, 3> corner{rays.point(x.triangle, 0, 0), rays.point(x.triangle, 1, 0),
-                                      rays.point(x.triangle, 0, 1)};
-    const float area2 = (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
-    const std::array<float, 3> opposite{(corner[2] - corner[1]).norm(), (corner[2] - corner[0]).norm(),
-                                        (corner[1] - corner[0]).norm()};
-    const std::array<float, 3> barycentric{1 - x.u - x.v, x.u, x.v};
-    bool inside = true;
-    for (std::size_t k = 0; k < 3; ++k) inside = inside && barycentric[k] * area2 >= radius * opposite[k];
-    if (inside) return 1;
-  }
   constexpr int kPoints = 12;
   const Frame frame(x.normal);
-  const float lift = 0.1F * radius;
+  const float lift = kLift * radius;
   const Vec3f from = place + lift * x.normal;
   int on_face = 0;
   for (int k = 0; k < kPoints; ++k) {
@@ -130,16 +153,24 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
   std::size_t level = 0;
   while (level + 1 < kLevels && radius_of(level + 1) >= radius) ++level;
   const std::size_t bands = room_->band_count();
-  float face = 0;  // share of the kernel on it; looked for with the first photon
   const auto metres = static_cast<float>(rays.metres_per_unit());
+  const Vec3f above = kLift * radius * x.normal;
+  bool walled = false;
+  std::vector<float> found;  // by band
   photons.grids[level].visit(place, radius, [&](std::uint32_t i, float d2) {
     if (!counts(photons, i, x, place, radius)) return;
-    if (face == 0) face = share_on_face(x, place, radius, turn);
+    if (photons.beside_wall[i] != 0) {
+      walled = true;
+      if (!rays.visible(place + above, photons.all.places[i] + above)) return;
+    }
+    if (found.empty()) found.assign(bands, 0.0F);
     const float share = whole ? 1 : 1 - left_to_rays(photons.all.luminaires[i]);
-    const float per_m2 = share * kernel(d2, radius) / (face * metres * metres);
-    for (std::size_t b = 0; b < bands; ++b)
-      sum[b] += weight[b] * brdf(b) * per_m2 * photons.all.power[i * bands + b];
+    const float per_m2 = share * kernel(d2, radius) / (metres * metres);
+    for (std::size_t b = 0; b < bands; ++b) found[b] += per_m2 * photons.all.power[i * bands + b];
   });
+  if (found.empty()) return;
+  const float face = !walled && is_inside_triangle(x, radius) ? 1 : share_on_face(x, place, radius, turn);
+  for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * brdf(b) * found[b] / face;
 }
 
 }  // namespace reemit

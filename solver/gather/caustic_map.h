@@ -19,8 +19,8 @@ namespace reemit {
 ///
 /// The kernel is Epanechnikov's. Its radius is set by photons that are not counted themselves, so that about
 /// kPhotons lie in it, within kLargestRadius; a caustic is blurred by as much, and no light is gained or lost
-/// but where it changes over less than the radius. Where a face ends, the part of the kernel beyond is taken
-/// out of the area.
+/// but where it changes over less than the radius. Where a face ends, or something stands on it, the part of
+/// the kernel beyond is taken out of the area, and photons beyond are not counted.
 class CausticMap {
  public:
   static constexpr int kPhotons = 160;             ///< In the radius, of all parts together.
@@ -48,14 +48,18 @@ class CausticMap {
   static constexpr std::size_t kLevels = 6;  // radii halve from one to the next
   struct Photons {
     CausticPhotons all;
+    std::vector<std::uint8_t>
+        beside_wall;  ///< By photon: something stands on the face within the largest radius.
     std::array<PhotonGrid, kLevels> grids;
   };
   static Photons in_grids(CausticPhotons photons);
+  void find_walls(Photons& photons) const;
   static float radius_of(std::size_t level) { return kLargestRadius / static_cast<float>(1U << level); }
   static bool counts(const Photons& photons, std::uint32_t i, const SurfacePoint& x, const Vec3f& place,
                      float radius);
 
   float radius_at(const SurfacePoint& x, const Vec3f& place) const;
+  bool is_inside_triangle(const SurfacePoint& x, float radius) const;
   float share_on_face(const SurfacePoint& x, const Vec3f& place, float radius, float turn) const;
 
   const Room* room_ = nullptr;

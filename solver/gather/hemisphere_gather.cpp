@@ -52,10 +52,11 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     if (!zone.valid()) return;
     way += hit.distance;
     path.arrive(*direct_, hit, along, weight, sum);
+    const float* here = path.of_light_there(weight);
     const bool is_read = bounce == most_bounces_ || !continues(zone, way);
     if (is_read) {
       const float* radiance = field_->reflected(zone, key.part);
-      for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * radiance[b];
+      for (std::size_t b = 0; b < bands; ++b) sum[b] += here[b] * radiance[b];
     }
     const bool specular = surfaces.is_specular(hit.triangle, hit.front);
     if (is_read && !specular) return;
@@ -65,9 +66,9 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
       const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
       const DiffuseWay diffuse = is_read ? DiffuseWay::kNotFollowed : DiffuseWay::kFollowed;
       scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
-      if (scattered > 0) add_direct(point, bounce, key, weight, sum);
+      if (scattered > 0) add_direct(point, bounce, key, here, sum);
       if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), diffuse, weight, sum);
+        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), diffuse, here, sum);
       const SpecularPath::Next next = path.choose(point, diffuse, scattered, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
@@ -83,7 +84,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     bool dark = true;
     for (std::size_t b = 0; b < bands; ++b) dark = dark && weight[b] * brdf(b) == 0;
     if (dark) return;
-    if (!specular) add_direct(point, bounce, key, weight, sum);
+    if (!specular) add_direct(point, bounce, key, here, sum);
     for (std::size_t b = 0; b < bands; ++b) {
       weight[b] *= brdf(b) / scattered;
       weight[b] *= next.cosine_over_pdf;

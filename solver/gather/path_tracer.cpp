@@ -38,10 +38,11 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
       if (u[3] >= survival) return;
     }
     point = surface_point(rays, hit, direction);
-    if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, weight, sum);
+    const float* here = path.of_light_there(weight);
+    if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, here, sum);
     if (specular) {
       if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, {}, DiffuseWay::kFollowed, weight, sum);
+        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, {}, DiffuseWay::kFollowed, here, sum);
       survival = largest;
       const SpecularPath::Next next = path.choose(point, DiffuseWay::kFollowed, survival, weight);
       if (next == SpecularPath::Next::kEnds) return;

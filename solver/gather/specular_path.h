@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "solver/gather/caustic_map.h"
 #include "solver/gather/direct_light.h"
@@ -65,7 +66,17 @@ class SpecularPath {
     const SurfacePoint x = surface_point(room_->rays(), hit, along);
     const float* emitted = surfaces.emitted(x.triangle, x.front);
     const float shape = found * surfaces.emission_shape(x.triangle, std::fabs(x.normal.dot(x.towards)));
-    for (std::size_t b = 0; b < surfaces.band_count(); ++b) sum[b] += weight[b] * shape * emitted[b];
+    const float* there = of_light_there(weight);
+    for (std::size_t b = 0; b < surfaces.band_count(); ++b) sum[b] += there[b] * shape * emitted[b];
+  }
+  /// weight[b] for light that starts at the last hit, whose radiance is less where that is inside of glass
+  /// (SurfaceModel::radiance_outside). To be used until the next call.
+  const float* of_light_there(const float* weight) {
+    const float outside = room_->surfaces().radiance_outside(body_);
+    if (outside == 1) return weight;
+    there_.assign(weight, weight + room_->band_count());
+    for (float& w : there_) w *= outside;
+    return there_.data();
   }
   /// What of light over mirrors, glass and gloss to where it was scattered last this path is to count.
   CausticShare counted() const { return is_wide_ ? CausticShare{} : caustic_; }
@@ -119,6 +130,7 @@ class SpecularPath {
   float way_ = 0;            // from there
   std::uint32_t steps_ = 0;  // in all
   TriangleId body_;          // of glass that the path was sent into
+  std::vector<float> there_;
   Vec3f origin_{0, 0, 0};
 };
 

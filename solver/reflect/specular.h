@@ -103,6 +103,9 @@ class SpecularSurface {
   /// [1/sr] by band, seen from x.towards, and step.pdf_per_sr the density with which the way would be drawn
   /// there. False if it spreads nothing there.
   bool value(const SurfacePoint& x, SpecularWayOn way, const Vec3f& from, SpecularStep& step) const;
+  /// Radiance outside of the body over radiance inside of it, n^-2, as refraction bundles light [WAL07]; 1
+  /// for other surfaces.
+  float radiance_outside() const { return is_body() ? static_cast<float>(1 / (ior_ * ior_)) : 1.0F; }
   /// What is left of light after a way inside the body that ended on this surface, of one band; the way is in
   /// the units of the constructor.
   float left_inside(std::size_t band, float way) const;

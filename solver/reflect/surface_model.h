@@ -70,6 +70,11 @@ class SurfaceModel {
     if (!specular(t).is_body()) return around;
     return leaves_front ? TriangleId() : t;
   }
+  /// What radiance of surfaces inside a body (which need not be valid) is in rays, which carry it as that
+  /// outside of glass.
+  float radiance_outside(TriangleId body) const {
+    return body.valid() ? specular(body).radiance_outside() : 1.0F;
+  }
   /// Takes from `light`, per band, what a body (which need not be valid) absorbs along a way.
   void attenuate(TriangleId body, float way, float* light) const {
     if (!body.valid()) return;

@@ -190,7 +190,14 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
     for (std::size_t b = 0; b < next.through.size(); ++b) next.through[b] *= step.share()[b] / step.chance;
     surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, next.body), hit.distance,
                        next.through.data());
-    add_seen(next.x, next.through.data(), found, sample, sums, batch);
+    const float inside = surfaces.radiance_outside(next.body);
+    if (inside == 1) {
+      add_seen(next.x, next.through.data(), found, sample, sums, batch);
+    } else {
+      std::vector<float> outside = next.through;
+      for (float& share : outside) share *= inside;
+      add_seen(next.x, outside.data(), found, sample, sums, batch);
+    }
     if (surfaces.is_specular(hit.triangle, hit.front)) looks.push_back(std::move(next));
   };
   while (!looks.empty() && numbers < SpecularNumbers::kMostSteps) {
