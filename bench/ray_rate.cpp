@@ -120,7 +120,7 @@ void measure(const Case& c, int threads, int rounds) {
   settings.method = c.method;
   const auto packets = static_cast<std::uint32_t>(
       std::max<std::size_t>(1'000'000, BatchPlan(settings, built.mesh.zone_count()).largest_batch_packets()));
-  BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
+  BatchBooks books = transport.new_books();
   const auto run = [&](const RayObserver* observer) {
     books.clear();
     const BatchTask task{transport, emission, settings, 0, packets, nullptr, observer};

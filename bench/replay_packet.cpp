@@ -85,7 +85,7 @@ struct Run {
   }
 
   void send(std::uint32_t batch, std::uint32_t packets, const RayObserver& observer) {
-    BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
+    BatchBooks books = transport.new_books();
     BatchTask task{transport, emission, solution.settings, batch, packets};
     task.ray_observer = &observer;
     if (solution.settings.method == SolveMethod::kShooting)

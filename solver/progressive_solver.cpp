@@ -122,7 +122,7 @@ Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings&
   keep_surfaces(scene, solution);
   solution.mesh_report = std::move(mesh.report);
   solution.mesh = std::move(mesh.mesh);
-  solution.sums.clear(solution.mesh.zone_count() * scene.bands.count());
+  solution.sums.clear(solution.mesh.zone_count() * scene.bands.count(), scene.bends_light());
   solution.audit = empty_audit(solution);
   return solution;
 }
@@ -204,7 +204,7 @@ class ProgressiveSolver::Run {
     SolveRecord& record = start.record;
     if (record.cut_off) {
       // A part of a batch is no independent estimate; it starts again.
-      start.sums.clear(start.sums.direct.size());
+      start.sums.clear(start.sums.direct.size(), start.sums.has_caustics());
       start.audit = empty_audit(start);
       const SolveRecord cut_off = std::exchange(record, {});
       record.seconds = cut_off.seconds;

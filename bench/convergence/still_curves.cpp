@@ -81,7 +81,8 @@ Reference path_reference(const StudiedRoom& room, const MeshResult& mesh, const 
   constexpr std::size_t kReplicates = Film::kReplicates;
   const StopToken stop(never);
   const TileRenderer renderer(walls, solution, camera, settings, kReplicates, stop);
-  Film film(room.scene.bands, room.picture_size, room.picture_size, kReplicates, renderer.parts());
+  Film film(room.scene.bands, room.picture_size, room.picture_size, kReplicates, renderer.parts(),
+            renderer.has_caustics());
   const int samples = reference_samples(room, options) / static_cast<int>(kReplicates);
   const int log2_samples = std::bit_width(static_cast<unsigned>(samples - 1));
   tbb::task_arena arena(options.threads);

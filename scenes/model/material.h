@@ -49,6 +49,11 @@ struct NonDiffusePart {
   }
   bool transmits_specularly() const { return is_given(specular_transmittance); }
   bool transmits_diffusely() const { return is_given(diffuse_transmittance); }
+  /// Whether it sends light on another way than straight through, and not diffusely: over it, luminaires
+  /// throw caustics.
+  bool bends_light() const {
+    return reflects_specularly() || (transmits_specularly() && (is_solid || has_glossy_transmission()));
+  }
   bool has_gloss() const { return reflects_specularly() && roughness > kSmooth; }
   bool has_glossy_transmission() const { return transmits_specularly() && transmission_roughness > kSmooth; }
 };

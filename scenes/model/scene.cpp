@@ -1,5 +1,6 @@
 #include "scenes/model/scene.h"
 
+#include <algorithm>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -112,6 +113,11 @@ void warn_of_units(Scene& scene) {
 }
 
 }  // namespace
+
+bool Scene::bends_light() const {
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [&](const Surface& s) { return material_of(s).non_diffuse.bends_light(); });
+}
 
 void finish_scene(Scene& scene) {
   check_materials(scene);

@@ -32,6 +32,8 @@ struct Scene {
   KindCounts not_modelled;  ///< Parts that were understood, but whose effect on light is not simulated.
 
   const Material& material_of(const Surface& s) const { return materials[s.material.index()]; }
+  /// Whether a surface bends light (NonDiffusePart::bends_light).
+  bool bends_light() const;
 };
 
 /// Checks every value (finite, in range, indices in bounds, names unique) and throws InputError at the first

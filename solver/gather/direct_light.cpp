@@ -94,18 +94,18 @@ void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<f
 
 void DirectLight::add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
                                   const CausticShare& counted, DiffuseWay diffuse, const float* weight,
-                                  float* sum) const {
+                                  const LobeSums& sums) const {
   if (empty()) return;
   const SpecularSurface& surface = surfaces_->specular(x.triangle);
   if (surface.spreads(SpecularWayOn::kMirror))
-    add_lobe_of(x, SpecularWayOn::kMirror, x, u, counted, weight, sum);
+    add_lobe_of(x, SpecularWayOn::kMirror, x, u, counted, weight, sums.lobes);
   SurfacePoint beyond = x;
   beyond.front = !x.front;
   beyond.normal = -x.normal;
   if (surface.spreads(SpecularWayOn::kAcross))
-    add_lobe_of(x, SpecularWayOn::kAcross, beyond, u, counted, weight, sum);
+    add_lobe_of(x, SpecularWayOn::kAcross, beyond, u, counted, weight, sums.lobes);
   if (surface.diffuses() && diffuse == DiffuseWay::kFollowed)
-    add_lobe_of(x, SpecularWayOn::kDiffuse, beyond, u, counted, weight, sum);
+    add_lobe_of(x, SpecularWayOn::kDiffuse, beyond, u, counted, weight, sums.diffuse);
 }
 
 void DirectLight::add_lobe_of(const SurfacePoint& x, SpecularWayOn way, const SurfacePoint& lit,

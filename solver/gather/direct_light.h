@@ -14,6 +14,12 @@
 
 namespace reemit {
 
+/// Where light goes that a surface sends on: by its lobes, and by diffuse transmission; per band.
+struct LobeSums {
+  float* lobes;
+  float* diffuse;
+};
+
 struct DirectLightSettings {
   /// How one luminaire is chosen among many; unset: LuminaireChoice::default_for.
   std::optional<Selection> selection = std::nullopt;
@@ -47,11 +53,11 @@ class DirectLight {
                             const float* weight, float* sum) const;
 
   /// One sample of what the lobes of a rough surface at x send towards x.towards (SpecularSurface::value):
-  /// adds weight[b] times that to sum[b], of areas only the share that rays drawn from the lobe do not find,
-  /// of narrow lobes only what is `counted`; diffuse transmission only where it is followed.
+  /// adds weight[b] times that to the sums, of areas only the share that rays drawn from the lobe do not
+  /// find, of narrow lobes only what is `counted`; diffuse transmission only where it is followed.
   void add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
                        const CausticShare& counted, DiffuseWay diffuse, const float* weight,
-                       float* sum) const;
+                       const LobeSums& sums) const;
   /// The share of an area's light that is left to rays drawn from a lobe: the balance heuristic [VG95], with
   /// the luminaires of a surface taken as drawn evenly by area. `way`: from the lobe to a point of the
   /// triangle.

@@ -39,7 +39,7 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
       specular_(settings.seed, RngPurpose::kSpecular, RngPurpose::kSpread) {}
 
 void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
-                                     float* sum) const {
+                                     float* sum, float* caustic) const {
   const RayTracer& rays = room().rays();
   const SurfaceModel& surfaces = room().surfaces();
   const std::size_t bands = band_count();
@@ -51,7 +51,8 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
     way += hit.distance;
-    path.arrive(*direct_, hit, along, weight, sum);
+    float* over_mirrors = path.is_scattered() ? sum : caustic;
+    path.arrive(*direct_, hit, along, weight, over_mirrors);
     const float* here = path.of_light_there(weight);
     const bool is_read = bounce == most_bounces_ || !continues(zone, way);
     if (is_read) {
@@ -68,7 +69,8 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
       scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
       if (scattered > 0) add_direct(point, bounce, key, here, sum);
       if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), diffuse, here, sum);
+        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), diffuse, here,
+                                 {over_mirrors, sum});
       const SpecularPath::Next next = path.choose(point, diffuse, scattered, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
@@ -117,11 +119,12 @@ GatherBatch::GatherBatch(const HemisphereGather& gather)
     : gather_(&gather), bands_(gather.band_count()), weights_(static_cast<std::size_t>(kWidth) * bands_) {}
 
 void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
-                      float* sum) {
+                      float* sum, float* caustic) {
+  if (caustic == nullptr) caustic = sum;
   const RayTracer& rays = gather_->room().rays();
   // Inside a body of glass most rays would go round for ever, and no one asks for light there.
   if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return;
-  gather_->add_photons(x, u0, u1, key, weight, sum);
+  gather_->add_photons(x, u0, u1, key, weight, caustic);
   const Vec3f direction = sample_lambert(x.normal, u0, u1);
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(side_normal(rays, x)) > 0)) return;
@@ -130,6 +133,7 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   second_look_[lane] = false;
   keys_[lane] = key;
   sums_[lane] = sum;
+  caustics_[lane] = caustic;
   std::copy_n(weight, bands_, &weights_[lane * bands_]);
   ++count_;
   while (count_ == kWidth) trace();
@@ -148,6 +152,7 @@ void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
   second_look_[to] = true;
   keys_[to] = keys_[lane];
   sums_[to] = sums_[lane];
+  caustics_[to] = caustics_[lane];
   std::copy_n(&weights_[lane * bands_], bands_, &weights_[to * bands_]);
 }
 
@@ -171,7 +176,8 @@ void GatherBatch::trace() {
     if (!zone.valid()) continue;
     if (gather_->continues(zone, hits.distance[i]) || surfaces.is_specular(TriangleId(t), hits.front[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
-      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], weight, sums_[i]);
+      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], weight, sums_[i],
+                             caustics_[i]);
       continue;
     }
     const float* radiance = field.reflected(zone, keys_[i].part);

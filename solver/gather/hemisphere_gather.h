@@ -61,9 +61,10 @@ class HemisphereGather {
   }
 
   /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
-  /// on a mirror or glass, sends back along it to sum[b]. `weight` is used up.
-  void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
-                     float* sum) const;
+  /// on a mirror or glass, sends back along it to sum[b], of luminaires over mirrors, glass and gloss alone
+  /// to caustic[b], which may be the same. `weight` is used up.
+  void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight, float* sum,
+                     float* caustic) const;
 
  private:
   /// One sample of what y reflects of the luminaires along the path.
@@ -90,8 +91,10 @@ class GatherBatch {
   explicit GatherBatch(const HemisphereGather& gather);
 
   /// Queues a ray from x in direction (u0,u1) of the cosine-weighted hemisphere. `weight` has one value per
-  /// band and is copied; `sum` must live until flush().
-  void add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum);
+  /// band and is copied; `sum` must live until flush(), and `caustic`, which gets what comes from luminaires
+  /// over mirrors, glass and gloss unless it is null.
+  void add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
+           float* caustic = nullptr);
   /// Traces what is queued. Call it before the sums are read.
   void flush();
 
@@ -108,6 +111,7 @@ class GatherBatch {
   std::array<bool, kWidth> second_look_{};
   std::array<PathKey, kWidth> keys_{};
   std::array<float*, kWidth> sums_{};
+  std::array<float*, kWidth> caustics_{};
   std::vector<float> weights_;
 };
 

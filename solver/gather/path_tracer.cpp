@@ -13,7 +13,7 @@ PathTracer::PathTracer(const Room& room, const DirectLight& direct, std::uint64_
       specular_(seed, RngPurpose::kSpecular, RngPurpose::kSpread) {}
 
 void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const PathKey& key, float* weight,
-                              float* sum) const {
+                              float* sum, float* caustic) const {
   const RayTracer& rays = room_->rays();
   const SurfaceModel& surfaces = room_->surfaces();
   const std::size_t bands = surfaces.band_count();
@@ -25,7 +25,8 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
   for (std::uint32_t bounce = 0;;) {
     Hit hit;
     if (!rays.closest(origin, direction, hit)) return;
-    path.arrive(*direct_, hit, direction, weight, sum);
+    float* over_mirrors = caustic == nullptr || path.is_scattered() ? sum : caustic;
+    path.arrive(*direct_, hit, direction, weight, over_mirrors);
     const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
     const float largest = *std::max_element(reflectance, reflectance + bands);
     const bool specular = surfaces.is_specular(hit.triangle, hit.front);
@@ -42,7 +43,8 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
     if (largest > 0) direct_->add_reflected_sample(point, {u[0], u[1], u[2]}, survival, here, sum);
     if (specular) {
       if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, {}, DiffuseWay::kFollowed, here, sum);
+        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, {}, DiffuseWay::kFollowed, here,
+                                 {over_mirrors, sum});
       survival = largest;
       const SpecularPath::Next next = path.choose(point, DiffuseWay::kFollowed, survival, weight);
       if (next == SpecularPath::Next::kEnds) return;

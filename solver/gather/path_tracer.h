@@ -24,9 +24,10 @@ class PathTracer {
   PathTracer(const Room& room, const DirectLight& direct, std::uint64_t seed);
 
   /// Adds weight[b] times the reflected radiance seen along a cosine-distributed ray (u0,u1) from x to
-  /// sum[b]: pi times its mean is the indirect irradiance at x. `weight` is used up.
-  void add_indirect(const SurfacePoint& x, float u0, float u1, const PathKey& key, float* weight,
-                    float* sum) const;
+  /// sum[b]: pi times its mean is the indirect irradiance at x. `weight` is used up. What comes from
+  /// luminaires over mirrors, glass and gloss goes to caustic[b], unless that is null.
+  void add_indirect(const SurfacePoint& x, float u0, float u1, const PathKey& key, float* weight, float* sum,
+                    float* caustic = nullptr) const;
 
  private:
   const Room* room_;

@@ -38,6 +38,7 @@ void RadianceField::read_zones(const Solution& solution) {
   parts_ = std::min({std::bit_floor(parts_), std::bit_floor(most_parts), ZoneSums::kGroups});
   reflected_.assign(parts_ * values_, 0.0F);
   reflected_direct_.assign(values_, 0.0F);
+  reflected_caustic_.assign(sums.has_caustics() ? values_ : 0, 0.0F);
   if (sums.batches <= 0) return;
   if (sums.direct.size() != values_ || sums.indirect.size() != values_ ||
       sums.group_total.size() != ZoneSums::kGroups * values_)
@@ -54,6 +55,9 @@ void RadianceField::read_zones(const Solution& solution) {
       const auto reflectance = static_cast<float>(rho[b]);
       reflected_direct_[k] =
           lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / weight));
+      if (!reflected_caustic_.empty())
+        reflected_caustic_[k] =
+            lambert_reflected_radiance(reflectance, static_cast<float>(sums.caustic[k] / weight));
       for (std::size_t p = 0; p < parts_; ++p)
         reflected_[p * values_ + k] =
             lambert_reflected_radiance(reflectance, irradiance(sums, p, part_weight[p], k));
@@ -68,7 +72,7 @@ void RadianceField::read_zones(const Solution& solution) {
 float RadianceField::irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t k) const {
   double total = 0;
   if (parts_ == 1)
-    total = sums.direct[k] + sums.indirect[k];
+    total = sums.total(k);
   else
     for (std::size_t g = part; g < ZoneSums::kGroups; g += parts_)
       total += static_cast<double>(sums.group_total[g * values_ + k]);
@@ -90,6 +94,9 @@ void RadianceField::add_transmitted(const Solution& solution, const std::vector<
         const std::size_t from = behind.zone.index() * bands_ + b;
         reflected_direct_[to] +=
             lambert_reflected_radiance(through, static_cast<float>(sums.direct[from] / weight));
+        if (!reflected_caustic_.empty())
+          reflected_caustic_[to] +=
+              lambert_reflected_radiance(through, static_cast<float>(sums.caustic[from] / weight));
         for (std::size_t p = 0; p < parts_; ++p)
           reflected_[p * values_ + to] +=
               lambert_reflected_radiance(through, irradiance(sums, p, part_weight[p], from));

@@ -20,7 +20,7 @@ class RadianceField {
   /// Parts that there are: one (the whole solution) or independent estimates from disjoint sets of batches.
   std::size_t parts() const { return parts_; }
 
-  /// Reflected radiance rho (E_direct + E_indirect)/pi of a zone, and what comes through diffusely, tau/pi
+  /// Reflected radiance rho E/pi of a zone, and what comes through diffusely, tau/pi
   /// times that of the other side [W/(m2 sr)]; self-emission is not in it. Zero where there is no zone.
   const float* reflected(ZoneId zone, std::size_t part = 0) const {
     return zone.valid() ? &reflected_[part * values_ + zone.index() * bands_] : zero_.data();
@@ -28,6 +28,11 @@ class RadianceField {
   /// The share of E_direct in reflected(), from all parts [W/(m2 sr)].
   const float* reflected_direct(ZoneId zone) const {
     return zone.valid() ? &reflected_direct_[zone.index() * bands_] : zero_.data();
+  }
+  /// The share of E_caustic, likewise.
+  const float* reflected_caustic(ZoneId zone) const {
+    return zone.valid() && !reflected_caustic_.empty() ? &reflected_caustic_[zone.index() * bands_]
+                                                       : zero_.data();
   }
   /// Edge length of the square that two zones such as this make up [normalised units].
   float zone_size(ZoneId z) const;
@@ -44,6 +49,7 @@ class RadianceField {
   std::size_t values_ = 0;        // zones * bands
   std::vector<float> reflected_;  // by part, then by zone
   std::vector<float> reflected_direct_;
+  std::vector<float> reflected_caustic_;  // empty where there is none
   std::vector<float> zero_;
 };
 

@@ -29,11 +29,13 @@ struct ReplicateEffort {
 
 /// One replicate of the light around a place. `place(u)` gives the SurfacePoint for two uniform numbers. Adds
 /// the mean direct irradiance [W/m2] to direct[b] and the mean reflected radiance over cosine-distributed
-/// rays [W/(m2 sr)] to indirect[b] (pi times it is the indirect irradiance; complete after batch.flush()).
+/// rays [W/(m2 sr)] to indirect[b] (pi times it is the indirect irradiance; complete after batch.flush()), of
+/// it that of luminaires over mirrors, glass and gloss to caustic[b] unless that is null.
 /// The sampler must have been made for first + points samples.
 template <class Place>
 void add_replicate(const DirectLight& light, const PointSampler& sampler, const ReplicateEffort& effort,
-                   PathKey key, Place&& place, GatherBatch& batch, float* direct, float* indirect) {
+                   PathKey key, Place&& place, GatherBatch& batch, float* direct, float* indirect,
+                   float* caustic = nullptr) {
   const std::vector<float> light_weight(light.band_count(), 1.0F / static_cast<float>(effort.points));
   const std::vector<float> ray_weight(light.band_count(),
                                       1.0F / static_cast<float>(effort.points * effort.gathers));
@@ -44,7 +46,7 @@ void add_replicate(const DirectLight& light, const PointSampler& sampler, const 
     for (int j = 0; j < effort.gathers; ++j) {
       const std::array<float, 2> u = sampler.hemisphere(i, j, effort.gathers);
       key.path = first_path + static_cast<std::uint32_t>(i * effort.gathers + j);
-      batch.add(x, u[0], u[1], key, ray_weight.data(), indirect);
+      batch.add(x, u[0], u[1], key, ray_weight.data(), indirect, caustic);
     }
   }
 }

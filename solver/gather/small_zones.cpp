@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -69,6 +70,9 @@ int whole_points(double points) {
 struct ZoneReplicates {
   std::array<double, kReplicates> direct{};
   std::array<double, kReplicates> indirect{};
+  std::array<double, kReplicates> caustic{};
+
+  double total(std::size_t r) const { return direct[r] + indirect[r] + caustic[r]; }
 };
 
 /// Gathers at zones; every replicate reads its own part of the zone solution.
@@ -78,6 +82,7 @@ class Gatherer {
       : room_(room),
         stop_(stop),
         bands_(room.band_count()),
+        parts_(solution.sums.has_caustics() ? 3 : 2),
         seed_(solution.settings.seed),
         field_(room, solution, kReplicates),
         direct_(room),
@@ -108,28 +113,33 @@ class Gatherer {
   template <class Use>
   bool gather_chunk(const std::vector<ZoneId>& zones, std::size_t first, std::size_t last, int points,
                     RngPurpose purpose, Use&& use) const {
-    // Per zone and replicate: direct irradiance, then mean reflected radiance over the hemisphere.
-    std::vector<float> found((last - first) * kReplicates * 2 * bands_, 0.0F);
+    // Per zone and replicate: direct irradiance, then mean reflected radiance over the hemisphere, then that
+    // of caustics.
+    const std::size_t stride = parts_ * bands_;
+    std::vector<float> found((last - first) * kReplicates * stride, 0.0F);
     GatherBatch batch(gather_);
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i)
-      for (std::size_t r = 0; r < kReplicates; ++r, next += 2 * bands_) {
+      for (std::size_t r = 0; r < kReplicates; ++r, next += stride) {
         if (stop_.requested()) return false;
         const auto replicate = static_cast<std::uint32_t>(r);
         const PointSampler sampler(seed_, purpose, zones[i].index(), static_cast<int>(r),
                                    std::countr_zero(static_cast<unsigned>(points)));
         const auto place = [&](const std::array<float, 2>& u) { return point_in_zone(room_, zones[i], u); };
         add_replicate(direct_, sampler, {points, kGathersPerPoint},
-                      {zones[i].index(), replicate, 0, replicate}, place, batch, next, next + bands_);
+                      {zones[i].index(), replicate, 0, replicate}, place, batch, next, next + bands_,
+                      parts_ > 2 ? next + 2 * bands_ : nullptr);
       }
     batch.flush();
     for (std::size_t i = first; i < last; ++i)
       for (std::size_t b = 0; b < bands_; ++b) {
         ZoneReplicates replicates;
         for (std::size_t r = 0; r < kReplicates; ++r) {
-          const float* values = &found[((i - first) * kReplicates + r) * 2 * bands_];
+          const float* values = &found[((i - first) * kReplicates + r) * stride];
           replicates.direct[r] = static_cast<double>(values[b]);
           replicates.indirect[r] = std::numbers::pi * static_cast<double>(values[bands_ + b]);
+          if (parts_ > 2)
+            replicates.caustic[r] = std::numbers::pi * static_cast<double>(values[2 * bands_ + b]);
         }
         use(i, b, replicates);
       }
@@ -139,6 +149,7 @@ class Gatherer {
   const Room& room_;
   const StopToken& stop_;
   std::size_t bands_;
+  std::size_t parts_;  // of the light
   std::uint64_t seed_;
   RadianceField field_;
   DirectLight direct_;
@@ -193,8 +204,8 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   std::vector<PilotResult> pilots(zones.size());
   const std::size_t piloted = gatherer.gather(
       zones, 1, RngPurpose::kSmallZonePilot, [&](std::size_t i, std::size_t, const ZoneReplicates& x) {
-        const ReplicateMean mean = mean_of_replicates(
-            kReplicates, kReplicates, [&](std::size_t r) { return x.direct[r] + x.indirect[r]; });
+        const ReplicateMean mean =
+            mean_of_replicates(kReplicates, kReplicates, [&](std::size_t r) { return x.total(r); });
         pilots[i].irradiance += mean.mean;
         pilots[i].variance += mean.squared_error;
       });
@@ -226,7 +237,9 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   solution.gathered.keep(solution.sums, bands, chosen);
   const std::size_t gathered = gatherer.gather(
       chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, std::size_t b, const ZoneReplicates& x) {
-        store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect);
+        std::span<const double> caustic;
+        if (solution.sums.has_caustics()) caustic = x.caustic;
+        store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect, caustic);
       });
   solution.record.gathered_zones = gathered;
   const std::uint64_t gather_rays = gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);

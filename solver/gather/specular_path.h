@@ -98,6 +98,7 @@ class SpecularPath {
       return Next::kEnds;
     for (std::size_t b = 0; b < room_->band_count(); ++b) weight[b] *= step_.share()[b] / step_.chance;
     is_wide_ = is_wide_ || step_.is_wide;
+    is_scattered_ = is_scattered_ || step_.way == SpecularWayOn::kDiffuse;
     if (step_.pdf_per_sr > 0) {
       is_bent_ = false;
       pdf_per_sr_ = step_.pdf_per_sr;
@@ -116,7 +117,10 @@ class SpecularPath {
     is_bent_ = is_wide_ = false;
     pdf_per_sr_ = 0;
     caustic_.none = true;
+    is_scattered_ = true;
   }
+  /// Whether light was scattered into all directions on the way: what it comes over next is no caustic.
+  bool is_scattered() const { return is_scattered_; }
 
  private:
   const Room* room_;
@@ -124,7 +128,8 @@ class SpecularPath {
   CausticShare caustic_;
   PathKey key_;
   SpecularStep step_;
-  bool is_wide_ = false;     // it came over a wide lobe
+  bool is_wide_ = false;  // it came over a wide lobe
+  bool is_scattered_ = false;
   bool is_bent_ = false;     // shadow rays do not find what it meets
   float pdf_per_sr_;         // of the ray that left a lobe last; 0 where none did
   float way_ = 0;            // from there

@@ -51,8 +51,7 @@ void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64
                          const StopToken& stop) {
   Flight flight;
   if (spare_.empty()) {
-    flight.batch = std::make_unique<Batch>(
-        Batch{BatchBooks(transport_.zones(), transport_.surfaces(), transport_.bands())});
+    flight.batch = std::make_unique<Batch>(Batch{transport_.new_books()});
   } else {
     flight.batch = std::move(spare_.back());
     spare_.pop_back();

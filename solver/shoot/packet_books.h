@@ -47,11 +47,18 @@ class LocalBooks {
   std::vector<std::int64_t> escaped_;
 };
 
+/// The part of the light that packets of the first sweep bring, in the order in which their ways change it.
+enum class LightPart : std::uint8_t {
+  kDirect,    ///< Straight from luminaires, also across panes.
+  kCaustic,   ///< From luminaires over mirrors, glass and gloss.
+  kIndirect,  ///< Scattered before.
+};
+
 /// How a packet came since it was last sent out by a source or a zone: over so many mirrors and panes.
 struct SpecularWay {
   std::uint32_t steps = 0;
-  bool bent = false;  ///< Not straight on over panes alone.
-  TriangleId body;    ///< A face of the body of glass that it was sent into; not valid in air.
+  LightPart part = LightPart::kDirect;  ///< What the way makes of direct light.
+  TriangleId body;  ///< A face of the body of glass that it was sent into; not valid in air.
 };
 
 /// 16 rays with what their packets carry.
@@ -91,11 +98,11 @@ class WaitingPackets {
       add(more.origin_[i], more.direction_[i], more.id_[i], more.way_[i], &more.power_[i * bands_]);
   }
 
-  /// Moves those on a bent way into `other`.
-  void move_bent(WaitingPackets& other) {
+  /// Moves those whose way has gone beyond this part into `other`.
+  void move_beyond(LightPart part, WaitingPackets& other) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count(); ++i) {
-      if (way_[i].bent) {
+      if (way_[i].part > part) {
         other.add(origin_[i], direction_[i], id_[i], way_[i], &power_[i * bands_]);
         continue;
       }

@@ -9,6 +9,7 @@
 #include "solver/room/room.h"
 #include "solver/sampling/warp.h"
 #include "solver/shoot/ray_lanes.h"
+#include "solver/tally/batch_books.h"
 #include "solver/trace/ray_tracer.h"
 
 namespace reemit {
@@ -29,6 +30,9 @@ class PacketRoom {
   std::size_t bands() const { return bands_; }
   std::size_t zones() const { return mesh_->zone_count(); }
   std::size_t surfaces() const { return room_->surfaces().surface_count(); }
+
+  /// Empty books of a batch in this room.
+  BatchBooks new_books() const { return {zones(), surfaces(), bands(), scene().bends_light()}; }
 
   /// Puts the geometry of a zone into lanes first .. last-1.
   void put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {

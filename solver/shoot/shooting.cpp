@@ -84,12 +84,12 @@ class SweepTracer {
         specular_(batch, books),
         doubtful_(bands_),
         carried_(bands_),
-        bent_(bands_),
+        held_(bands_),
         waiting_(bands_) {}
 
-  /// Packets whose way was bent by a mirror or by glass are kept in bent() instead of traced on.
-  void keep_bent() { keeps_bent_ = true; }
-  const WaitingPackets& bent() const { return bent_; }
+  /// Packets whose way goes beyond this part of the light are held instead of traced on.
+  void hold_beyond(LightPart part) { holds_beyond_ = part; }
+  const WaitingPackets& held() const { return held_; }
   std::uint64_t carried_rays() const { return carried_rays_; }
 
   void trace(PacketBlock& block) {
@@ -154,7 +154,7 @@ class SweepTracer {
       if (account.quanta != nullptr && any_specular)
         specular_.carry_on(block, hits_, lane, number_, carried_);
     }
-    if (keeps_bent_) carried_.move_bent(bent_);
+    if (holds_beyond_) carried_.move_beyond(*holds_beyond_, held_);
   }
 
   const PacketRoom& transport_;
@@ -170,9 +170,9 @@ class SweepTracer {
   SpecularPackets specular_;
   WaitingPackets doubtful_;
   WaitingPackets carried_;
-  WaitingPackets bent_;
+  WaitingPackets held_;
   PacketBlock waiting_;
-  bool keeps_bent_ = false;
+  std::optional<LightPart> holds_beyond_;
   std::uint64_t carried_rays_ = 0;
   Hit16 hits_;
   Account accounts_[16];
@@ -180,20 +180,20 @@ class SweepTracer {
 };
 
 /// Traces the flight of sweep `number` and books every packet where it ends. In the first sweep, packets that
-/// mirrors and glass sent another way are left in `bent`: their light is not direct. False if it was cut off:
-/// packets that have not set out are unshot.
+/// mirrors, glass and opal sheets sent another way are left in `held`: their light is not direct. False if it
+/// was cut off: packets that have not set out are unshot.
 bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t number, ArrivalPoints* arrivals,
-                  SweepAccounts& sweep, WaitingPackets& bent, BatchBooks& books) {
+                  SweepAccounts& sweep, WaitingPackets& held, BatchBooks& books) {
   const PacketRoom& transport = batch.transport;
   const FlightNumbers numbers(batch.settings.sampling, batch.settings.seed, batch.batch, number);
   const ArrivalPoints* points = number == 0 ? nullptr : arrivals;  // luminaires have none
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   std::atomic<std::uint64_t> started{0};
   std::atomic<std::uint64_t> carried{0};
-  std::mutex bent_mutex;
+  std::mutex held_mutex;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     SweepTracer tracer(batch, number, arrivals, sweep, books);
-    if (number == 0) tracer.keep_bent();
+    if (number == 0) tracer.hold_beyond(LightPart::kDirect);
     PacketBlock block(transport.bands());
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
@@ -214,29 +214,39 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
     }
     tracer.finish();
     carried += tracer.carried_rays();
-    if (tracer.bent().count() > 0) {
-      const std::lock_guard lock(bent_mutex);
-      bent.append(tracer.bent());
+    if (tracer.held().count() > 0) {
+      const std::lock_guard lock(held_mutex);
+      held.append(tracer.held());
     }
   });
   books.rays += started + carried;
   return started == flight.packets();
 }
 
-/// Traces packets of the first sweep that trace_flight left. Their light goes into sweep.incident.
-void trace_bent(const BatchTask& batch, const WaitingPackets& bent, ArrivalPoints* arrivals,
+/// Traces those of the packets that trace_flight left whose light is of this part, into sweep.incident. Those
+/// beyond it stay in `held`.
+void trace_held(const BatchTask& batch, LightPart part, WaitingPackets& held, ArrivalPoints* arrivals,
                 SweepAccounts& sweep, BatchBooks& books) {
+  WaitingPackets packets(batch.transport.bands());
+  std::swap(packets, held);
+  packets.move_beyond(part, held);
   std::atomic<std::uint64_t> carried{0};
-  const std::size_t blocks = (bent.count() + 15) / 16;
+  std::mutex held_mutex;
+  const std::size_t blocks = (packets.count() + 15) / 16;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, kPacketsPerTask / 16), [&](const auto& range) {
     SweepTracer tracer(batch, 0, arrivals, sweep, books);
+    tracer.hold_beyond(part);
     PacketBlock block(batch.transport.bands());
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      bent.copy(16 * i, block);
+      packets.copy(16 * i, block);
       tracer.trace_on(block);
     }
     tracer.finish();
     carried += tracer.carried_rays();
+    if (tracer.held().count() > 0) {
+      const std::lock_guard lock(held_mutex);
+      held.append(tracer.held());
+    }
   });
   books.rays += carried;
 }
@@ -309,11 +319,15 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   for (std::uint32_t sweep = 0;; ++sweep) {
     if (arrivals) arrivals->begin(sweep);
     ArrivalPoints* points = arrivals ? &*arrivals : nullptr;
-    WaitingPackets bent(bands);
-    whole = trace_flight(task, flight, sweep, points, accounts, bent, books);
+    WaitingPackets held(bands);
+    whole = trace_flight(task, flight, sweep, points, accounts, held, books);
     reflect(transport, accounts, sweep == 0 ? books.direct : books.indirect, books);
-    if (bent.count() > 0) {
-      trace_bent(task, bent, points, accounts, books);
+    if (held.count() > 0 && !books.caustic.empty()) {
+      trace_held(task, LightPart::kCaustic, held, points, accounts, books);
+      reflect(transport, accounts, books.caustic, books);
+    }
+    if (held.count() > 0) {
+      trace_held(task, LightPart::kIndirect, held, points, accounts, books);
       reflect(transport, accounts, books.indirect, books);
     }
     const auto left = static_cast<double>(allocation.measure(accounts));

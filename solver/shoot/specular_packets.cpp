@@ -1,8 +1,18 @@
 #include "solver/shoot/specular_packets.h"
 
+#include <algorithm>
 #include <array>
 
 namespace reemit {
+namespace {
+
+/// What a step makes of direct light.
+LightPart part_of(const SpecularStep& step) {
+  if (step.way == SpecularWayOn::kDiffuse) return LightPart::kIndirect;
+  return step.bends ? LightPart::kCaustic : LightPart::kDirect;
+}
+
+}  // namespace
 
 SpecularPackets::SpecularPackets(const BatchTask& task, BatchBooks& books)
     : rays_(task.transport.rays()),
@@ -84,7 +94,7 @@ void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
   }
   if (!ends)
     next.add(rays_.ray_origin(t, x.u, x.v, way_.front), way_.direction, block.id[lane],
-             {block.way[lane].steps + 1, block.way[lane].bent || way_.bends,
+             {block.way[lane].steps + 1, std::max(block.way[lane].part, part_of(way_)),
               surfaces_.body_beyond(t, way_.front, block.way[lane].body)},
              power_.data());
 }

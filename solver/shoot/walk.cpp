@@ -48,6 +48,7 @@ float low_bytes_to_unit(const BitLanes& bits, std::size_t lane) {
 /// Accounts of one thread, indexed as those of BatchBooks; of all threads if there is one copy only.
 struct WalkAccounts {
   std::vector<std::int64_t> direct;
+  std::vector<std::int64_t> caustic;
   std::vector<std::int64_t> indirect;
   std::vector<std::int64_t> absorbed;
   std::uint64_t rays = 0;
@@ -106,9 +107,9 @@ class WalkTask {
       block_.count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
       cursor.start16(first, block_.count, numbers, block_.rays, block_.power.data());
       std::iota(block_.id, block_.id + block_.count, first);
-      trace(zones_.direct, 0);
+      trace(0);
     }
-    finish(zones_.direct, 0);
+    finish(0);
   }
 
   void trace_on(std::uint32_t bounce) {
@@ -130,45 +131,51 @@ class WalkTask {
       transport_.start(lanes_, numbers, block_.rays);
       std::copy_n(&leaving_.quanta[first * bands_], static_cast<std::size_t>(block_.count) * bands_,
                   block_.power.begin());
-      trace(zones_.indirect, bounce);
+      trace(bounce);
     }
-    finish(zones_.indirect, bounce);
+    finish(bounce);
   }
 
-  /// Traces block_. What arrives is booked into `incident`, or as indirect if it comes over mirrors.
-  void trace(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+  /// Traces block_, on its way after so many bounces.
+  void trace(std::uint32_t bounce) {
     if (observer_ != nullptr) (*observer_)({block_.rays, block_.count, block_.id, bounce});
     ray_count_ += static_cast<std::uint64_t>(block_.count);
-    arrive(block_, incident, bounce, false);
-    if (doubtful_.count() >= 16) look_again(incident, bounce);
-    if (carried_.count() >= 16) trace_carried(incident, bounce);
+    arrive(block_, bounce, false);
+    if (doubtful_.count() >= 16) look_again(bounce);
+    if (carried_.count() >= 16) trace_carried(bounce);
   }
 
-  void look_again(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+  void look_again(std::uint32_t bounce) {
     doubtful_.take(again_);
-    arrive(again_, incident, bounce, true);
+    arrive(again_, bounce, true);
   }
 
-  void trace_carried(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+  void trace_carried(std::uint32_t bounce) {
     carried_.take(again_);
     if (observer_ != nullptr) (*observer_)({again_.rays, again_.count, again_.id, bounce});
     ray_count_ += static_cast<std::uint64_t>(again_.count);
-    arrive(again_, incident, bounce, false);
-    if (doubtful_.count() >= 16) look_again(incident, bounce);
+    arrive(again_, bounce, false);
+    if (doubtful_.count() >= 16) look_again(bounce);
   }
 
-  void finish(std::vector<std::int64_t>& incident, std::uint32_t bounce) {
+  void finish(std::uint32_t bounce) {
     while (doubtful_.count() + carried_.count() > 0) {
-      if (doubtful_.count() > 0) look_again(incident, bounce);
-      if (carried_.count() > 0) trace_carried(incident, bounce);
+      if (doubtful_.count() > 0) look_again(bounce);
+      if (carried_.count() > 0) trace_carried(bounce);
     }
   }
 
+  /// Where the light of a packet is booked that came on a way of this part after so many bounces.
+  std::vector<std::int64_t>& account_of(LightPart part, std::uint32_t bounce) {
+    if (bounce > 0 || part == LightPart::kIndirect) return zones_.indirect;
+    return part == LightPart::kCaustic ? zones_.caustic : zones_.direct;
+  }
+
   /// Traces a block, books where each packet comes to, and keeps those that survive.
-  void arrive(PacketBlock& block, std::vector<std::int64_t>& incident, std::uint32_t bounce,
-              bool second_look) {
+  void arrive(PacketBlock& block, std::uint32_t bounce, bool second_look) {
     transport_.rays().closest16(block.rays, block.count, hits_);
     ZoneId zone[16];
+    const std::vector<std::int64_t>& incident = account_of(LightPart::kDirect, bounce);
     for (int lane = 0; lane < block.count; ++lane) {
       if (hits_.triangle[lane] == RayTracer::kMiss) continue;
       zone[lane] = transport_.zone_of(hits_.triangle[lane], hits_.u[lane], hits_.v[lane], hits_.front[lane]);
@@ -200,7 +207,7 @@ class WalkTask {
         continue;
       }
       if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
-      std::vector<std::int64_t>& part = block.way[lane].bent ? zones_.indirect : incident;
+      std::vector<std::int64_t>& part = account_of(block.way[lane].part, bounce);
       for (std::size_t b = 0; b < bands; ++b) book(part[zone[lane].index() * bands + b], quanta[b], shared_);
       reflect(surface, block, lane, bounce, bits);
     }
@@ -287,13 +294,14 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
   books.packets += flight.packets();
 
   // Absorbed power is few numbers that every packet adds to, so each thread has its own in any case.
-  const std::size_t copies = account_copies(2 * books.direct.size());
+  const std::size_t copies = account_copies(2 * books.direct.size() + books.caustic.size());
   const bool shared = accounts_are_shared(copies);
   std::vector<WalkAccounts> accounts(static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
   for (std::size_t i = 0; i < accounts.size(); ++i) {
     accounts[i].absorbed.resize(books.absorbed.size());
     if (i >= copies) continue;
     accounts[i].direct.resize(books.direct.size());
+    accounts[i].caustic.resize(books.caustic.size());
     accounts[i].indirect.resize(books.indirect.size());
   }
   std::atomic<bool> whole = true;
@@ -309,6 +317,7 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
   });
   for (const WalkAccounts& a : accounts) {
     add(a.direct, books.direct);
+    add(a.caustic, books.caustic);
     add(a.indirect, books.indirect);
     add(a.absorbed, books.absorbed);
     books.rays += a.rays;

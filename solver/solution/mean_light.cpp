@@ -61,7 +61,7 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
     for (std::size_t b = 0; b < bands; ++b)
       side.emitted[static_cast<Eigen::Index>(b)] = solution.emitted_radiosity(ZoneId(z), b);
   }
-  add_up([&](std::size_t i) { return sums.direct[i] + sums.indirect[i]; },
+  add_up([&](std::size_t i) { return sums.total(i); },
          [](GroupedMean& side) -> Spectrum& { return side.irradiance; });
   for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
     add_up([&](std::size_t i) { return static_cast<double>(sums.group_total[g * values + i]); },

@@ -19,16 +19,34 @@ Estimate batch_mean(const ZoneSums& sums, double sum, double cross, double squar
   return {mean, std::sqrt(sums.squared_error(sum, cross, squares))};
 }
 
+template <class Values, class Sums>
+std::vector<Values*> columns_of(Sums& s) {
+  std::vector<Values*> columns{&s.direct,         &s.indirect,         &s.direct_cross, &s.indirect_cross,
+                               &s.direct_squared, &s.indirect_squared, &s.total_squared};
+  if (s.has_caustics()) columns.insert(columns.end(), {&s.caustic, &s.caustic_cross, &s.caustic_squared});
+  return columns;
+}
+
 Eigen::Index to_index(std::size_t band) {
   return static_cast<Eigen::Index>(band);
 }
 
 }  // namespace
 
-void ZoneSums::clear(std::size_t values) {
+std::vector<std::vector<double>*> ZoneSums::columns() {
+  return columns_of<std::vector<double>>(*this);
+}
+
+std::vector<const std::vector<double>*> ZoneSums::columns() const {
+  return columns_of<const std::vector<double>>(*this);
+}
+
+void ZoneSums::clear(std::size_t values, bool caustics) {
   batches = 0;
   group_weight.fill(0);
   weight_squared = 0;
+  caustic.resize(caustics ? values : 0);
+  caustic_cross = caustic_squared = caustic;
   for (std::vector<double>* sum : columns()) sum->assign(values, 0.0);
   group_total.assign(kGroups * values, 0.0F);
 }
@@ -119,10 +137,15 @@ Estimate Solution::indirect_irradiance(ZoneId z, std::size_t band) const {
   return batch_mean(sums, sums.indirect[i], sums.indirect_cross[i], sums.indirect_squared[i]);
 }
 
+Estimate Solution::caustic_irradiance(ZoneId z, std::size_t band) const {
+  if (!sums.has_caustics()) return {};
+  const std::size_t i = z.index() * bands.count() + band;
+  return batch_mean(sums, sums.caustic[i], sums.caustic_cross[i], sums.caustic_squared[i]);
+}
+
 Estimate Solution::irradiance(ZoneId z, std::size_t band) const {
   const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums, sums.direct[i] + sums.indirect[i], sums.direct_cross[i] + sums.indirect_cross[i],
-                    sums.total_squared[i]);
+  return batch_mean(sums, sums.total(i), sums.total_cross(i), sums.total_squared[i]);
 }
 
 double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {

@@ -32,29 +32,34 @@ struct ZoneSums {
   std::int64_t batches = 0;
   std::array<std::int64_t, kGroups> group_weight{};  ///< Sum of w over the batches of a group.
   double weight_squared = 0;                         ///< Sum of w^2 over all batches.
-  std::vector<double> direct,
-      indirect;  ///< Sum of w x: first hit from a luminaire; everything after a reflection.
+  /// Sum of w x: straight from luminaires; after light was scattered.
+  std::vector<double> direct, indirect;
   std::vector<double> direct_cross, indirect_cross;  ///< Sum of w^2 x.
-  std::vector<double> direct_squared, indirect_squared,
-      total_squared;  ///< Sum of (w x)^2; of direct + indirect.
-  /// Sum of w (direct + indirect) over the batches of one group: index group * values + zone * bands + band,
+  /// Sum of (w x)^2; total is direct + indirect + caustic.
+  std::vector<double> direct_squared, indirect_squared, total_squared;
+  /// The same of light from luminaires over mirrors, glass and gloss; size 0 in rooms that bend no light.
+  std::vector<double> caustic, caustic_cross, caustic_squared;
+  /// Sum of w times the total over the batches of one group: index group * values + zone * bands + band,
   /// with values = zones * bands. Single precision, as the file has it: a run that was resumed must not
   /// differ from one that was not.
   std::vector<float> group_total;
 
-  static constexpr std::size_t kColumns = 7;
-  /// The sums with one value per zone and band.
-  std::array<std::vector<double>*, kColumns> columns() {
-    return {&direct,         &indirect,         &direct_cross, &indirect_cross,
-            &direct_squared, &indirect_squared, &total_squared};
+  bool has_caustics() const { return !caustic.empty(); }
+  /// Of all parts, of value i.
+  double total(std::size_t i) const {
+    const double sum = direct[i] + indirect[i];
+    return has_caustics() ? sum + caustic[i] : sum;
   }
-  std::array<const std::vector<double>*, kColumns> columns() const {
-    return {&direct,         &indirect,         &direct_cross, &indirect_cross,
-            &direct_squared, &indirect_squared, &total_squared};
+  double total_cross(std::size_t i) const {
+    const double sum = direct_cross[i] + indirect_cross[i];
+    return has_caustics() ? sum + caustic_cross[i] : sum;
   }
+  /// The sums with one value per zone and band; those of caustics only where there are any.
+  std::vector<std::vector<double>*> columns();
+  std::vector<const std::vector<double>*> columns() const;
 
   /// No batches, and all sums 0, for `values` = zones * bands.
-  void clear(std::size_t values);
+  void clear(std::size_t values, bool caustics);
   /// Notes a batch of weight `w`, whose values must be added too; returns its group.
   std::size_t count_batch(std::int64_t w);
   std::int64_t weight() const;  ///< Sum of w over all batches.
@@ -118,8 +123,8 @@ struct SolveRecord {
 };
 
 /// The view-independent solution of a room and all that later questions need.
-/// Zone values are irradiances; radiosity follows as B = M_e + rho E + tau E', with the zone's material and
-/// the irradiance E' of the other side.
+/// Zone values are irradiances, of three parts: direct, indirect and caustic. Radiosity follows as B = M_e +
+/// rho E + tau E', with the zone's material and the irradiance E' of the other side.
 struct Solution {
   std::string program_version;
   std::string room_path;                     ///< As given to solve, made absolute.
@@ -148,7 +153,9 @@ struct Solution {
   // in n >= 2 batches.
   Estimate direct_irradiance(ZoneId z, std::size_t band) const;    ///< [W/m2]
   Estimate indirect_irradiance(ZoneId z, std::size_t band) const;  ///< [W/m2]
-  Estimate irradiance(ZoneId z, std::size_t band) const;           ///< [W/m2]
+  /// From luminaires over mirrors, glass and gloss [W/m2]; exactly 0 in rooms that bend no light.
+  Estimate caustic_irradiance(ZoneId z, std::size_t band) const;
+  Estimate irradiance(ZoneId z, std::size_t band) const;  ///< [W/m2]
 
   const Material& zone_material(ZoneId z) const {
     return materials[surface_materials[mesh.zone_surface(z).index()].index()];

@@ -263,7 +263,7 @@ ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
   require(sums.weight_squared >= weight && (sums.batches < 2 || sums.weight_squared < weight * weight),
           "squares of weights that do not go with the weights");
   const Hdf5Shape shape{rows_of(group, "direct"), bands};
-  const std::pair<const char*, std::vector<double>*> columns[] = {
+  std::vector<std::pair<const char*, std::vector<double>*>> columns{
       {"direct", &sums.direct},
       {"direct_cross", &sums.direct_cross},
       {"direct_squared", &sums.direct_squared},
@@ -271,6 +271,10 @@ ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
       {"indirect_cross", &sums.indirect_cross},
       {"indirect_squared", &sums.indirect_squared},
       {"total_squared", &sums.total_squared}};
+  if (group.has_dataset("caustic"))
+    columns.insert(columns.end(), {{"caustic", &sums.caustic},
+                                   {"caustic_cross", &sums.caustic_cross},
+                                   {"caustic_squared", &sums.caustic_squared}});
   for (const auto& [name, values] : columns) {
     *values = group.read<double>(name, shape);
     require(all_finite(*values), std::string("/sums/") + name + " holds a number that is not finite");
@@ -291,7 +295,7 @@ GatheredZones read_gathered(const Hdf5Group& root, const Solution& solution) {
     require(zone < solution.mesh.zone_count(), "gathered zones out of range");
     gathered.zones.emplace_back(zone);
   }
-  gathered.sums = group.read<double>("sums", {count, bands, ZoneSums::kColumns});
+  gathered.sums = group.read<double>("sums", {count, bands, solution.sums.columns().size()});
   gathered.group_total = group.read<float>("group_total", {ZoneSums::kGroups, count, bands});
   require(all_finite(gathered.sums) && all_finite(gathered.group_total),
           "/gathered holds a number that is not finite");

@@ -62,7 +62,7 @@ void check_consistent(const Solution& solution) {
   require(sums.group_total.size() == ZoneSums::kGroups * solution.mesh.zone_count() * bands,
           "one sum per group, zone and band expected");
   const std::size_t gathered = solution.gathered.zones.size() * bands;
-  require(solution.gathered.sums.size() == gathered * ZoneSums::kColumns &&
+  require(solution.gathered.sums.size() == gathered * sums.columns().size() &&
               solution.gathered.group_total.size() == gathered * ZoneSums::kGroups,
           "one row per gathered zone expected");
   require(solution.audit.bands.size() == bands, "one audit per band expected");
@@ -258,18 +258,21 @@ void write_zone_geometry(const Hdf5Group& zones, const ZoneMesh& mesh) {
 }
 
 void write_zone_values(const Hdf5Group& zones, const Solution& s) {
-  put_zone_bands(zones, s, "radiosity", "emitted + direct + indirect",
+  put_zone_bands(zones, s, "radiosity", "emitted + direct + indirect + caustic",
                  [&](ZoneId z, std::size_t b) { return s.radiosity(z, b).mean; });
   put_zone_bands(zones, s, "radiosity_stderr", "standard error of radiosity",
                  [&](ZoneId z, std::size_t b) { return s.radiosity(z, b).stderr_of_mean; });
   put_zone_bands(zones, s, "emitted", "part of radiosity that the zone emits by itself",
                  [&](ZoneId z, std::size_t b) { return s.emitted_radiosity(z, b); });
   put_zone_bands(
-      zones, s, "direct", "part of radiosity that came straight from a luminaire",
+      zones, s, "direct", "part of radiosity that came straight from a luminaire, also across panes",
       [&](ZoneId z, std::size_t b) { return s.scattered(z, b, &Solution::direct_irradiance).mean; });
   put_zone_bands(
-      zones, s, "indirect", "part of radiosity that was reflected before",
+      zones, s, "indirect", "part of radiosity that was scattered before",
       [&](ZoneId z, std::size_t b) { return s.scattered(z, b, &Solution::indirect_irradiance).mean; });
+  put_zone_bands(
+      zones, s, "caustic", "part of radiosity that came from a luminaire over mirrors, glass and gloss",
+      [&](ZoneId z, std::size_t b) { return s.scattered(z, b, &Solution::caustic_irradiance).mean; });
   put_zone_bands(zones, s, "irradiance", "incident power per area",
                  [&](ZoneId z, std::size_t b) { return s.irradiance(z, b).mean; });
   put_zone_bands(zones, s, "irradiance_stderr", "standard error of irradiance",
@@ -277,8 +280,11 @@ void write_zone_values(const Hdf5Group& zones, const Solution& s) {
   put_zone_bands(zones, s, "irradiance_direct_stderr",
                  "standard error of the irradiance straight from luminaires",
                  [&](ZoneId z, std::size_t b) { return s.direct_irradiance(z, b).stderr_of_mean; });
-  put_zone_bands(zones, s, "irradiance_indirect_stderr", "standard error of the irradiance reflected before",
+  put_zone_bands(zones, s, "irradiance_indirect_stderr", "standard error of the irradiance scattered before",
                  [&](ZoneId z, std::size_t b) { return s.indirect_irradiance(z, b).stderr_of_mean; });
+  put_zone_bands(zones, s, "irradiance_caustic_stderr",
+                 "standard error of the irradiance over mirrors, glass and gloss",
+                 [&](ZoneId z, std::size_t b) { return s.caustic_irradiance(z, b).stderr_of_mean; });
 }
 
 void write_sums(const Hdf5Group& root, const Solution& solution) {
@@ -302,10 +308,18 @@ void write_sums(const Hdf5Group& root, const Solution& solution) {
   put_bands(group, "indirect_squared", sums.indirect_squared, bands, "W2/m4",
             "sum of the squares of w times the indirect irradiance");
   put_bands(group, "total_squared", sums.total_squared, bands, "W2/m4",
-            "sum of the squares of w times direct + indirect");
+            "sum of the squares of w times the irradiance, direct + indirect + caustic");
+  if (sums.has_caustics()) {
+    put_bands(group, "caustic", sums.caustic, bands, "W/m2",
+              "sum over batches of w times the caustic irradiance");
+    put_bands(group, "caustic_cross", sums.caustic_cross, bands, "W/m2",
+              "sum of w^2 times the caustic irradiance");
+    put_bands(group, "caustic_squared", sums.caustic_squared, bands, "W2/m4",
+              "sum of the squares of w times the caustic irradiance");
+  }
   group.write<float>("group_total", sums.group_total, {ZoneSums::kGroups, sums.direct.size() / bands, bands},
                      "W/m2",
-                     "sum of w times direct + indirect over batches k, k + 16, k + 32 ... for k = 0 ... 15");
+                     "sum of w times the irradiance over batches k, k + 16, k + 32 ... for k = 0 ... 15");
 }
 
 void write_gathered(const Hdf5Group& root, const Solution& solution) {
@@ -316,9 +330,10 @@ void write_gathered(const Hdf5Group& root, const Solution& solution) {
   group.write_attribute("rays", gathered.rays);
   put(group, "zone", column<std::uint32_t>(gathered.zones, std::mem_fn(&ZoneId::index)), 1, "",
       "rows of /zones whose light was gathered after the last batch");
-  group.write<double>("sums", gathered.sums, {zones, bands, ZoneSums::kColumns}, "",
+  group.write<double>("sums", gathered.sums, {zones, bands, solution.sums.columns().size()}, "",
                       "what packets brought there: direct, indirect, direct_cross, indirect_cross, "
-                      "direct_squared, indirect_squared and total_squared as in /sums");
+                      "direct_squared, indirect_squared, total_squared and, where they are, caustic, "
+                      "caustic_cross and caustic_squared as in /sums");
   group.write<float>("group_total", gathered.group_total, {ZoneSums::kGroups, zones, bands}, "W/m2",
                      "the same of group_total");
 }

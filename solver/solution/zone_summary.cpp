@@ -29,7 +29,7 @@ double sealed_light_share(const Solution& solution) {
     double sealed = 0;
     for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
       const std::size_t k = z * bands + b;
-      const double power = mesh.zone_area(ZoneId(z)) * (solution.sums.direct[k] + solution.sums.indirect[k]);
+      const double power = mesh.zone_area(ZoneId(z)) * solution.sums.total(k);
       all += power;
       if (mesh.is_sealed(ZoneId(z))) sealed += power;
     }

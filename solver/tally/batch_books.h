@@ -51,9 +51,11 @@ inline std::int64_t share_of(std::int64_t quanta, double share) {
 /// Where the power of one batch went, in quanta. Zone arrays are indexed zone * bands + band, surface arrays
 /// surface * bands + band, escaped by axis * bands + band (axes as in BandAudit::escaped).
 struct BatchBooks {
-  BatchBooks(std::size_t zones, std::size_t surfaces, std::size_t band_count)
+  /// `has_caustics`: luminaires of the room light zones over surfaces that bend light (Scene::bends_light).
+  BatchBooks(std::size_t zones, std::size_t surfaces, std::size_t band_count, bool has_caustics = false)
       : bands(band_count),
         direct(zones * bands),
+        caustic(has_caustics ? zones * bands : 0),
         indirect(zones * bands),
         absorbed(surfaces * bands),
         absorbed_on_backs(surfaces * bands),
@@ -64,8 +66,8 @@ struct BatchBooks {
         roulette_loss(bands) {}
 
   void clear() {
-    for (auto* account : {&direct, &indirect, &absorbed, &absorbed_on_backs, &escaped, &emitted, &unshot,
-                          &roulette_gain, &roulette_loss})
+    for (auto* account : {&direct, &caustic, &indirect, &absorbed, &absorbed_on_backs, &escaped, &emitted,
+                          &unshot, &roulette_gain, &roulette_loss})
       account->assign(account->size(), 0);
     packets = 0;
     rays = 0;
@@ -73,8 +75,9 @@ struct BatchBooks {
   }
 
   std::size_t bands;
-  std::vector<std::int64_t> direct;    ///< Incident at the first hit of packets from luminaires.
-  std::vector<std::int64_t> indirect;  ///< Incident after at least one reflection.
+  std::vector<std::int64_t> direct;    ///< Incident straight from luminaires, also across panes.
+  std::vector<std::int64_t> caustic;   ///< From luminaires over mirrors, glass and gloss; size 0 = none.
+  std::vector<std::int64_t> indirect;  ///< Incident after light was scattered.
   std::vector<std::int64_t> absorbed;
   std::vector<std::int64_t> absorbed_on_backs;
   std::vector<std::int64_t> escaped;

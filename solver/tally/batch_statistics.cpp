@@ -19,13 +19,14 @@ void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<
                std::int64_t weight, ZoneSums& sums) {
   const std::size_t bands = books.bands;
   const auto w = static_cast<double>(weight);
+  const bool caustics = sums.has_caustics();
   float* group_total = &sums.group_total[sums.count_batch(weight) * mesh.zone_count() * bands];
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.zone_count(), 4096), [&](const auto& range) {
     for (std::size_t z = range.begin(); z != range.end(); ++z) {
       const double per_area = 1.0 / mesh.zone_area(ZoneId(z));
       for (std::size_t b = 0; b < bands; ++b) {
         const std::size_t i = z * bands + b;
-        if (books.direct[i] == 0 && books.indirect[i] == 0) continue;
+        if (books.direct[i] == 0 && books.indirect[i] == 0 && !(caustics && books.caustic[i] != 0)) continue;
         const double scale = w * watts_per_quantum[b] * per_area;
         const double direct = static_cast<double>(books.direct[i]) * scale;
         const double indirect = static_cast<double>(books.indirect[i]) * scale;
@@ -35,8 +36,16 @@ void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<
         sums.indirect[i] += indirect;
         sums.indirect_cross[i] += w * indirect;
         sums.indirect_squared[i] += indirect * indirect;
-        sums.total_squared[i] += (direct + indirect) * (direct + indirect);
-        group_total[i] += static_cast<float>(direct + indirect);
+        double total = direct + indirect;
+        if (caustics) {
+          const double caustic = static_cast<double>(books.caustic[i]) * scale;
+          sums.caustic[i] += caustic;
+          sums.caustic_cross[i] += w * caustic;
+          sums.caustic_squared[i] += caustic * caustic;
+          total += caustic;
+        }
+        sums.total_squared[i] += total * total;
+        group_total[i] += static_cast<float>(total);
       }
     }
   });
@@ -67,7 +76,7 @@ void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit)
 }
 
 void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> direct,
-                      std::span<const double> indirect) {
+                      std::span<const double> indirect, std::span<const double> caustic) {
   const std::size_t count = direct.size();
   const auto w = static_cast<double>(sums.weight());
   // The sums that ZoneSums::squared_error gives this mean and this error for.
@@ -77,13 +86,19 @@ void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> dir
     sum = w * x.mean;
     squares = (w * w - sums.weight_squared) * error2 + sums.weight_squared * x.mean * x.mean;
   };
-  const auto total = [&](std::size_t g) { return direct[g] + indirect[g]; };
+  const auto total = [&](std::size_t g) {
+    return caustic.empty() ? direct[g] + indirect[g] : direct[g] + indirect[g] + caustic[g];
+  };
   double sum_of_total = 0;
   store([&](std::size_t g) { return direct[g]; }, sums.direct[i], sums.direct_squared[i]);
   store([&](std::size_t g) { return indirect[g]; }, sums.indirect[i], sums.indirect_squared[i]);
   store(total, sum_of_total, sums.total_squared[i]);
   sums.direct_cross[i] = sums.weight_squared * sums.direct[i] / w;
   sums.indirect_cross[i] = sums.weight_squared * sums.indirect[i] / w;
+  if (!caustic.empty()) {
+    store([&](std::size_t g) { return caustic[g]; }, sums.caustic[i], sums.caustic_squared[i]);
+    sums.caustic_cross[i] = sums.weight_squared * sums.caustic[i] / w;
+  }
   const std::size_t values = sums.direct.size();
   for (std::size_t g = 0; g < count; ++g)
     sums.group_total[g * values + i] =
@@ -104,8 +119,7 @@ struct BandError {
 };
 
 double variance_of_mean(const ZoneSums& sums, std::size_t i) {
-  return sums.squared_error(sums.direct[i] + sums.indirect[i], sums.direct_cross[i] + sums.indirect_cross[i],
-                            sums.total_squared[i]);
+  return sums.squared_error(sums.total(i), sums.total_cross(i), sums.total_squared[i]);
 }
 
 std::size_t groups_with_batches(const ZoneSums& sums) {
@@ -140,7 +154,7 @@ std::vector<BandError> band_errors(const SurfaceModel& surfaces, const ZoneMesh&
       const double* reflectance = surfaces.reflectance(mesh.zone_surface(ZoneId(z)));
       for (std::size_t b = 0; b < bands; ++b) {
         const std::size_t i = z * bands + b;
-        const double mean = (sums.direct[i] + sums.indirect[i]) / w;
+        const double mean = sums.total(i) / w;
         if (mean == 0) continue;
         const double r = reflectance[b];
         BandError& part = parts[chunk * bands + b];
@@ -172,7 +186,7 @@ double relative_rms(const BandError& band) {
 /// 95th percentile of s/E over lit zones, and the zones that nothing reached.
 void find_percentile(const ZoneSums& sums, std::size_t bands, ZoneError& result) {
   const std::size_t values = sums.direct.size();
-  const auto total = [&](std::size_t i) { return sums.direct[i] + sums.indirect[i]; };
+  const auto total = [&](std::size_t i) { return sums.total(i); };
   for (std::size_t first = 0; first < values; first += bands) {
     bool reached = false;
     for (std::size_t i = first; i < first + bands; ++i) reached = reached || total(i) > 0;

@@ -35,8 +35,9 @@ void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit)
 /// Replaces the sums of value i = zone * bands + band by what gives the means, and the standard errors that
 /// follow from the spread, of independent estimates of its irradiance [W/m2]: one per group that has batches,
 /// that is min(kGroups, batches) of them, taken as equally good. Pre: batches > 0.
+/// `caustic` may be empty: nothing.
 void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> direct,
-                      std::span<const double> indirect);
+                      std::span<const double> indirect, std::span<const double> caustic = {});
 
 /// Rms error so far; infinite before two batches.
 double zone_rms_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums);

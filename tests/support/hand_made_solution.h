@@ -15,7 +15,7 @@ inline Solution uniform_solution(const RoomBuilder& room, double direct, double 
   solution.mesh = room.mesh().mesh;
   const std::size_t values = solution.mesh.zone_count() * solution.bands.count();
   ZoneSums& sums = solution.sums;
-  sums.clear(values);
+  sums.clear(values, false);
   sums.count_batch(1);
   sums.direct.assign(values, direct);
   sums.direct_cross = sums.direct;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "viewer_export/cli/luminaire_list.h"
+#include "viewer_export/cli/surface_models.h"
 #include "viewer_export/cli/text_table.h"
 #include "viewer_export/cli/zone_lines.h"
 
@@ -85,51 +85,11 @@ std::string materials_text(const Scene& scene) {
          rest_text(scene.materials.size(), "materials");
 }
 
-/// What a material does with light besides reflecting it as Lambert does, in a word; and what of it is not
-/// modelled.
-std::vector<std::string> models_of(const Material& material) {
-  const NonDiffusePart& part = material.non_diffuse;
-  const bool crosses = part.transmits_specularly();
-  const bool is_glass = crosses && part.angle_law == AngleLaw::kDielectric;
-  std::vector<std::string> models;
-  if (is_glass)
-    models.emplace_back(part.is_solid ? "solid glass" : "glass pane");
-  else if (part.has_glossy_transmission())
-    models.emplace_back("hazy sheet");
-  else if (crosses)
-    models.emplace_back("clear sheet");
-  if (is_glass && (part.has_gloss() || part.has_glossy_transmission())) models.back().insert(0, "rough ");
-  if (part.reflects_specularly() && !is_glass) {
-    const bool is_metal = part.angle_law == AngleLaw::kSchlick || part.angle_law == AngleLaw::kConductor;
-    if (part.has_gloss())
-      models.emplace_back(is_metal ? "rough metal" : "gloss");
-    else
-      models.emplace_back(is_metal ? "metal" : "mirror");
-  }
-  if (part.transmits_diffusely()) models.emplace_back("diffuse transmission");
-  return models;
-}
-
-/// Share of the area of the room whose material has each of these, in order of area.
-std::vector<std::pair<std::string, double>> model_areas(const Scene& scene, const MeshReport& report) {
-  std::map<std::string, double> areas;
-  double all = 0;
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-    const double area = report.surfaces[s].input;
-    all += area;
-    for (const std::string& model : models_of(scene.material_of(scene.surfaces[s]))) areas[model] += area;
-  }
-  std::vector<std::pair<std::string, double>> shares(areas.begin(), areas.end());
-  for (auto& [model, area] : shares) area = all > 0 ? area / all : 0;
-  std::stable_sort(shares.begin(), shares.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
-  return shares;
-}
-
-std::string models_text(const Scene& scene, const MeshReport& report) {
+std::string models_text(const Scene& scene, const MeshResult& meshed) {
   std::string text;
-  for (const auto& [model, share] : model_areas(scene, report))
-    text += fmt::format("; {} {:.3g} % of the area", model, 100 * share);
+  for (const ModelShare& share : model_shares(scene, meshed))
+    text += fmt::format("; {} {:.3g} % of the area and about {:.2g} % of the light that arrives", share.model,
+                        100 * share.area, 100 * share.power);
   return fmt::format("surfaces are  Lambertian{}\n", text);
 }
 
@@ -198,7 +158,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
   text += fmt::format("repairs       {}\n", counts_text(repairs(meshed.report)));
   text += fmt::format("refused       {}\n", counts_text(scene.refused));
   text += fmt::format("not modelled  {}\n", counts_text(scene.not_modelled));
-  text += models_text(scene, meshed.report);
+  text += models_text(scene, meshed);
   text += '\n' + materials_text(scene) + '\n' + surfaces_text(scene, meshed.report) + '\n' +
           luminaires_text(list_luminaires(scene, meshed.report), scene.bands) + '\n' + cameras_text(scene);
   for (const std::string& note : scene.notes) text += "note: " + note + '\n';
@@ -247,9 +207,11 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
          {"emits_both_sides", material.emits_both_sides},
          {"models", models_of(material)}});
   }
-  json["model_area_shares"] = Json::object();
-  for (const auto& [model, share] : model_areas(scene, meshed.report))
-    json["model_area_shares"][model] = share;
+  json["model_area_shares"] = json["model_power_shares"] = Json::object();
+  for (const ModelShare& share : model_shares(scene, meshed)) {
+    json["model_area_shares"][share.model] = share.area;
+    json["model_power_shares"][share.model] = share.power;
+  }
   json["surfaces"] = Json::array();
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     json["surfaces"].push_back({{"name", scene.surfaces[s].name},

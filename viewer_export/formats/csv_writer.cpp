@@ -50,26 +50,35 @@ void write_rows(const VertexData& data, OutputFile& file, Append&& append_values
 
 std::optional<ToneMap> write_csv(const VertexData& data, OutputFile& file) {
   std::string values;
-  for (const std::string& band : data.bands.names())
+  const bool caustics = !data.caustic_radiance.empty();
+  for (const std::string& band : data.bands.names()) {
     values += fmt::format(",radiance_{0},irradiance_{0},stderr_{0},direct_{0}", band);
+    if (caustics) values += ",caustic_" + band;
+  }
   write_header(data, "", values, file);
   const std::size_t bands = data.bands.count();
   write_rows(data, file, [&](std::size_t v, fmt::memory_buffer& row) {
-    for (std::size_t i = v * bands; i < (v + 1) * bands; ++i)
+    for (std::size_t i = v * bands; i < (v + 1) * bands; ++i) {
       fmt::format_to(std::back_inserter(row), ",{},{},{},{}", data.radiance[i], data.irradiance[i],
                      data.radiance_stderr[i], data.direct_radiance[i]);
+      if (caustics) fmt::format_to(std::back_inserter(row), ",{}", data.caustic_radiance[i]);
+    }
   });
   return std::nullopt;
 }
 
 std::optional<ToneMap> write_photometric_csv(const VertexData& data, OutputFile& file) {
-  write_header(data, "lengths in m, luminance in cd/m2, illuminance in lx",
-               ",luminance,illuminance,stderr_luminance,direct_luminance", file);
+  std::vector columns{&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance};
+  std::string names = ",luminance,illuminance,stderr_luminance,direct_luminance";
+  if (!data.caustic_radiance.empty()) {
+    columns.push_back(&data.caustic_radiance);
+    names += ",caustic_luminance";
+  }
+  write_header(data, "lengths in m, luminance in cd/m2, illuminance in lx", names, file);
   const Spectrum& efficacy = data.bands.efficacy_lm_per_w();
   const auto bands = static_cast<std::size_t>(efficacy.size());
   write_rows(data, file, [&](std::size_t v, fmt::memory_buffer& row) {
-    for (const auto* values :
-         {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance}) {
+    for (const auto* values : columns) {
       double sum = 0;
       for (std::size_t b = 0; b < bands; ++b)
         sum += efficacy[static_cast<Eigen::Index>(b)] * static_cast<double>((*values)[v * bands + b]);

@@ -98,8 +98,9 @@ std::vector<Attribute> attributes_of(const VertexData& data, const VertexColours
   attributes.push_back(vector("COLOR_0", [&colours](std::uint32_t v) { return colours.displayable(v); }));
   attributes.push_back(rgb("_RADIANCE", data.radiance));
   attributes.push_back(rgb("_IRRADIANCE", data.irradiance));
-  const std::pair<const char*, const std::vector<float>*> parts[] = {{"_STDERR", &data.radiance_stderr},
-                                                                     {"_DIRECT", &data.direct_radiance}};
+  std::vector<std::pair<const char*, const std::vector<float>*>> parts{{"_STDERR", &data.radiance_stderr},
+                                                                       {"_DIRECT", &data.direct_radiance}};
+  if (!data.caustic_radiance.empty()) parts.emplace_back("_CAUSTIC", &data.caustic_radiance);
   if (data.bands.kind() == BandKind::kRgb) {
     for (const auto& [name, values] : parts) attributes.push_back(rgb(name, *values));
     return attributes;

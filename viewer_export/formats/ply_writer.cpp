@@ -1,6 +1,7 @@
 #include "viewer_export/formats/ply_writer.h"
 
 #include <limits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -40,7 +41,9 @@ void write_header(const VertexData& data, const ToneMap& tone_map, double gap, b
     for (const char* quantity : {"radiance", "irradiance"})
       for (const std::string& band : data.bands.names())
         file.write(fmt::format("property float {}_{}\n", quantity, band));
-  for (const char* quantity : {"stderr", "direct"})
+  std::vector<const char*> parts{"stderr", "direct"};
+  if (!data.caustic_radiance.empty()) parts.push_back("caustic");
+  for (const char* quantity : parts)
     for (const std::string& band : data.bands.names())
       file.write(fmt::format("property float {}_{}\n", quantity, band));
   file.write("property int surface\nproperty int material\n");
@@ -87,6 +90,7 @@ std::optional<ToneMap> write_ply(const VertexData& data, OutputFile& file) {
     }
     append_values(data.radiance_stderr, v);
     append_values(data.direct_radiance, v);
+    if (!data.caustic_radiance.empty()) append_values(data.caustic_radiance, v);
     append_bytes(row, static_cast<std::int32_t>(data.surfaces[v].index()));
     append_bytes(row, static_cast<std::int32_t>(data.materials[v].index()));
     file.write(row);

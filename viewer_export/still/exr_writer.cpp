@@ -44,6 +44,7 @@ std::vector<Channel> channels_of(const StillImage& image, std::span<const float>
   if (image.bands.kind() != BandKind::kRgb) add_bands("radiance", image.radiance);
   add_bands("direct", image.direct);
   add_bands("indirect", image.indirect);
+  add_bands("caustic", image.caustic);
   add_bands("stderr", image.radiance_stderr);
   add_bands("albedo", image.albedo);
   if (!image.samples.empty()) channels.push_back({"samples.Y", image.samples.data(), 1, 0});

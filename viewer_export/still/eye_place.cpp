@@ -46,8 +46,10 @@ struct Sights {
 
 bool is_dark(const Solution& solution) {
   const auto is_zero = [](double sum) { return sum == 0; };
-  return std::all_of(solution.sums.direct.begin(), solution.sums.direct.end(), is_zero) &&
-         std::all_of(solution.sums.indirect.begin(), solution.sums.indirect.end(), is_zero);
+  const ZoneSums& sums = solution.sums;
+  return std::all_of(sums.direct.begin(), sums.direct.end(), is_zero) &&
+         std::all_of(sums.caustic.begin(), sums.caustic.end(), is_zero) &&
+         std::all_of(sums.indirect.begin(), sums.indirect.end(), is_zero);
 }
 
 Sights around(const Vec3f& eye, const Room& room, const Solution& solution) {

@@ -19,12 +19,14 @@ double sample_filter(PixelFilter filter, double u) {
   return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u));
 }
 
-std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates) {
+std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates, bool caustics) {
   // Finishing turns three of the replicates into layers.
-  return ((2 + std::max<std::size_t>(replicates, 3)) * bands + 6) * sizeof(float) + 1;
+  const std::size_t layers = (caustics ? 3 : 2) + std::max<std::size_t>(replicates, 3);
+  return (layers * bands + 6) * sizeof(float) + 1;
 }
 
-Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts)
+Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts,
+           bool caustics)
     : bands_(bands.count()), replicates_(replicates), parts_(parts) {
   image_.bands = bands;
   image_.width = width;
@@ -32,6 +34,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
   const std::size_t pixels = image_.pixel_count();
   try {
     image_.direct.assign(pixels * bands_, 0.0F);
+    if (caustics) image_.caustic.assign(pixels * bands_, 0.0F);
     image_.albedo.assign(pixels * bands_, 0.0F);
     for (std::size_t r = 0; r < replicates_; ++r) means_[r].assign(pixels * bands_, 0.0F);
     image_.samples.assign(pixels, 0.0F);
@@ -42,7 +45,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
   } catch (const std::bad_alloc&) {
     throw ResourceError("still",
                         "out of memory for " + std::to_string(pixels) + " pixels of " +
-                            std::to_string(bytes_per_pixel(bands_, replicates_)) + " bytes",
+                            std::to_string(bytes_per_pixel(bands_, replicates_, caustics)) + " bytes",
                         "Choose a smaller picture.");
   }
 }
@@ -55,7 +58,12 @@ void Film::add(std::size_t pixel, std::size_t replicate, const PixelBlock& block
   for (std::size_t b = 0; b < bands_; ++b) {
     const std::size_t k = pixel * bands_ + b;
     float& mean = means_[replicate][k];
-    mean += share * (block.direct[b] + block.indirect[b] - mean);
+    float radiance = block.direct[b] + block.indirect[b];
+    if (!image_.caustic.empty()) {
+      radiance += block.caustic[b];
+      image_.caustic[k] += share_of_all * (block.caustic[b] - image_.caustic[k]);
+    }
+    mean += share * (radiance - mean);
     image_.direct[k] += share_of_all * (block.direct[b] - image_.direct[k]);
     image_.albedo[k] += share_of_all * (block.albedo[b] - image_.albedo[k]);
   }
@@ -103,7 +111,8 @@ StillImage Film::finish() {
       const ReplicateMean mean = mean_so_far(pixel, b);
       const double error = have_errors ? std::sqrt(mean.squared_error) : 0.0;
       means_[0][k] = static_cast<float>(mean.mean);
-      means_[1][k] = std::max(0.0F, means_[0][k] - image_.direct[k]);
+      const float caustic = image_.caustic.empty() ? 0.0F : image_.caustic[k];
+      means_[1][k] = std::max(0.0F, means_[0][k] - image_.direct[k] - caustic);
       means_[2][k] = static_cast<float>(error);
     }
     const float seen = seen_[pixel];

@@ -27,10 +27,13 @@ double sample_filter(PixelFilter filter, double u);
 struct PixelBlock {
   const float* direct;    ///< Emission and first reflection of luminaires [W/(m2 sr)], per band.
   const float* indirect;  ///< The rest [W/(m2 sr)], per band.
-  const float* albedo;    ///< Reflectance [0,1], per band.
-  Vec3 normal{0, 0, 0};   ///< Sum over samples that saw something.
-  double depth = 0;       ///< Sum over samples that saw something [m].
-  int seen = 0;           ///< Samples that saw something.
+  /// First reflection of luminaires over mirrors, glass and gloss [W/(m2 sr)], per band; null where there is
+  /// no such layer.
+  const float* caustic = nullptr;
+  const float* albedo;   ///< Reflectance [0,1], per band.
+  Vec3 normal{0, 0, 0};  ///< Sum over samples that saw something.
+  double depth = 0;      ///< Sum over samples that saw something [m].
+  int seen = 0;          ///< Samples that saw something.
   int samples = 0;
   int earlier = 0;  ///< Samples that this replicate of the pixel had before.
 };
@@ -43,12 +46,13 @@ class Film {
   static constexpr std::size_t kReplicates = 8;
 
   /// `replicates`: 1 to kReplicates; with one there are no errors. `parts`: of the zone solution that the
-  /// replicates read in turn, as mean_of_replicates takes it. Throws ResourceError when the layers do not fit
-  /// into memory.
-  Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts = 1);
+  /// replicates read in turn, as mean_of_replicates takes it. `caustics`: there is a layer of them. Throws
+  /// ResourceError when the layers do not fit into memory.
+  Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts = 1,
+       bool caustics = false);
 
   /// Memory that a pixel takes while rendering [bytes].
-  static std::size_t bytes_per_pixel(std::size_t bands, std::size_t replicates);
+  static std::size_t bytes_per_pixel(std::size_t bands, std::size_t replicates, bool caustics);
 
   /// The replicates of a pixel begin in their order.
   void add(std::size_t pixel, std::size_t replicate, const PixelBlock& block);
@@ -59,7 +63,7 @@ class Film {
   double radiance(std::size_t pixel, std::size_t band) const;
   /// Square of the standard error of radiance; infinite with one replicate.
   double squared_error(std::size_t pixel, std::size_t band) const;
-  /// Size, bands and the layers that hold means already: direct, albedo, samples.
+  /// Size, bands and the layers that hold means already: direct, caustic, albedo, samples.
   const StillImage& image() const { return image_; }
 
   /// Makes the layers and hands the picture over. Replicates that have not begun do not count, and there are

@@ -276,7 +276,7 @@ StillImage render_still(const Room& room, const Solution& solution, const Camera
   arena.execute([&] {
     const StopToken stop(interrupt);
     const TileRenderer renderer(room, solution, pinhole, settings, replicates, stop);
-    Film film(room.scene().bands, width, height, replicates, renderer.parts());
+    Film film(room.scene().bands, width, height, replicates, renderer.parts(), renderer.has_caustics());
     Rendering rendering(renderer, settings, film, progress, interrupt);
     rendering.run();
     ExportInfo info = describe_still(room.scene(), solution, settings, rendering.error());

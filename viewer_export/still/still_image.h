@@ -21,6 +21,8 @@ struct StillImage {
   std::vector<float> radiance;  ///< The picture [W/(m2 sr)].
   std::vector<float> direct;    ///< Part that is emission and first reflection of luminaires [W/(m2 sr)].
   std::vector<float> indirect;  ///< The rest [W/(m2 sr)].
+  /// First reflection of luminaires over mirrors, glass and gloss [W/(m2 sr)]; in rooms that have them.
+  std::vector<float> caustic;
   std::vector<float> radiance_stderr;  ///< Standard error of `radiance` [W/(m2 sr)].
   std::vector<float> albedo;           ///< Reflectance of what is seen [0,1].
 

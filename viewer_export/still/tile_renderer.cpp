@@ -24,6 +24,7 @@ struct TileRenderer::PixelSums {
   float* direct;
   float* indirect;
   float* albedo;
+  float* caustic;              // null where the room bends no light
   std::vector<float>* weight;  // scratch, one per band
   PixelBlock found;
 };
@@ -44,6 +45,7 @@ TileRenderer::TileRenderer(const Room& room, const Solution& solution, const Pin
               &stop),
       path_(room, direct_, settings.seed),
       specular_(settings.seed, RngPurpose::kSpecularCamera, RngPurpose::kSpreadCamera),
+      has_caustics_(room.scene().bends_light()),
       all_(room.band_count(), 1.0F) {}
 
 void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
@@ -52,7 +54,8 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
   const std::size_t pixels =
       static_cast<std::size_t>(tile.x1 - tile.x0) * static_cast<std::size_t>(tile.y1 - tile.y0);
   const int last_replicate = block.first_replicate + block.replicates;
-  std::vector<float> values(3 * bands * pixels * static_cast<std::size_t>(block.replicates), 0.0F);
+  const std::size_t stride = layers() * bands;
+  std::vector<float> values(stride * pixels * static_cast<std::size_t>(block.replicates), 0.0F);
   std::vector<float> weight(bands);
   std::vector<PixelBlock> found;
   found.reserve(pixels * static_cast<std::size_t>(block.replicates));
@@ -61,8 +64,9 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1; ++x) {
       const std::size_t pixel = static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x);
-      for (int r = block.first_replicate; r < last_replicate; ++r, next += 3 * bands) {
+      for (int r = block.first_replicate; r < last_replicate; ++r, next += stride) {
         if (stop_->requested()) return;
+        float* caustic = has_caustics_ ? next + 3 * bands : nullptr;
         PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
                        pixel,
                        static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
@@ -73,9 +77,11 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
                        next,
                        next + bands,
                        next + 2 * bands,
+                       caustic,
                        &weight,
                        {.direct = next,
                         .indirect = next + bands,
+                        .caustic = caustic,
                         .albedo = next + 2 * bands,
                         .samples = block.samples,
                         .earlier = block.first}};
@@ -98,7 +104,7 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
 
 void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) const {
   const std::size_t bands = field_.band_count();
-  std::vector<float> values(3 * bands);
+  std::vector<float> values(layers() * bands);
   GatherBatch batch(gather_);
   const auto pixel_at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
@@ -111,19 +117,24 @@ void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) cons
       const std::size_t pixel = pixel_at(x0, y0);
       std::fill(values.begin(), values.end(), 0.0F);
       float* direct = values.data();
-      PixelSums sums{
-          PointSampler(settings_->seed, RngPurpose::kPixel, pixel, 0, 0),
-          pixel,
-          0,
-          0,
-          static_cast<std::uint32_t>(field_.parts()),
-          Integrator::kZones,
-          1.0F,
-          direct,
-          direct + bands,
-          direct + 2 * bands,
-          nullptr,
-          {.direct = direct, .indirect = direct + bands, .albedo = direct + 2 * bands, .samples = 1}};
+      float* caustic = has_caustics_ ? direct + 3 * bands : nullptr;
+      PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, 0, 0),
+                     pixel,
+                     0,
+                     0,
+                     static_cast<std::uint32_t>(field_.parts()),
+                     Integrator::kZones,
+                     1.0F,
+                     direct,
+                     direct + bands,
+                     direct + 2 * bands,
+                     caustic,
+                     nullptr,
+                     {.direct = direct,
+                      .indirect = direct + bands,
+                      .caustic = caustic,
+                      .albedo = direct + 2 * bands,
+                      .samples = 1}};
       add_sample(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0, sums, batch);
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x) film.add(pixel_at(x, y), 0, sums.found);
@@ -239,13 +250,16 @@ void TileRenderer::add_seen(const SurfacePoint& x, const float* through, float f
   }
   const ZoneId zone = room_->mesh().zone_at(x.triangle, x.u, x.v, x.front);
   const float* direct = field_.reflected_direct(zone);
+  const float* caustic = field_.reflected_caustic(zone);
   const float share_of_part = sums.share / static_cast<float>(sums.parts);
   for (std::uint32_t part = sums.part; part < sums.part + sums.parts; ++part) {
     const float* all = field_.reflected(zone, part);
     for (std::size_t b = 0; b < bands; ++b)
-      sums.indirect[b] += share_of_part * (all[b] - direct[b]) * through[b];
+      sums.indirect[b] += share_of_part * (all[b] - direct[b] - caustic[b]) * through[b];
   }
   for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += sums.share * direct[b] * through[b];
+  if (sums.caustic == nullptr) return;
+  for (std::size_t b = 0; b < bands; ++b) sums.caustic[b] += sums.share * caustic[b] * through[b];
 }
 
 void TileRenderer::add_highlights(const SurfacePoint& x, const float* through, int sample,
@@ -256,7 +270,7 @@ void TileRenderer::add_highlights(const SurfacePoint& x, const float* through, i
     weight[b] = sums.share / static_cast<float>(shadow_rays) * through[b];
   for (int i = 0; i < shadow_rays; ++i)
     direct_.add_lobe_sample(x, sums.sampler.light(sample, i, shadow_rays), {}, DiffuseWay::kNotFollowed,
-                            weight.data(), sums.direct);
+                            weight.data(), {sums.direct, sums.direct});
 }
 
 void TileRenderer::add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
@@ -295,9 +309,9 @@ void TileRenderer::add_scattered(const SurfacePoint& x, const float* share, std:
     for (std::size_t b = 0; b < bands; ++b)
       weight[b] = share[b] * sums.share / static_cast<float>(gathers) * through[b];
     if (path)
-      path_.add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect);
+      path_.add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect, sums.caustic);
     else
-      batch.add(x, u[0], u[1], key, weight.data(), sums.indirect);
+      batch.add(x, u[0], u[1], key, weight.data(), sums.indirect, sums.caustic);
   }
 }
 

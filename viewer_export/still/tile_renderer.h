@@ -41,6 +41,8 @@ class TileRenderer {
 
   /// Parts of the zone solution that the replicates read in turn.
   std::size_t parts() const { return field_.parts(); }
+  /// Whether films get a layer of caustics.
+  bool has_caustics() const { return has_caustics_; }
 
   /// Adds samples first .. first+samples-1 of the replicates of the block to each pixel of the tile; none if
   /// it was told to stop.
@@ -58,6 +60,8 @@ class TileRenderer {
  private:
   struct PixelSums;
 
+  /// Of the film, that a pixel's samples add to: direct, indirect, albedo and, where they are, caustics.
+  std::size_t layers() const { return has_caustics_ ? 4 : 3; }
   void add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const;
   /// What scatters or emits at x, of which the film gets `through` per band; of what emits the share `found`.
   void add_seen(const SurfacePoint& x, const float* through, float found, int sample, PixelSums& sums,
@@ -83,6 +87,7 @@ class TileRenderer {
   HemisphereGather gather_;
   PathTracer path_;
   SpecularNumbers specular_;
+  bool has_caustics_;
   std::vector<float> all_;  // by band: nothing is lost on the way to the eye
 };
 

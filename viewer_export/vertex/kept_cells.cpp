@@ -63,7 +63,7 @@ std::vector<bool> lit_backs(const Solution& solution, const ZoneCells& cells,
     const double cell_area = cells.area(i);
     const std::size_t z = cells.zone(i).index();
     double irradiance = 0;
-    for (std::size_t k = z * bands; k < (z + 1) * bands; ++k) irradiance += sums.direct[k] + sums.indirect[k];
+    for (std::size_t k = z * bands; k < (z + 1) * bands; ++k) irradiance += sums.total(k);
     total_power += cell_area * irradiance;
     total_area += cell_area;
     const SideCell cell = cells.cell(i);

@@ -24,6 +24,8 @@ void check_consistent(const VertexData& data) {
   require(data.on_back.size() == vertices, "one side per vertex expected");
   for (const auto* array : {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance})
     require(array->size() == values, "one value per vertex and band expected");
+  require(data.caustic_radiance.empty() || data.caustic_radiance.size() == values,
+          "caustics at all vertices or none expected");
   for (const SurfaceId s : data.surfaces)
     require(s.index() < data.surface_names.size(), "surface without a name");
   for (const MaterialId m : data.materials)

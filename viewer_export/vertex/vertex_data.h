@@ -36,8 +36,10 @@ struct VertexData {
   std::vector<float> radiance;         ///< Leaving the vertex in all, emission included [W/(m2 sr)].
   std::vector<float> irradiance;       ///< [W/m2]
   std::vector<float> radiance_stderr;  ///< Standard error of radiance [W/(m2 sr)].
-  std::vector<float>
-      direct_radiance;  ///< Part of radiance that is the first reflection of luminaires [W/(m2 sr)].
+  /// Part of radiance that is the first reflection of luminaires [W/(m2 sr)].
+  std::vector<float> direct_radiance;
+  /// The same of luminaires over mirrors, glass and gloss; empty in rooms that bend no light.
+  std::vector<float> caustic_radiance;
 
   std::vector<std::array<std::uint32_t, 3>>
       triangles;  ///< Counter-clockwise seen from the side of the normals.

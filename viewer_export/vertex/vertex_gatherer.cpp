@@ -32,6 +32,7 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
               &stop),
       path_(room, direct_, settings.seed),
       bands_(room.band_count()),
+      has_caustics_(room.scene().bends_light()),
       is_translucent_(std::any_of(room.scene().materials.begin(), room.scene().materials.end(),
                                   [](const Material& m) { return m.non_diffuse.transmits_diffusely(); })),
       gathers_per_point_(settings.gathers_per_point()),
@@ -52,16 +53,18 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
     for (std::size_t r = 0; r < kReplicates; ++r, next += values_per_replicate()) {
       const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, static_cast<int>(r), log2_points_);
       const PathKey key{v, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % field_.parts())};
+      const auto caustic_of = [&](float* side) { return has_caustics_ ? side + 2 * bands_ : nullptr; };
       add_replicate(
           direct_, sampler, effort, key, [&](const std::array<float, 2>& u) { return point_beside(v, u); },
-          batch, next, next + bands_);
+          batch, next, next + bands_, caustic_of(next));
       if (diffuse_transmittance(v) == nullptr) continue;
+      float* other = next + values_per_side();
       PathKey behind = key;
       behind.index += rings_.size();  // random numbers that no vertex has
       add_replicate(
           direct_, sampler, effort, behind,
           [&](const std::array<float, 2>& u) { return other_side(room_.rays(), point_beside(v, u)); }, batch,
-          next + 2 * bands_, next + 3 * bands_);
+          other, other + bands_, caustic_of(other));
     }
   batch.flush();
   const float share = static_cast<float>(block.count) / static_cast<float>(block.first + block.count);
@@ -127,16 +130,22 @@ void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) 
   const Spectrum* tau = diffuse_transmittance(v);
   for (std::size_t b = 0; b < bands_; ++b) {
     const auto irradiance_of = [&](std::size_t r, std::size_t side) {
-      const float* replicate = means + r * values_per_replicate() + side * 2 * bands_;
-      return static_cast<double>(replicate[b] + kPi * replicate[bands_ + b]);
+      const float* replicate = means + r * values_per_replicate() + side * values_per_side();
+      const float indirect = replicate[bands_ + b];
+      return static_cast<double>(replicate[b] +
+                                 kPi * (has_caustics_ ? indirect + replicate[2 * bands_ + b] : indirect));
     };
-    const auto direct_of = [&](std::size_t side) {
-      double direct = 0;
+    /// Mean over the replicates of one of the values of a side.
+    const auto mean_of = [&](std::size_t side, std::size_t value) {
+      double sum = 0;
       for (std::size_t r = 0; r < kReplicates; ++r)
-        direct +=
-            static_cast<double>(means[r * values_per_replicate() + side * 2 * bands_ + b]) / kReplicates;
-      return direct;
+        sum += static_cast<double>(
+                   means[r * values_per_replicate() + side * values_per_side() + value * bands_ + b]) /
+               kReplicates;
+      return sum;
     };
+    const auto direct_of = [&](std::size_t side) { return mean_of(side, 0); };
+    const auto caustic_of = [&](std::size_t side) { return std::numbers::pi * mean_of(side, 2); };
     const auto [mean, squared_error] =
         mean_of_replicates(kReplicates, field_.parts(), [&](std::size_t r) { return irradiance_of(r, 0); });
     const double brdf = lambert_brdf_per_sr(reflectance[b]);
@@ -145,6 +154,7 @@ void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) 
     data.radiance[k] = own[b] + static_cast<float>(brdf * mean);
     data.radiance_stderr[k] = static_cast<float>(brdf * std::sqrt(squared_error));
     data.direct_radiance[k] = static_cast<float>(brdf * direct_of(0));
+    if (has_caustics_) data.caustic_radiance[k] = static_cast<float>(brdf * caustic_of(0));
     if (tau == nullptr) continue;
     const double btdf = (*tau)[static_cast<Eigen::Index>(b)] / static_cast<double>(kPi);
     const auto [radiance, squared] = mean_of_replicates(kReplicates, field_.parts(), [&](std::size_t r) {
@@ -153,6 +163,8 @@ void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) 
     data.radiance[k] = own[b] + static_cast<float>(radiance);
     data.radiance_stderr[k] = static_cast<float>(std::sqrt(squared));
     data.direct_radiance[k] = static_cast<float>(brdf * direct_of(0) + btdf * direct_of(1));
+    if (has_caustics_)
+      data.caustic_radiance[k] = static_cast<float>(brdf * caustic_of(0) + btdf * caustic_of(1));
   }
 }
 

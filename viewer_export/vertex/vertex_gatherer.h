@@ -39,9 +39,10 @@ class VertexGatherer {
   std::size_t values_per_vertex() const { return kReplicates * values_per_replicate(); }
 
   /// Adds a block of points to the means of vertices first .. last-1. means: per vertex and replicate, direct
-  /// irradiance [W/m2] and mean reflected radiance over the hemisphere [W/(m2 sr)] per band, in rooms with
-  /// diffuse transmission also those of the other side; the first vertex at means[0]. Then overwrites the
-  /// values of these vertices in `data`.
+  /// irradiance [W/m2] and mean reflected radiance over the hemisphere [W/(m2 sr)] per band, in rooms that
+  /// bend light also that of luminaires over such surfaces, which is then no part of the second; in rooms
+  /// with diffuse transmission also those of the other side; the first vertex at means[0]. Then overwrites
+  /// the values of these vertices in `data`.
   void gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
               VertexData& data) const;
 
@@ -51,7 +52,8 @@ class VertexGatherer {
 
  private:
   SurfacePoint point_beside(std::size_t v, const std::array<float, 2>& u) const;
-  std::size_t values_per_replicate() const { return (is_translucent_ ? 4 : 2) * bands_; }
+  std::size_t values_per_side() const { return (has_caustics_ ? 3 : 2) * bands_; }
+  std::size_t values_per_replicate() const { return (is_translucent_ ? 2 : 1) * values_per_side(); }
   /// Share of the light on the other side that comes through at a vertex; null where none does.
   const Spectrum* diffuse_transmittance(std::size_t v) const;
   void store(std::size_t v, const float* means, VertexData& data) const;
@@ -64,6 +66,7 @@ class VertexGatherer {
   HemisphereGather gather_;
   PathTracer path_;
   std::size_t bands_;
+  bool has_caustics_;
   bool is_translucent_;  // some surface of the room transmits diffusely
   int gathers_per_point_;
   int log2_points_;

@@ -41,6 +41,7 @@ void check(const VertexSettings& s) {
 struct Through {
   double all = 0;
   double direct = 0;
+  double caustic = 0;
   double variance = 0;  ///< Of `all`; zones count as independent.
 
   void add(const Solution& solution, ZoneId zone, std::size_t band, double share) {
@@ -48,6 +49,7 @@ struct Through {
     const Estimate e = solution.transmitted(zone, band, &Solution::irradiance);
     all += share * e.mean;
     direct += share * solution.transmitted(zone, band, &Solution::direct_irradiance).mean;
+    caustic += share * solution.transmitted(zone, band, &Solution::caustic_irradiance).mean;
     variance += std::pow(share * e.stderr_of_mean, 2);
   }
 };
@@ -64,6 +66,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
     for (std::size_t b = 0; b < bands; ++b) {
       const double area = 3 * rings.area(v);
       double direct = 0;
+      double caustic = 0;
       double all = 0;
       double variance = 0;
       Through through;
@@ -71,6 +74,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
         const double share = r->area / area;
         const Estimate e = solution.irradiance(r->zone, b);
         direct += share * solution.direct_irradiance(r->zone, b).mean;
+        caustic += share * solution.caustic_irradiance(r->zone, b).mean;
         all += share * e.mean;
         through.add(solution, r->zone, b, share);
         // Cells of one group share its value and its error.
@@ -100,6 +104,9 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
           surfaces.emitted(t, front)[b] + static_cast<float>(brdf * all + through.all * std::numbers::inv_pi);
       data.radiance_stderr[k] = static_cast<float>(error);
       data.direct_radiance[k] = static_cast<float>(brdf * direct + through.direct * std::numbers::inv_pi);
+      if (!data.caustic_radiance.empty())
+        data.caustic_radiance[k] =
+            static_cast<float>(brdf * caustic + through.caustic * std::numbers::inv_pi);
     }
 }
 
@@ -121,6 +128,7 @@ VertexData make_vertices(const Scene& scene, const Solution& solution, const Ver
   }
   for (auto* values : {&data.radiance, &data.irradiance, &data.radiance_stderr, &data.direct_radiance})
     values->assign(rings.size() * scene.bands.count(), 0.0F);
+  if (scene.bends_light()) data.caustic_radiance.assign(data.radiance.size(), 0.0F);
   return data;
 }
 

@@ -20,6 +20,14 @@ constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness
 
 constexpr const char* kDiffuseTransmission = "KHR_materials_diffuse_transmission";
 constexpr const char* kVolume = "KHR_materials_volume";
+constexpr const char* kIor = "KHR_materials_ior";
+constexpr const char* kSpecular = "KHR_materials_specular";
+constexpr const char* kClearCoat = "KHR_materials_clearcoat";
+
+/// What a body of this index of refraction reflects at normal incidence.
+double normal_reflectance(double ior) {
+  return std::pow((ior - 1) / (ior + 1), 2);
+}
 
 /// Reads the materials of one file.
 class MaterialReader {
@@ -37,7 +45,9 @@ class MaterialReader {
       for (const auto& [name, value] : source.extensions) {
         static const std::set<std::string> known{"KHR_materials_emissive_strength",
                                                  "KHR_materials_transmission",
-                                                 "KHR_materials_ior",
+                                                 kIor,
+                                                 kSpecular,
+                                                 kClearCoat,
                                                  kVolume,
                                                  kSpecularGlossiness,
                                                  kDiffuseTransmission};
@@ -92,7 +102,7 @@ class MaterialReader {
     return checked(value.GetNumberAsDouble(), most, pointer);
   }
 
-  Rgb triple(const tinygltf::Material& source, const char* name, const char* key) const {
+  Rgb triple(const tinygltf::Material& source, const char* name, const char* key, double most = 1) const {
     const tinygltf::Value& object = extension(source, name);
     if (!object.IsObject() || !object.Has(key)) return Rgb::Ones();
     const tinygltf::Value& value = object.Get(key);
@@ -101,7 +111,7 @@ class MaterialReader {
       const tinygltf::Value& item = value.Get(static_cast<int>(i));
       numbers.push_back(item.IsNumber() ? item.GetNumberAsDouble() : -1);
     }
-    return rgb(numbers, 1, in_extension(name, key));
+    return rgb(numbers, most, in_extension(name, key));
   }
 
   const tinygltf::Value& extension(const tinygltf::Material& source, const char* name) const {
@@ -153,11 +163,49 @@ class MaterialReader {
     if (transmitted > 0) {
       material.non_diffuse.specular_transmittance = base * ((1 - metallic) * transmitted);
       material.non_diffuse.transmission_roughness = material.non_diffuse.roughness;
-      material.non_diffuse.index_of_refraction =
-          std::max(1.0, number(source, "KHR_materials_ior", "ior", 1.5, NonDiffusePart::kLargestIndex));
+      material.non_diffuse.index_of_refraction = std::max(1.0, index_of_refraction(source));
       if (metallic == 0) material.non_diffuse.angle_law = AngleLaw::kDielectric;
       read_volume(source, material.non_diffuse);
+      return;
     }
+    add_dielectric_gloss(source, metallic, material);
+  }
+
+  double index_of_refraction(const tinygltf::Material& source) const {
+    return number(source, kIor, "ior", 1.5, NonDiffusePart::kLargestIndex);
+  }
+
+  /// What files say of the gloss of their dielectrics and of clear coats; without a word it counts as
+  /// diffuse.
+  void add_dielectric_gloss(const tinygltf::Material& source, double metallic, Material& material) {
+    NonDiffusePart& part = material.non_diffuse;
+    Rgb gloss = Rgb::Zero();
+    if (extension(source, kSpecular).IsObject()) {
+      constexpr double kMostColour = 1e6;
+      gloss = triple(source, kSpecular, "specularColorFactor", kMostColour) *
+              normal_reflectance(index_of_refraction(source));
+      gloss = gloss.min(1) * number(source, kSpecular, "specularFactor", 1, 1);
+      gloss *= (1 - metallic);
+    }
+    if (const double coat = number(source, kClearCoat, "clearcoatFactor", 0, 1); coat > 0) {
+      const double roughness = number(source, kClearCoat, "clearcoatRoughnessFactor", 0, 1);
+      if (metallic > 0) {
+        ++scene_.not_modelled["clear_coats"];
+        scene_.warnings.push_back(
+            fmt::format("material \"{}\": the clear coat on its metal is ignored", material.name));
+      } else {
+        // There is one lobe: that of the coat, which is the smoother of the two.
+        part.roughness = std::min(part.roughness, roughness * roughness);
+        gloss = gloss.max(coat * normal_reflectance(1.5));
+      }
+    }
+    if (!(gloss > 0).any()) return;
+    const double left = 1 - gloss.maxCoeff();
+    material.reflectance *= left;
+    if (part.diffuse_transmittance.size() > 0) part.diffuse_transmittance *= left;
+    part.specular_reflectance =
+        part.specular_reflectance.size() > 0 ? Rgb(part.specular_reflectance + gloss) : gloss;
+    part.angle_law = AngleLaw::kSchlick;
   }
 
   /// Without a thickness the surface is a thin pane.
@@ -185,11 +233,13 @@ class MaterialReader {
       diffuse *=
           mean(texture.Get("index").GetNumberAsInt(), TextureEncoding::kSrgb, "diffuse", material.name);
     }
-    material.reflectance = diffuse;
-    // The extension takes what the mirror part reflects off the diffuse part: no more than all light comes
-    // back.
-    const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor").min(1 - diffuse);
-    if ((specular > 0).any()) material.non_diffuse.specular_reflectance = specular;
+    // Less what is reflected before it comes to the diffuse part, by the definition of the extension.
+    const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor");
+    material.reflectance = diffuse * (1 - specular.maxCoeff());
+    if ((specular > 0).any()) {
+      material.non_diffuse.specular_reflectance = specular;
+      material.non_diffuse.angle_law = AngleLaw::kSchlick;
+    }
     const double roughness = 1 - number(source, kSpecularGlossiness, "glossinessFactor", 1, 1);
     material.non_diffuse.roughness = roughness * roughness;
   }

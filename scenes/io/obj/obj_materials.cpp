@@ -167,8 +167,12 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tel
   if (shares.is_glass) {
     rest.angle_law = AngleLaw::kDielectric;
     rest.is_solid = true;
+    rest.index_of_refraction = static_cast<double>(m.ior);
   }
-  rest.index_of_refraction = std::max(1.0, static_cast<double>(m.ior));
+  if (m.ior < 1 && (shares.transmitted > 0).any())
+    tell.warnings.push_back(fmt::format(
+        "{}: Ni {:.3g} is below 1: light crosses it straight on, as a thin sheet; window glass has 1.5.",
+        where, m.ior));
   if (const std::string maps = ignored_maps(m); !maps.empty()) {
     ++tell.not_modelled["other_maps"];
     tell.warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));

@@ -2,6 +2,9 @@
 
 #include "scenes/io/common/glass_bodies.h"
 
+#include <variant>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -117,6 +120,56 @@ TEST(GlassBodies, FrontsAreTurnedOutwards) {
                             .cross(surface.positions[loop[2]] - surface.positions[loop[1]]);
     EXPECT_GT(normal.dot(surface.positions[loop[0]] - Vec3::Constant(0.5)), 0) << surface.name;
   }
+}
+
+/// Whether the first face of a surface, or its sphere, looks away from the origin.
+bool looks_outwards(const Surface& surface) {
+  if (!surface.shapes.empty()) return !std::get<Sphere>(surface.shapes[0]).inward;
+  const auto& loop = surface.faces[0].outer;
+  const Vec3 a = surface.positions[loop[0]], b = surface.positions[loop[1]], c = surface.positions[loop[2]];
+  return (b - a).cross(c - b).dot(a) > 0;
+}
+
+TEST(GlassBodies, OfTheSameGlassWithinEachOtherAreHollow) {
+  const auto box = [](const char* name, double half, const char* more) {
+    return fmt::format(
+        R"({{"name": "{}", "material": "m", "box": {{"min": [{}, {}, {}], "max": [{}, {}, {}]{}}}}})", name,
+        -half, -half, -half, half, half, half, more);
+  };
+  // However they are wound; a ball of glass in the hollow of a hollow box.
+  for (const char* winding : {"", R"(, "inward": true)"}) {
+    const Scene scene = read_whole(with_material(
+        kGlass,
+        box("outer", 1, winding) + ", " + box("inner", 0.9, winding) +
+            R"(, {"name": "ball", "material": "m", "sphere": {"center": [0, 0, 0], "radius": 0.5}})" +
+            R"(, {"name": "bubble", "material": "m", "sphere": {"center": [0, 0, 0], "radius": 0.1}})"));
+    for (const Surface& s : scene.surfaces) {
+      if (s.name == "lamp" || s.material.index() != scene.surfaces.back().material.index()) continue;
+      const bool outwards = s.name.starts_with("outer") || s.name.starts_with("ball");
+      EXPECT_EQ(looks_outwards(s), outwards) << s.name << winding;
+    }
+    EXPECT_THAT(scene.warnings, IsEmpty());
+  }
+}
+
+TEST(GlassBodies, OfOtherGlassWithinOrAcrossAreToldOf) {
+  const auto with_water = [](double x) {
+    return read_whole(room(fmt::format(
+        R"("materials": {{"lamp": {{"radiance": 1}}, "glass": {{"glass": {{"ior": 1.5, "solid": true}}}},
+           "water": {{"glass": {{"ior": 1.33, "solid": true}}}}}}, "objects": [
+           {{"material": "lamp", "quad": {{"corner": [0, 9, 0], "u": [1, 0, 0], "v": [0, 0, 1]}}}},
+           {{"name": "block", "material": "glass", "box": {{"min": [-1, -1, -1], "max": [1, 1, 1]}}}},
+           {{"name": "drop", "material": "water", "sphere": {{"center": [{}, 0, 0], "radius": 0.5}}}}])",
+        x)));
+  };
+  for (const double x : {0.0, 1.0}) {
+    const Scene scene = with_water(x);
+    EXPECT_THAT(scene.warnings, Contains(testing::AllOf(HasSubstr("within each other or overlap"),
+                                                        HasSubstr("'drop' of 'water'"), HasSubstr("block"))));
+    EXPECT_EQ(scene.not_modelled.at("glass_in_glass"), 1U);
+    EXPECT_TRUE(looks_outwards(scene.surfaces.back()));
+  }
+  EXPECT_THAT(with_water(1.6).warnings, IsEmpty());
 }
 
 // Files of others may say more than there is; nothing is gained, and it is told.

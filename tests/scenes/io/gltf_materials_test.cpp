@@ -64,9 +64,48 @@ TEST(GltfMaterials, TransmissionAndSpecularGlossiness) {
                                          {{"diffuseFactor", {0.3, 0.4, 0.5, 1}},
                                           {"specularFactor", {0.6, 0.1, 0.1}},
                                           {"glossinessFactor", 0.75}}}}}});
-  EXPECT_NEAR(old.reflectance[2], 0.5, 1e-12);
+  EXPECT_NEAR(old.reflectance[2], 0.5 * 0.4, 1e-12);
   EXPECT_NEAR(old.non_diffuse.specular_reflectance[0], 0.6, 1e-12);
+  EXPECT_EQ(old.non_diffuse.angle_law, AngleLaw::kSchlick);
   EXPECT_NEAR(old.non_diffuse.roughness, 0.0625, 1e-12);
+}
+
+TEST(GltfMaterials, GlossOfDielectricsIsThatOfTheirExtensions) {
+  const auto plastic = [](const json& extensions) {
+    return read_material(
+        {{"pbrMetallicRoughness",
+          {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+         {"extensions", extensions}});
+  };
+  const Material unsaid = plastic(json::object());
+  EXPECT_EQ(unsaid.non_diffuse.specular_reflectance.size(), 0);
+  EXPECT_EQ(unsaid.reflectance[0], 0.5);
+  const Material plain = plastic({{"KHR_materials_specular", json::object()}});
+  EXPECT_NEAR(plain.non_diffuse.specular_reflectance[0], 0.04, 1e-12);
+  EXPECT_NEAR(plain.reflectance[0], 0.5 * 0.96, 1e-12);
+  EXPECT_NEAR(plain.non_diffuse.roughness, 0.25, 1e-12);
+  EXPECT_EQ(plain.non_diffuse.angle_law, AngleLaw::kSchlick);
+  const Material tinted =
+      plastic({{"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0}}}},
+               {"KHR_materials_ior", {{"ior", 2}}}});
+  EXPECT_NEAR(tinted.non_diffuse.specular_reflectance[0], 1.0 / 9, 1e-12);
+  EXPECT_NEAR(tinted.non_diffuse.specular_reflectance[1], 0.5 / 9, 1e-12);
+  EXPECT_EQ(tinted.non_diffuse.specular_reflectance[2], 0);
+  EXPECT_NEAR(tinted.reflectance[2], 0.5 * (1 - 1.0 / 9), 1e-12);
+  const Material none = plastic({{"KHR_materials_specular", {{"specularFactor", 0}}}});
+  EXPECT_EQ(none.non_diffuse.specular_reflectance.size(), 0);
+  const Material coated =
+      plastic({{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.2}}}});
+  EXPECT_NEAR(coated.non_diffuse.specular_reflectance[0], 0.02, 1e-12);
+  EXPECT_NEAR(coated.non_diffuse.roughness, 0.04, 1e-12);
+  EXPECT_NEAR(coated.reflectance[0], 0.5 * 0.98, 1e-12);
+}
+
+TEST(GltfMaterials, ClearCoatsOnMetalAreToldOf) {
+  const Scene scene = read_gltf(with_material(
+      {{"name", "car"}, {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}}}}));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("\"car\": the clear coat on its metal is ignored")));
+  EXPECT_EQ(scene.not_modelled.at("clear_coats"), 1U);
 }
 
 TEST(GltfMaterials, EmissionAndItsUnits) {

@@ -14,10 +14,12 @@
 namespace reemit {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 const std::string kSquare =
     "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl wall\n";  // lines 1 to 6
@@ -161,6 +163,11 @@ TEST_F(ObjReader, NonDiffusePartsAreKept) {
   EXPECT_EQ(opaque.non_diffuse.specular_reflectance.size(), 0);
   const Material refracting = read_with("newmtl wall\nKd 0 0 0\nTf 0.3 0.3 0.3\nillum 6\n").materials.at(0);
   EXPECT_TRUE(refracting.non_diffuse.specular_transmittance.isApproxToConstant(0.3, 1e-15));
+  const Scene thin = read_with("newmtl wall\nKd 0 0 0\nTf 0.3 0.3 0.3\nNi 0.7\nillum 6\n");
+  EXPECT_EQ(thin.materials.at(0).non_diffuse.index_of_refraction, 1);
+  EXPECT_THAT(thin.warnings, Contains(AllOf(HasSubstr("material 'wall'"), HasSubstr("Ni 0.7 is below 1"))));
+  EXPECT_THAT(read_with("newmtl wall\nKd 0.5 0.5 0.5\nNi 0.7\n").warnings, Not(Contains(HasSubstr("Ni"))))
+      << "of what is opaque it says nothing";
 }
 
 TEST_F(ObjReader, WhatNoMaterialFileDefinesIsGrey) {

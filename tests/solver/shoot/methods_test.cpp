@@ -167,7 +167,7 @@ TEST(Methods, ARayIsKnownByItsPacket) {
           EXPECT_TRUE(seen.insert({{block.flight, block.id[i]}, ray}).second) << "two rays of one packet";
         }
       };
-      BatchBooks books(transport.zones(), transport.surfaces(), transport.bands());
+      BatchBooks books = transport.new_books();
       BatchTask task{transport, emission, settings, 3, 20'000};
       task.ray_observer = &observer;
       tbb::task_arena arena(threads);

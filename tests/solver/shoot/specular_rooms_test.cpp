@@ -177,30 +177,44 @@ TEST(SpecularRooms, GreyGlassTakesWhatBeerSays) {
   }
 }
 
-TEST(SpecularRooms, LightOverMirrorsIsIndirectAndThroughPanesDirect) {
-  /// Direct and indirect light that the ceiling receives of the floor, per W/m2 of it.
+TEST(SpecularRooms, LightOverMirrorsIsCausticThroughPanesDirectThroughOpalSheetsIndirect) {
+  struct Parts {
+    double direct = 0, caustic = 0, indirect = 0;
+    double total() const { return direct + caustic + indirect; }
+  };
+  /// Light that the ceiling receives of the floor, per W/m2 of it.
   const auto parts_of = [](const RoomBuilder& room, SolveMethod method) {
     const Solution s = solved(room, method, 64'000);
-    std::array<double, 2> parts{};
+    Parts parts;
     for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
       if (s.mesh.zone_surface(ZoneId(z)).index() != kCeiling || !s.mesh.zone_is_front(ZoneId(z))) continue;
       const auto weight = static_cast<double>(s.sums.weight()) * 1.3 / s.mesh.zone_area(ZoneId(z));
-      parts[0] += s.sums.direct[z] / weight;
-      parts[1] += s.sums.indirect[z] / weight;
+      parts.direct += s.sums.direct[z] / weight;
+      parts.caustic += s.sums.caustic[z] / weight;
+      parts.indirect += s.sums.indirect[z] / weight;
     }
     return parts;
   };
   for (const SolveMethod method : kMethods) {
     RoomBuilder room = plates(plate(0, 1), plate(0, 0));
-    const auto [direct, indirect] = parts_of(room, method);
+    const Parts bare = parts_of(room, method);
     // F between 1 x 1.3 rectangles at 0.7: what comes over no mirror.
-    EXPECT_NEAR(direct / (direct + indirect), 0.345, 0.02);
+    EXPECT_NEAR(bare.direct / bare.total(), 0.345, 0.02);
+    EXPECT_EQ(bare.indirect, 0);
     const MaterialId clear = room.material("clear", 0, 0, true);
     room.scene().materials[clear.index()].non_diffuse.specular_transmittance = one_band(0.5);
     room.quad(clear, {Vec3(0, 0, 0.3), Vec3(1, 0, 0.3), Vec3(1, 1.3, 0.3), Vec3(0, 1.3, 0.3)}, 2);
-    const auto [dimmed, dimmed_indirect] = parts_of(room, method);
-    EXPECT_NEAR(dimmed / direct, 0.5, 0.02) << "a sheet leaves direct light direct";
-    EXPECT_NEAR(dimmed_indirect / indirect, 0.5, 0.02);
+    const Parts dimmed = parts_of(room, method);
+    EXPECT_NEAR(dimmed.direct / bare.direct, 0.5, 0.02) << "a pane leaves direct light direct";
+    EXPECT_NEAR(dimmed.caustic / bare.caustic, 0.5, 0.02);
+    EXPECT_EQ(dimmed.indirect, 0);
+    NonDiffusePart opal;
+    opal.diffuse_transmittance = one_band(0.5);
+    room.scene().materials[clear.index()].non_diffuse = opal;
+    const Parts veiled = parts_of(room, method);
+    EXPECT_EQ(veiled.direct, 0);
+    EXPECT_EQ(veiled.caustic, 0) << "mirrors beyond an opal sheet throw no caustics";
+    EXPECT_NEAR(veiled.indirect, 0.5, 0.02);
   }
 }
 

@@ -45,10 +45,10 @@ class LitBox {
     solution.bands = room_.scene().bands;
     keep_surfaces(room_.scene(), solution);
     solution.mesh = mesh_;
-    solution.sums.clear(mesh_.zone_count() * 3);
+    solution.sums.clear(mesh_.zone_count() * 3, false);
     SolverSettings settings;
     settings.seed = seed;
-    BatchBooks books(transport_->zones(), transport_->surfaces(), transport_->bands());
+    BatchBooks books = transport_->new_books();
     tbb::task_arena arena(1);  // the work is small
     arena.execute([&] {
       for (std::size_t k = 0; k < weights.size(); ++k) {

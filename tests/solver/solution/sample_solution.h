@@ -91,6 +91,11 @@ inline Solution sample_solution(const BandSet& bands) {
   fill(s.sums.indirect_cross, 2);
   fill(s.sums.indirect_squared, 40);
   fill(s.sums.total_squared, 100);
+  if (bands.kind() == BandKind::kRgb) {  // the others are of rooms that bend no light
+    fill(s.sums.caustic, 1);
+    fill(s.sums.caustic_cross, 2);
+    fill(s.sums.caustic_squared, 50);
+  }
   for (std::size_t i = 0; i < ZoneSums::kGroups * s.sums.direct.size(); ++i)
     s.sums.group_total.push_back(0.1F * static_cast<float>(i));
   s.gathered.keep(s.sums, bands.count(), {ZoneId(3), ZoneId(1)});

@@ -196,12 +196,13 @@ TEST_F(SolutionFile, HoldsZoneValuesWithUnits) {
   const auto emitted = read("/zones/emitted");
   const auto direct = read("/zones/direct");
   const auto indirect = read("/zones/indirect");
+  const auto caustic = read("/zones/caustic");
   const auto error = read("/zones/radiosity_stderr");
   for (std::size_t z = 0; z < zones; ++z)
     for (std::size_t b = 0; b < 3; ++b) {
       const std::size_t i = 3 * z + b;
       EXPECT_FLOAT_EQ(radiosity[i], static_cast<float>(solution.radiosity(ZoneId(z), b).mean));
-      EXPECT_FLOAT_EQ(radiosity[i], emitted[i] + direct[i] + indirect[i]);
+      EXPECT_FLOAT_EQ(radiosity[i], emitted[i] + direct[i] + indirect[i] + caustic[i]);
       EXPECT_FLOAT_EQ(error[i], static_cast<float>(solution.radiosity(ZoneId(z), b).stderr_of_mean));
     }
   const hid_t unit = H5Aopen_by_name(id, "/zones/radiosity", "unit", H5P_DEFAULT, H5P_DEFAULT);

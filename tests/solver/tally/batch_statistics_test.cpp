@@ -88,6 +88,13 @@ TEST(StoreReplicates, gives_back_mean_and_error) {
   check(s.irradiance(ZoneId(3), 0), [&](std::size_t g) { return direct[g] + indirect[g]; });
   EXPECT_FLOAT_EQ(s.sums.group_total[2 * s.sums.direct.size() + 3],
                   static_cast<float>(2 * (direct[2] + indirect[2])));
+
+  s.sums.caustic = s.sums.caustic_cross = s.sums.caustic_squared = std::vector<double>(s.sums.direct.size());
+  std::array<double, ZoneSums::kGroups> caustic{};
+  for (std::size_t g = 0; g < caustic.size(); ++g) caustic[g] = 0.5 + 0.2 * static_cast<double>(g % 3);
+  store_replicates(s.sums, 3, direct, indirect, caustic);
+  check(s.caustic_irradiance(ZoneId(3), 0), [&](std::size_t g) { return caustic[g]; });
+  check(s.irradiance(ZoneId(3), 0), [&](std::size_t g) { return direct[g] + indirect[g] + caustic[g]; });
 }
 
 /// Shares of 95 % intervals that hold the truth, of means of `batches` batches of a large room whose variance

@@ -350,6 +350,23 @@ TEST_F(Pipeline, SeveralMgfFilesAreOneRoomForAllCommands) {
   EXPECT_EQ(run_reemit({"info", path("room.h5"), files[0]}).exit_code, 2);
 }
 
+TEST_F(Pipeline, InfoTellsHowMuchLightMeetsWhichModel) {
+  // A lamp over a sheet that lets 3/4 through to an equal floor: of 1 + 3/4 + what goes back up, so much.
+  folder_.write(
+      "sheet.mtl",
+      "newmtl glass\nKd 0 0 0\nd 0.25\nillum 4\nNi 1\nnewmtl black\nKd 0 0 0\nnewmtl lamp\nKd 0 0 0\nKe 1 "
+      "1 1\n");
+  folder_.write(
+      "sheet.obj",
+      "mtllib sheet.mtl\nv -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nv -9 -9 0.1\nv 9 -9 0.1\nv 9 9 0.1\n"
+      "v -9 9 0.1\nv -9 -9 0.2\nv 9 -9 0.2\nv 9 9 0.2\nv -9 9 0.2\nusemtl black\nf 1 2 3 4\nusemtl "
+      "glass\nf 5 6 7 8\nusemtl lamp\nf 12 11 10 9\n");
+  const json room = json::parse(output_of({"info", path("sheet.obj"), "--json"}));
+  EXPECT_NEAR(room["model_area_shares"]["clear sheet"].get<double>(), 1.0 / 3, 1e-9);
+  EXPECT_NEAR(room["model_power_shares"]["clear sheet"].get<double>(), 1 / 1.75, 0.02);
+  EXPECT_THAT(output_of({"info", path("sheet.obj")}), HasSubstr("% of the light that arrives"));
+}
+
 TEST_F(Pipeline, InfoTellsWhatIsRefusedAndWhatIsNotModelled) {
   folder_.write("glass.mtl",
                 "newmtl glass\nKd 1 1 1\nd 0.1\nmap_bump b.png\nnewmtl mirror\nKd 1 1 1\nillum 5\n");
@@ -363,6 +380,7 @@ TEST_F(Pipeline, InfoTellsWhatIsRefusedAndWhatIsNotModelled) {
   EXPECT_EQ(room["not_modelled"],
             json::parse(R"({"count": 2, "kinds": {"glass_and_mirrors_as_paint": 1, "other_maps": 1}})"));
   EXPECT_GT(room["model_area_shares"]["clear sheet"].get<double>(), 0.1);
+  EXPECT_EQ(room["model_power_shares"]["clear sheet"], 0.0) << "there is no luminaire";
   EXPECT_THAT(output_of({"info", path("glass.obj")}),
               HasSubstr("not modelled  1 glass and mirrors as paint"));
   EXPECT_EQ(json::parse(output_of({"info", path("room.json"), "--json"}))["not_modelled"]["count"], 0);

@@ -63,12 +63,13 @@ TEST(CsvWriter, NumbersReadBackExactly) {
     numbers.push_back(cell.find_first_not_of("0123456789+-.e") == std::string::npos ? std::stod(cell) : 0);
   const std::size_t last = data.vertex_count() - 1;
   // The name of the last vertex's surface holds one comma.
-  ASSERT_EQ(numbers.size(), 9U + 1 + 12);
+  ASSERT_EQ(numbers.size(), 9U + 1 + 15);
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_EQ(numbers[1 + i], data.positions[last][static_cast<Eigen::Index>(i)]);
   for (std::size_t b = 0; b < 3; ++b) {
-    EXPECT_EQ(static_cast<float>(numbers[10 + 4 * b]), data.radiance[3 * last + b]);
-    EXPECT_EQ(static_cast<float>(numbers[13 + 4 * b]), data.direct_radiance[3 * last + b]);
+    EXPECT_EQ(static_cast<float>(numbers[10 + 5 * b]), data.radiance[3 * last + b]);
+    EXPECT_EQ(static_cast<float>(numbers[13 + 5 * b]), data.direct_radiance[3 * last + b]);
+    EXPECT_EQ(static_cast<float>(numbers[14 + 5 * b]), data.caustic_radiance[3 * last + b]);
   }
 }
 

@@ -57,6 +57,7 @@ TEST(GlbWriter, IsReadBackByTinyGltf) {
     const auto irradiance = attribute(model, m, "_IRRADIANCE");
     const auto error = attribute(model, m, "_STDERR");
     const auto direct = attribute(model, m, "_DIRECT");
+    const auto caustic = attribute(model, m, "_CAUSTIC");
     ASSERT_EQ(position.size(), 9U);
     for (std::size_t i = 0; i < 9; ++i) {
       const std::size_t v = vertices[m][i / 3];
@@ -68,6 +69,7 @@ TEST(GlbWriter, IsReadBackByTinyGltf) {
       EXPECT_EQ(irradiance[i], data.irradiance[3 * v + i % 3]);
       EXPECT_EQ(error[i], data.radiance_stderr[3 * v + i % 3]);
       EXPECT_EQ(direct[i], data.direct_radiance[3 * v + i % 3]);
+      EXPECT_EQ(caustic[i], data.caustic_radiance[3 * v + i % 3]);
       EXPECT_TRUE(colour[i] >= 0 && colour[i] <= 1);
     }
   }

@@ -65,6 +65,7 @@ TEST(PlyWriter, IsReadBackByOpenMesh) {
       EXPECT_EQ(at("irradiance"), data.irradiance[3 * v + c]);
       EXPECT_EQ(at("stderr"), data.radiance_stderr[3 * v + c]);
       EXPECT_EQ(at("direct"), data.direct_radiance[3 * v + c]);
+      EXPECT_EQ(at("caustic"), data.caustic_radiance[3 * v + c]);
     }
     const double luminance_cd_per_m2 = 179 * luminance(data.rgb(data.radiance, v));
     EXPECT_FLOAT_EQ(custom<float>(mesh, "quality", static_cast<int>(v)),

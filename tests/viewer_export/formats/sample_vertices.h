@@ -33,6 +33,8 @@ inline VertexData sample_vertices(const BandSet& bands, const Vec3& shift = Vec3
       data.irradiance.push_back(10 * n / 3);
       data.radiance_stderr.push_back(n / 300);
       data.direct_radiance.push_back(n / 7);
+      // The others are of rooms that bend no light.
+      if (bands.kind() == BandKind::kRgb) data.caustic_radiance.push_back(n / 11);
     }
   }
   data.triangles = {{0, 2, 4}, {1, 3, 5}, {0, 0, 2}};

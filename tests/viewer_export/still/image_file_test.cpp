@@ -41,6 +41,7 @@ StillImage sample_image(const BandSet& bands, int width = 5, int height = 3) {
   fill(image.radiance, count, 0.01F);
   fill(image.direct, count, 0.007F);
   fill(image.indirect, count, 0.003F);
+  if (bands.kind() == BandKind::kRgb) fill(image.caustic, count, 0.002F);
   fill(image.radiance_stderr, count, 1e-4F);
   fill(image.albedo, count, 1e-3F);
   fill(image.samples, 1, 1);
@@ -83,7 +84,7 @@ TEST(ExrWriter, HoldsAllLayersExactly) {
   const ReadImage read = read_image(folder / "a.exr");
   ASSERT_EQ(read.spec.width, 5);
   ASSERT_EQ(read.spec.height, 3);
-  EXPECT_EQ(read.spec.nchannels, 3 + 4 * 3 + 1 + 1 + 3);
+  EXPECT_EQ(read.spec.nchannels, 3 + 5 * 3 + 1 + 1 + 3);
   EXPECT_EQ(read.spec.format, OIIO::TypeDesc::FLOAT);
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -91,6 +92,7 @@ TEST(ExrWriter, HoldsAllLayersExactly) {
       EXPECT_EQ(read.at(pixel, name), image.radiance[3 * pixel + c]);
       EXPECT_EQ(read.at(pixel, "direct." + name), image.direct[3 * pixel + c]);
       EXPECT_EQ(read.at(pixel, "indirect." + name), image.indirect[3 * pixel + c]);
+      EXPECT_EQ(read.at(pixel, "caustic." + name), image.caustic[3 * pixel + c]);
       EXPECT_EQ(read.at(pixel, "stderr." + name), image.radiance_stderr[3 * pixel + c]);
       EXPECT_EQ(read.at(pixel, "albedo." + name), image.albedo[3 * pixel + c]);
       EXPECT_EQ(read.at(pixel, std::string("normal.") + "XYZ"[c]), image.normal[3 * pixel + c]);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/progressive_solver.h"
 #include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
@@ -42,7 +43,7 @@ TEST(SpecularStills, FurnaceIsEvenlyBright) {
       double sum = 0;
       for (std::size_t p = 0; p < 16; ++p) {
         const std::size_t pixel = half * 16 + p;
-        sum += static_cast<double>(image.direct[pixel] + image.indirect[pixel]) / 16;
+        sum += static_cast<double>(image.radiance[pixel]) / 16;
       }
       mean.add(sum);
     }
@@ -80,6 +81,48 @@ StillImage look_down(const NonDiffusePart& below, Integrator integrator, bool un
   settings.spp = spp;
   const std::atomic<bool> interrupt{false};
   return render_still(walls, solution, camera, settings, {}, interrupt);
+}
+
+TEST(SpecularStills, LightOverMirrorsIsALayerOfItsOwn) {
+  // Between mirrors a lamp of the size of the floor lights the ceiling as one without end would: E = 1, and
+  // what does not come straight from it comes over the mirrors.
+  RoomBuilder room;
+  const MaterialId mirror = room.material("mirror", 0);
+  room.scene().materials[mirror.index()].non_diffuse.specular_reflectance = Spectrum::Constant(1, 1.0);
+  const MaterialId lamp = room.material("lamp", 0, 1);
+  const MaterialId ceiling = room.material("ceiling", 0.5);
+  room.box(Vec3::Zero(), {1, 1.3, 0.7}, {mirror, mirror, mirror, mirror, lamp, ceiling}, 3);
+  Camera camera;
+  camera.eye = {0.5, 0.65, 0.35};
+  camera.look_at = {0.5, 0.65, 0.7};
+  camera.up = {0, 1, 0};
+  camera.vertical_fov_deg = 60;
+  SolverSettings solve;
+  solve.packets = 640'000;
+  solve.batch_packets = 20'000;
+  solve.threads = 2;
+  const std::atomic<bool> interrupt{false};
+  const Solution solution = solve_zones(room.scene(), room.mesh(), solve, nullptr, interrupt);
+  const Room walls(room.scene(), solution.mesh);
+  for (const Integrator integrator : {Integrator::kZones, Integrator::kGather, Integrator::kPath}) {
+    StillSettings settings;
+    settings.width = settings.height = 16;
+    settings.integrator = integrator;
+    settings.spp = 256;
+    settings.threads = 2;
+    const StillImage image = render_still(walls, solution, camera, settings, {}, interrupt);
+    MeanTest caustic;
+    for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+      // Zones read the parts of the solution one by one, but caustics of them all.
+      EXPECT_LT(image.indirect[p], integrator == Integrator::kZones ? 2e-4 : 1e-6) << to_string(integrator);
+      caustic.add(static_cast<double>(image.caustic[p] + image.direct[p]));
+      EXPECT_GT(image.caustic[p], 0) << to_string(integrator);
+      EXPECT_GT(image.direct[p], 0) << to_string(integrator);
+    }
+    const double truth = 0.5 / std::numbers::pi;
+    EXPECT_TRUE(caustic.agrees_with(truth)) << to_string(integrator) << " " << caustic.mean() << " " << truth;
+    EXPECT_TRUE(caustic.would_notice(0.02, truth)) << to_string(integrator);
+  }
 }
 
 TEST(SpecularStills, LampsAreSeenInMirrorsAndPanesWithTheirShare) {
