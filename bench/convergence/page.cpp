@@ -89,9 +89,10 @@ std::string factor_table(const std::vector<Curve>& vertices, const std::vector<C
   for (const double error : kErrors)
     text += factor_row(vertices, "vertices, rms", "cornell_box", "zones averaged", "gathered", error,
                        error == 0.02 ? "20" : "");
-  for (const char* room : {"cornell_box", "cornell_box grey"})
+  for (const char* room : {"cornell_box", "cornell_box grey", "mirrors", "glass", "gloss"})
     for (const double error : {0.05, 0.03, 0.02, 0.01})
-      text += factor_row(stills, "still, median", room, "path", "gather", error, error == 0.03 ? "8" : "");
+      text += factor_row(stills, "still, median", room, "path", "gather", error,
+                         error == 0.03 && std::string(room).starts_with("cornell") ? "8" : "");
   return text;
 }
 

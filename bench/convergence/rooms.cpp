@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -83,6 +84,14 @@ std::vector<StudiedRoom> find_rooms(const Options& options, Table& table) {
     office.picture_size = 96;  // its paths cost ten times those of the other rooms
     office.reference_samples = 2048;
     office.path_samples = {8, 32, 128};
+  }
+  for (const auto& [name, file] :
+       {std::pair("mirrors", "metals.json"), std::pair("glass", "caustic_ball.json"),
+        std::pair("gloss", "gloss.json")}) {
+    StudiedRoom& room =
+        add(name, std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/hit_paths/rooms" / file, 0);
+    room.stills_only = true;
+    room.reference_samples = 8192;
   }
   for (const char* name : {"scene3", "scene6"}) {
     const std::string file = fmt::format("erw5/{}.mgf", name);

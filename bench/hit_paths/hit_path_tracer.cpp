@@ -113,7 +113,7 @@ void HitPathTracer::add_lights(const RoomHit& hit, const Vec3& direction, const 
     const double distance = way.norm();
     const double cosine = hit.normal.dot(way) / distance;
     Spectrum value = rough_value(hit, direction, way / distance);
-    value += (cosine > 0 ? hit.material->reflectance : let_through(*hit.material)) / kPi;
+    value += (cosine > 0 ? reflected_diffusely(*hit.material, hit.front) : let_through(*hit.material)) / kPi;
     if (!(arriving.irradiance * value > 0).any()) return;
     const double share = 1 - std::min(0.5, clearance / distance);
     const Spectrum left = left_between({hit.point, hit.part}, hit.point + share * way);

@@ -19,8 +19,8 @@ struct Chances {
 };
 
 Chances chances(const Material& material, const SpecularShares& shares, bool front) {
-  Chances c{material.reflectance.maxCoeff(), let_through(material).maxCoeff(), shares.mirrored.maxCoeff(),
-            shares.crossing.maxCoeff()};
+  Chances c{reflected_diffusely(material, front).maxCoeff(), let_through(material).maxCoeff(),
+            shares.mirrored.maxCoeff(), shares.crossing.maxCoeff()};
   // Facets of rough glass let light through even where the surface as a whole would reflect it all.
   if (is_rough_across(material) && is_body(material))
     c.across = std::max(c.across, 0.5 * specular_shares(material, 0, front).crossing.maxCoeff());
@@ -63,7 +63,7 @@ std::optional<PathStep> next_step(const RoomHit& hit, const Vec3& direction, boo
   const double choice = sum > chance.spread ? sum * uniform(random) : 0;
   if (choice < chance.spread) {
     return PathStep{cosine_direction(hit.normal, random),
-                    material.reflectance * (sum / chance.spread / survival), true, false};
+                    reflected_diffusely(material, hit.front) * (sum / chance.spread / survival), true, false};
   }
   if (choice < chance.lambertian()) {
     return PathStep{cosine_direction(-hit.normal, random),

@@ -34,7 +34,10 @@ SpecularShares specular_shares(const Material& material, double angle, bool fron
   const Spectrum opal = let_through(material);
   const bool totally = part.is_solid && clear && refracted_angle(ratio, angle) < 0;
   for (Eigen::Index b = 0; b < bands; ++b) {
-    const double left = 1 - material.reflectance[b] - opal[b];  // by the Lambertian parts
+    // By the Lambertian parts; of the two sides the one that takes more.
+    const double taken =
+        std::max(reflected_diffusely(material, true)[b], reflected_diffusely(material, false)[b]);
+    const double left = 1 - taken - opal[b];
     double r = in_band(part.specular_reflectance, mirrors, b);
     double t = in_band(part.specular_transmittance, clear, b);
     switch (part.angle_law) {
@@ -73,6 +76,10 @@ SpecularShares specular_shares(const Material& material, double angle, bool fron
     if (clear) shares.crossing[b] = t;
   }
   return shares;
+}
+
+Spectrum reflected_diffusely(const Material& material, bool front) {
+  return !front && material.back_reflectance.size() > 0 ? material.back_reflectance : material.reflectance;
 }
 
 Spectrum let_through(const Material& material) {

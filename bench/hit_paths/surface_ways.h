@@ -14,6 +14,8 @@ struct SpecularShares {
 /// facet of it, worked out apart from the solver: mirrors, metals, clear sheets, panes and bodies of glass.
 SpecularShares specular_shares(const Material& material, double angle, bool front);
 
+/// By band, the share that a side reflects into all directions.
+Spectrum reflected_diffusely(const Material& material, bool front);
 /// By band, the share that is let through into all directions.
 Spectrum let_through(const Material& material);
 

@@ -68,6 +68,7 @@ void add_non_diffuse(Hasher& hash, const NonDiffusePart& part) {
 
 void add_material(Hasher& hash, const Material& m) {
   hash.add(m.reflectance);
+  if (m.back_reflectance.size() > 0) hash.add(m.back_reflectance);
   hash.add(m.emitted_radiance);
   hash.add(m.two_sided);
   hash.add(m.emits_both_sides);

@@ -63,6 +63,7 @@ struct NonDiffusePart {
 struct Material {
   std::string name;
   Spectrum reflectance;       ///< Diffuse (Lambertian) reflectance rho [0,1] per band; BRDF = rho/pi.
+  Spectrum back_reflectance;  ///< That of the back [0,1], if it differs; size 0 = it does not.
   Spectrum emitted_radiance;  ///< L_e [W/(m2 sr)] per band along the normal; all 0 = no luminaire.
   /// e in L_e(theta) = emitted_radiance cos^e(theta): 0 = Lambertian, larger = a narrower beam [0, 1e4].
   double emission_exponent = 0;
@@ -70,19 +71,27 @@ struct Material {
   bool emits_both_sides = false;  ///< Else only the front emits. Needs two_sided.
   NonDiffusePart non_diffuse;
 
+  const Spectrum& reflectance_of(bool front) const {
+    return front || back_reflectance.size() == 0 ? reflectance : back_reflectance;
+  }
   double diffuse_transmittance(std::size_t band) const {
     const Spectrum& tau = non_diffuse.diffuse_transmittance;
     return tau.size() > 0 ? tau[static_cast<Eigen::Index>(band)] : 0;
   }
-  /// Reflected and transmitted diffusely, by band.
-  Spectrum lambertian_share() const {
-    return non_diffuse.transmits_diffusely() ? Spectrum(reflectance + non_diffuse.diffuse_transmittance)
-                                             : reflectance;
+  /// Of the side that reflects more.
+  Spectrum largest_reflectance() const {
+    return back_reflectance.size() > 0 ? Spectrum(reflectance.max(back_reflectance)) : reflectance;
   }
-  /// Reflected and transmitted by band, all together. The tint of glass (kDielectric), as that of metals
-  /// (kConductor), is no share of its own.
+  /// Reflected and transmitted diffusely, by band, of the side that reflects more.
+  Spectrum lambertian_share() const {
+    return non_diffuse.transmits_diffusely()
+               ? Spectrum(largest_reflectance() + non_diffuse.diffuse_transmittance)
+               : largest_reflectance();
+  }
+  /// Reflected and transmitted by band, all together, of the side that reflects more. The tint of glass
+  /// (kDielectric), as that of metals (kConductor), is no share of its own.
   Spectrum share_of_light() const {
-    Spectrum sum = reflectance;
+    Spectrum sum = largest_reflectance();
     const Spectrum none;
     const bool is_tint = non_diffuse.angle_law == AngleLaw::kDielectric;
     const bool is_metal = non_diffuse.angle_law == AngleLaw::kConductor;

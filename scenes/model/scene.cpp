@@ -54,8 +54,9 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
     const Material& m = scene.materials[i];
     const NonDiffusePart& rest = m.non_diffuse;
     for (const Spectrum* s :
-         {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance, &rest.diffuse_transmittance,
-          &rest.specular_transmittance, &rest.absorption_per_m, &rest.metal_eta, &rest.metal_k})
+         {&m.reflectance, &m.back_reflectance, &m.emitted_radiance, &rest.specular_reflectance,
+          &rest.diffuse_transmittance, &rest.specular_transmittance, &rest.absorption_per_m, &rest.metal_eta,
+          &rest.metal_k})
       if (used[i] && s->size() > 0 && !is_grey(*s)) return;
   }
   for (const PunctualLight& light : scene.lights)
@@ -63,9 +64,9 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
 
   for (Material& m : scene.materials) {
     NonDiffusePart& rest = m.non_diffuse;
-    for (Spectrum* s :
-         {&m.reflectance, &m.emitted_radiance, &rest.specular_reflectance, &rest.diffuse_transmittance,
-          &rest.specular_transmittance, &rest.absorption_per_m, &rest.metal_eta, &rest.metal_k})
+    for (Spectrum* s : {&m.reflectance, &m.back_reflectance, &m.emitted_radiance, &rest.specular_reflectance,
+                        &rest.diffuse_transmittance, &rest.specular_transmittance, &rest.absorption_per_m,
+                        &rest.metal_eta, &rest.metal_k})
       reduce(*s, scene.bands);
   }
   for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);

@@ -128,6 +128,7 @@ void check_material(Material& m, Scene& scene, const std::string& where) {
     check_size(s, scene, where, what);
     check_fraction(s, where, what);
   };
+  check_rest(m.back_reflectance, "reflectance of the back");
   check_rest(rest.specular_reflectance, "specular reflectance");
   check_rest(rest.diffuse_transmittance, "diffuse transmittance");
   check_rest(rest.specular_transmittance, "specular transmittance");

@@ -49,7 +49,9 @@ void book_matrix_solution(const PacketRoom& transport, const PacketSources& emis
       const SurfaceId surface = transport.mesh().zone_surface(ZoneId(i));
       const double area = factors.zone_area(i);
       powers.absorbed[surface.index()] +=
-          area * (1 - transport.surface_model().reflectance(surface)[b]) * irradiance(row, column);
+          area *
+          (1 - transport.surface_model().reflectance(surface, transport.mesh().zone_is_front(ZoneId(i)))[b]) *
+          irradiance(row, column);
       powers.leak(area * radiosity(row, column) * std::max(0.0, 1 - row_sums(row)), factors.leaks().of(i));
     }
     for (const LuminaireLeak& loss : light_losses) powers.leak(std::max(0.0, loss.watts(column)), loss.leaks);

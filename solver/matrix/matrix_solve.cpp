@@ -91,8 +91,8 @@ ZonalSystem make_system(const PacketRoom& transport, const FormFactors& factors,
     system.areas(z) = factors.zone_area(zone.index());
     for (std::size_t b = 0; b < transport.bands(); ++b) {
       system.emitted(z, to_index(b)) = solution.emitted_radiosity(zone, b);
-      system.reflectance(z, to_index(b)) =
-          transport.surface_model().reflectance(transport.mesh().zone_surface(zone))[b];
+      system.reflectance(z, to_index(b)) = transport.surface_model().reflectance(
+          transport.mesh().zone_surface(zone), transport.mesh().zone_is_front(zone))[b];
     }
   }
   add_punctual_lights(transport, solution.settings.seed, system);

@@ -9,14 +9,17 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, double metr
   std::vector<bool> emits_both_sides;
   for (const Surface& surface : scene.surfaces) {
     const Material& m = scene.material_of(surface);
-    surfaces_.push_back(
-        {m.emitted_radiance, m.exitance(), m.reflectance.maxCoeff(), m.emission_exponent, m.emits()});
+    surfaces_.push_back({m.emitted_radiance, m.exitance(), m.emission_exponent, m.emits()});
     specular_.emplace_back(m, metres_per_unit);
     any_specular_ = any_specular_ || specular_.back().exists();
     any_transmits_ = any_transmits_ || specular_.back().transmits();
     emits_both_sides.push_back(m.emits_both_sides);
-    reflectance_.insert(reflectance_.end(), m.reflectance.begin(), m.reflectance.end());
-    for (const double x : m.reflectance) side_reflectance_.push_back(static_cast<float>(x));
+    for (const bool front : {true, false}) {
+      const Spectrum& rho = m.reflectance_of(front);
+      reflectance_.insert(reflectance_.end(), rho.begin(), rho.end());
+      for (const double x : rho) side_reflectance_.push_back(static_cast<float>(x));
+      largest_reflectance_.push_back(rho.maxCoeff());
+    }
     const Spectrum emitted = m.exitance() / std::numbers::pi;
     for (const double x : emitted) emitted_.push_back(static_cast<float>(x));
   }

@@ -25,12 +25,17 @@ class SurfaceModel {
   std::size_t band_count() const { return bands_; }
   std::size_t surface_count() const { return surfaces_.size(); }
 
-  /// Diffuse reflectance of a surface, one number per band [0,1], and the largest of them.
-  const double* reflectance(SurfaceId s) const { return &reflectance_[s.index() * bands_]; }
-  double largest_reflectance(SurfaceId s) const { return surfaces_[s.index()].largest_reflectance; }
+  /// Diffuse reflectance of a side of a surface, one number per band [0,1], and the largest of them. Backs
+  /// that absorb all light are not told apart.
+  const double* reflectance(SurfaceId s, bool front) const {
+    return &reflectance_[row_of(s.index(), front) * bands_];
+  }
+  double largest_reflectance(SurfaceId s, bool front) const {
+    return largest_reflectance_[row_of(s.index(), front)];
+  }
   /// The same of one side of a triangle; zero on backs that absorb.
   const float* reflectance(TriangleId t, bool front) const {
-    return side(t, front).reflects ? &side_reflectance_[surface_of(t) * bands_] : zero_.data();
+    return side(t, front).reflects ? &side_reflectance_[row_of(surface_of(t), front) * bands_] : zero_.data();
   }
 
   /// BRDF at x for light from direction `from` (unit), seen from x.towards.
@@ -104,7 +109,6 @@ class SurfaceModel {
  private:
   struct OfSurface {
     Spectrum normal_radiance, exitance;
-    double largest_reflectance;
     double emission_exponent;
     bool emits;
   };
@@ -114,6 +118,7 @@ class SurfaceModel {
   };
 
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
+  static std::size_t row_of(std::size_t surface, bool front) { return 2 * surface + (front ? 0 : 1); }
   std::size_t surface_of(TriangleId t) const { return surface_[t.index()]; }
   Lobe lobe_at(const SurfacePoint& x) const { return LambertLobe{reflectance(x.triangle, x.front)}; }
 
@@ -122,8 +127,9 @@ class SurfaceModel {
   bool any_transmits_ = false;
   std::vector<OfSurface> surfaces_;
   std::vector<SpecularSurface> specular_;  // by surface
-  std::vector<double> reflectance_;
-  std::vector<float> side_reflectance_;  // by surface, as reflectance_
+  std::vector<double> reflectance_;        // by surface and side (row_of)
+  std::vector<double> largest_reflectance_;
+  std::vector<float> side_reflectance_;  // as reflectance_
   std::vector<float> emitted_;           // by surface
   std::vector<std::uint32_t> surface_;   // of each triangle
   std::vector<Side> sides_;              // by side (mesh/zones/side.h)

@@ -83,7 +83,7 @@ class WayOut {
   bool takes_light(const Hit16& hits, int lane, bool crosses, ZoneId& next) {
     const SurfaceModel& surfaces = transport_.surface_model();
     const TriangleId t(hits.triangle[lane]);
-    const double kept = surfaces.reflectance(transport_.mesh().triangle(t).surface)[band_];
+    const double kept = surfaces.reflectance(surfaces.surface(t), hits.front[lane])[band_];
     if (!surfaces.is_specular(t, hits.front[lane])) return kept < 1;
     if (surfaces.specular(t).is_rough()) return true;  // no lobe keeps all light
     SpecularStep at_normal(transport_.bands());
@@ -133,7 +133,8 @@ void refuse_closed_perfect_reflector(const PacketRoom& transport, const PacketSo
   for (std::size_t b = 0; b < bands; ++b) {
     bool any_perfect = false;
     for (std::size_t s = 0; s < transport.surfaces(); ++s)
-      any_perfect = any_perfect || transport.surface_model().reflectance(SurfaceId(s))[b] >= 1;
+      for (const bool front : {true, false})
+        any_perfect = any_perfect || transport.surface_model().reflectance(SurfaceId(s), front)[b] >= 1;
     any_perfect = any_perfect || transport.surface_model().any_specular();
     if (!any_perfect) continue;
     WayOut way_out(transport, b, seed);

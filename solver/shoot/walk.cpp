@@ -218,8 +218,8 @@ class WalkTask {
                const BitLanes& bits) {
     const auto k = static_cast<std::size_t>(lane);
     const std::int64_t* quanta = &block.power[k * bands_];
-    const double* rho = transport_.surface_model().reflectance(surface);
-    double survival = transport_.surface_model().largest_reflectance(surface);
+    const double* rho = transport_.surface_model().reflectance(surface, hits_.front[lane]);
+    double survival = transport_.surface_model().largest_reflectance(surface, hits_.front[lane]);
     std::int64_t* absorbed = &absorbed_[surface.index() * bands_];
     const float u = low_bytes_to_unit(bits, k);
     const double on = specular_.any() ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;

@@ -12,30 +12,56 @@ constexpr std::size_t kGroups = ZoneSums::kGroups;
 /// Means over a set of zones of one material, per band.
 struct GroupedMean {
   explicit GroupedMean(std::size_t bands)
-      : emitted(Spectrum::Zero(static_cast<Eigen::Index>(bands))), irradiance(emitted) {
-    groups.fill(emitted);
+      : emitted(Spectrum::Zero(static_cast<Eigen::Index>(bands))), scatters(emitted) {
+    groups.fill({emitted, emitted});
+    all = groups[0];
   }
 
-  bool dark() const { return (irradiance == 0).all() && (emitted == 0).all(); }
+  bool dark() const { return (all.irradiance == 0).all() && (emitted == 0).all(); }
 
   /// Adds the zones of another set.
   void merge(const GroupedMean& other) {
-    const double all = area + other.area;
-    if (!(all > 0)) return;
+    const double both = area + other.area;
+    if (!(both > 0)) return;
     const auto weigh = [&](Spectrum& own, const Spectrum& added) {
-      own = (area * own + other.area * added) / all;
+      own = (area * own + other.area * added) / both;
     };
     weigh(emitted, other.emitted);
-    weigh(irradiance, other.irradiance);
-    for (std::size_t g = 0; g < kGroups; ++g) weigh(groups[g], other.groups[g]);
-    area = all;
+    weigh(scatters, other.scatters);
+    const auto weigh_light = [&](Light& own, const Light& added) {
+      weigh(own.irradiance, added.irradiance);
+      weigh(own.scattered, added.scattered);
+    };
+    weigh_light(all, other.all);
+    for (std::size_t g = 0; g < kGroups; ++g) weigh_light(groups[g], other.groups[g]);
+    area = both;
   }
 
-  double area = 0;                       // [m2]
-  Spectrum emitted;                      // by the zones themselves [W/m2]
-  Spectrum irradiance;                   // of all batches [W/m2]
-  std::array<Spectrum, kGroups> groups;  // irradiance of each group of batches [W/m2]
+  struct Light {
+    Spectrum irradiance;  // [W/m2]
+    Spectrum scattered;   // reflected, and let through from the other side [W/m2]
+  };
+  double area = 0;                    // [m2]
+  Spectrum emitted;                   // by the zones themselves [W/m2]
+  Spectrum scatters;                  // 0 where no light is reflected or let through
+  Light all;                          // of all batches
+  std::array<Light, kGroups> groups;  // of each group of batches
 };
+
+/// Fills in what the sides of a surface scatter of their own irradiance and that of the other.
+void scatter(const Material& material, GroupedMean& side, const GroupedMean& other, bool front) {
+  const Spectrum& rho = material.reflectance_of(front);
+  const Spectrum& tau = material.non_diffuse.diffuse_transmittance;
+  const bool lets_through = tau.size() > 0 && other.area > 0;
+  const auto fill = [&](GroupedMean::Light& light, const GroupedMean::Light& behind) {
+    light.scattered = rho * light.irradiance;
+    if (lets_through) light.scattered += tau * behind.irradiance;
+  };
+  fill(side.all, other.all);
+  for (std::size_t g = 0; g < kGroups; ++g) fill(side.groups[g], other.groups[g]);
+  side.scatters = rho;
+  if (lets_through) side.scatters += tau;
+}
 
 /// Index surface * 2 + (0 front, 1 back); of area 0 where a side has no zones.
 std::vector<GroupedMean> gather_sides(const Solution& solution) {
@@ -62,16 +88,19 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
       side.emitted[static_cast<Eigen::Index>(b)] = solution.emitted_radiosity(ZoneId(z), b);
   }
   add_up([&](std::size_t i) { return sums.total(i); },
-         [](GroupedMean& side) -> Spectrum& { return side.irradiance; });
+         [](GroupedMean& side) -> Spectrum& { return side.all.irradiance; });
   for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
     add_up([&](std::size_t i) { return static_cast<double>(sums.group_total[g * values + i]); },
-           [g](GroupedMean& side) -> Spectrum& { return side.groups[g]; });
+           [g](GroupedMean& side) -> Spectrum& { return side.groups[g].irradiance; });
   for (GroupedMean& side : sides) {
     if (!(side.area > 0)) continue;
-    if (sums.batches > 0) side.irradiance /= side.area * static_cast<double>(sums.weight());
+    if (sums.batches > 0) side.all.irradiance /= side.area * static_cast<double>(sums.weight());
     for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
-      side.groups[g] /= side.area * static_cast<double>(sums.group_weight[g]);
+      side.groups[g].irradiance /= side.area * static_cast<double>(sums.group_weight[g]);
   }
+  for (std::size_t s = 0; s < sides.size(); ++s)
+    scatter(solution.materials[solution.surface_materials[s / 2].index()], sides[s], sides[s ^ 1U],
+            s % 2 == 0);
   return sides;
 }
 
@@ -88,11 +117,11 @@ struct GroupWeights {
   double of_squares = 0;
 };
 
-/// `value_of` is linear in the irradiance, but for a constant: it takes the mean or that of a group. The
-/// error is that of a ratio estimate, as ZoneSums has it for batches.
+/// `value_of` is linear in the light, but for a constant: it takes the mean or that of a group. The error is
+/// that of a ratio estimate, as ZoneSums has it for batches.
 template <class Function>
 Estimate estimate(const ZoneSums& sums, const GroupedMean& light, Function&& value_of) {
-  const double mean = value_of(light.irradiance);
+  const double mean = value_of(light.all);
   if (sums.batches == 0) return {mean, 0};
   if (sums.batches == 1) return {mean, std::numeric_limits<double>::infinity()};
   const GroupWeights weights(sums);
@@ -104,23 +133,24 @@ Estimate estimate(const ZoneSums& sums, const GroupedMean& light, Function&& val
   return {mean, std::sqrt(squares / (weights.sum * weights.sum - weights.of_squares))};
 }
 
-MeanLight finished(const Solution& solution, const Material& material, const GroupedMean& grouped) {
+MeanLight finished(const Solution& solution, const GroupedMean& grouped) {
+  using Light = GroupedMean::Light;
   const Spectrum& efficacy = solution.bands.efficacy_lm_per_w();
-  const Spectrum& rho = material.reflectance;
   const auto of = [&](auto&& value_of) { return estimate(solution.sums, grouped, value_of); };
   MeanLight light;
   light.area = grouped.area;
   for (Eigen::Index b = 0; b < efficacy.size(); ++b) {
-    light.irradiance.push_back(of([&](const Spectrum& e) { return e[b]; }));
+    light.irradiance.push_back(of([&](const Light& e) { return e.irradiance[b]; }));
     // A black surface reflects nothing however little is known about its irradiance.
     const double own = grouped.emitted[b];
-    light.exitance.push_back(rho[b] > 0 ? of([&](const Spectrum& e) { return own + rho[b] * e[b]; })
-                                        : Estimate{own, 0});
+    light.exitance.push_back(grouped.scatters[b] > 0
+                                 ? of([&](const Light& e) { return own + e.scattered[b]; })
+                                 : Estimate{own, 0});
   }
-  light.illuminance = of([&](const Spectrum& e) { return (efficacy * e).sum(); });
+  light.illuminance = of([&](const Light& e) { return (efficacy * e.irradiance).sum(); });
   const double own = (efficacy * grouped.emitted).sum();
-  light.luminous_exitance = (rho > 0).any()
-                                ? of([&](const Spectrum& e) { return own + (efficacy * rho * e).sum(); })
+  light.luminous_exitance = (grouped.scatters > 0).any()
+                                ? of([&](const Light& e) { return own + (efficacy * e.scattered).sum(); })
                                 : Estimate{own, 0};
   return light;
 }
@@ -139,12 +169,10 @@ RoomLight mean_light(const Solution& solution) {
       if (!(side.area > 0)) continue;
       const bool counts = dark ? front : !side.dark();
       if (counts) by_material[material.index()].merge(side);
-      room.sides.push_back(
-          {SurfaceId(s), front, counts, finished(solution, solution.materials[material.index()], side)});
+      room.sides.push_back({SurfaceId(s), front, counts, finished(solution, side)});
     }
   }
-  for (std::size_t m = 0; m < by_material.size(); ++m)
-    room.materials.push_back(finished(solution, solution.materials[m], by_material[m]));
+  for (const GroupedMean& material : by_material) room.materials.push_back(finished(solution, material));
   const GroupWeights weights(solution.sums);
   if (solution.sums.batches > 1) room.degrees_of_freedom = weights.sum * weights.sum / weights.of_squares - 1;
   return room;

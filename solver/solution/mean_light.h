@@ -11,9 +11,9 @@ namespace reemit {
 struct MeanLight {
   double area = 0;                   ///< [m2]
   std::vector<Estimate> irradiance;  ///< Per band [W/m2].
-  std::vector<Estimate> exitance;    ///< Reflected and emitted, per band [W/m2].
+  std::vector<Estimate> exitance;    ///< Reflected, let through diffusely and emitted, per band [W/m2].
   Estimate illuminance;              ///< [lx]
-  Estimate luminous_exitance;        ///< Reflected and emitted [lm/m2].
+  Estimate luminous_exitance;        ///< The same [lm/m2].
 };
 
 /// The light on one side of a surface.

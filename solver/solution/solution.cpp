@@ -168,7 +168,7 @@ Estimate Solution::transmitted(ZoneId z, std::size_t band, Irradiance of) const 
 }
 
 Estimate Solution::scattered(ZoneId z, std::size_t band, Irradiance of) const {
-  const double reflectance = zone_material(z).reflectance[to_index(band)];
+  const double reflectance = zone_reflectance(z)[to_index(band)];
   const Estimate e = (this->*of)(z, band);
   const Estimate through = transmitted(z, band, of);
   // A black zone reflects nothing however little is known about its irradiance.

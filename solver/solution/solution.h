@@ -160,6 +160,9 @@ struct Solution {
   const Material& zone_material(ZoneId z) const {
     return materials[surface_materials[mesh.zone_surface(z).index()].index()];
   }
+  const Spectrum& zone_reflectance(ZoneId z) const {
+    return zone_material(z).reflectance_of(mesh.zone_is_front(z));
+  }
   double emitted_radiosity(ZoneId z,
                            std::size_t band) const;  ///< M_e = pi L_e of the side the zone is on [W/m2].
   using Irradiance = Estimate (Solution::*)(ZoneId, std::size_t) const;

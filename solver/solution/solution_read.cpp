@@ -113,6 +113,9 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
   const auto reflectance = group.read<double>("reflectance", {count, bands});
   const auto emitted = group.read<double>("emitted_radiance", {count, bands});
   const auto exponent = group.read<double>("emission_exponent", {count});
+  const auto back = group.has_dataset("back_reflectance")
+                        ? group.read<double>("back_reflectance", {count, bands})
+                        : reflectance;
   const bool any_translucent = group.has_dataset("diffuse_transmittance");
   const auto through = any_translucent ? group.read<double>("diffuse_transmittance", {count, bands})
                                        : std::vector<double>(count * bands, 0.0);
@@ -122,6 +125,7 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
     return [low, high](double x) { return x >= low && x <= high; };
   };
   require(std::all_of(reflectance.begin(), reflectance.end(), in_range(0, 1)), "reflectance outside [0,1]");
+  require(std::all_of(back.begin(), back.end(), in_range(0, 1)), "reflectance of a back outside [0,1]");
   require(std::all_of(through.begin(), through.end(), in_range(0, 1)), "diffuse transmittance outside [0,1]");
   require(std::all_of(emitted.begin(), emitted.end(), in_range(0, std::numeric_limits<double>::max())),
           "negative or infinite emission");
@@ -131,6 +135,8 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
     Material material;
     material.name = names[m];
     material.reflectance = Spectrum::Map(reflectance.data() + m * bands, size);
+    const auto of_back = Spectrum::Map(back.data() + m * bands, size);
+    if ((of_back != material.reflectance).any()) material.back_reflectance = of_back;
     material.emitted_radiance = Spectrum::Map(emitted.data() + m * bands, size);
     material.emission_exponent = exponent[m];
     const auto row = Spectrum::Map(through.data() + m * bands, size);

@@ -152,6 +152,12 @@ void write_surfaces(const Hdf5Group& root, const Solution& solution) {
                               [](const Material& m) -> const Spectrum& { return m.reflectance; }),
             bands, "1", "diffuse reflectance");
   if (std::any_of(solution.materials.begin(), solution.materials.end(),
+                  [](const Material& m) { return m.back_reflectance.size() > 0; }))
+    put_bands(materials, "back_reflectance",
+              flattened<double>(solution.materials,
+                                [](const Material& m) -> const Spectrum& { return m.reflectance_of(false); }),
+              bands, "1", "diffuse reflectance of the back");
+  if (std::any_of(solution.materials.begin(), solution.materials.end(),
                   [](const Material& m) { return m.non_diffuse.transmits_diffusely(); })) {
     std::vector<double> through;
     for (const Material& m : solution.materials)

@@ -151,7 +151,8 @@ std::vector<BandError> band_errors(const SurfaceModel& surfaces, const ZoneMesh&
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     for (std::size_t z = chunk * kChunk; z < std::min(zones, (chunk + 1) * kChunk); ++z) {
       const double area = mesh.zone_area(ZoneId(z));
-      const double* reflectance = surfaces.reflectance(mesh.zone_surface(ZoneId(z)));
+      const double* reflectance =
+          surfaces.reflectance(mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
       for (std::size_t b = 0; b < bands; ++b) {
         const std::size_t i = z * bands + b;
         const double mean = sums.total(i) / w;

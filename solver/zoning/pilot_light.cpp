@@ -25,9 +25,11 @@ constexpr double kMostReflectance = 0.9;
 Scene dimmed(Scene scene) {
   for (Material& material : scene.materials) {
     material.reflectance = material.reflectance.min(kMostReflectance);
+    if (material.back_reflectance.size() > 0)
+      material.back_reflectance = material.back_reflectance.min(kMostReflectance);
     if (material.non_diffuse.transmits_diffusely())
       material.non_diffuse.diffuse_transmittance =
-          material.non_diffuse.diffuse_transmittance.min(kMostReflectance - material.reflectance);
+          material.non_diffuse.diffuse_transmittance.min(kMostReflectance - material.largest_reflectance());
   }
   return scene;
 }

@@ -63,7 +63,9 @@ std::vector<std::pair<const char*, std::size_t>> repairs(const MeshReport& repor
 
 std::string sides_text(const Material& material) {
   if (material.emits_both_sides) return "both, both emit";
-  return material.two_sided ? "both" : "front";
+  if (!material.two_sided) return "front";
+  if (material.back_reflectance.size() == 0) return "both";
+  return fmt::format("both, rho of the back {:.3g}", fmt::join(material.back_reflectance, " "));
 }
 
 std::string materials_text(const Scene& scene) {
@@ -200,6 +202,7 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
     json["materials"].push_back(
         {{"name", material.name},
          {"reflectance", spectrum_json(material.reflectance)},
+         {"back_reflectance", spectrum_json(material.reflectance_of(false))},
          {"specular_reflectance", spectrum_json(material.non_diffuse.specular_reflectance)},
          {"specular_transmittance", spectrum_json(material.non_diffuse.specular_transmittance)},
          {"emitted_radiance_W_sr_m2", spectrum_json(material.emitted_radiance)},

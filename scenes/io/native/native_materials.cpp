@@ -139,10 +139,10 @@ Spectrum radiance_of_exitance(const Spectrum& exitance, const Material& material
 
 NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
   for (const auto& [name, at] : materials.members()) {
-    at.expect_object({"reflectance", "radiance", "exitance", "luminance_cd_m2", "exitance_lm_m2",
-                      "total_power", "total_flux_lm", "emission_color", "emission_exponent", "sides",
-                      "emission_sides", "mirror", "metal", "transmittance", "diffuse_transmittance", "glass",
-                      "roughness", "lobe"});
+    at.expect_object({"reflectance", "back_reflectance", "radiance", "exitance", "luminance_cd_m2",
+                      "exitance_lm_m2", "total_power", "total_flux_lm", "emission_color", "emission_exponent",
+                      "sides", "emission_sides", "mirror", "metal", "transmittance", "diffuse_transmittance",
+                      "glass", "roughness", "lobe"});
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;
     material.name = name;
@@ -150,6 +150,13 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
     material.emitted_radiance = material.reflectance;
     if (const auto reflectance = at.find("reflectance")) {
       material.reflectance = read_reflectance(*reflectance, scene.bands);
+    }
+    if (const auto back = at.find("back_reflectance")) {
+      material.back_reflectance = read_reflectance(*back, scene.bands);
+      const auto sides = at.find("sides");
+      if (sides && sides->choice({"both", "front"}) == "front")
+        back->fail("the back of this material absorbs everything",
+                   "Remove \"back_reflectance\", or \"sides\": \"front\".");
     }
     read_specular(at, scene.bands, material);
     read_gloss(at, material.non_diffuse);

@@ -64,6 +64,7 @@ TEST(NativeMaterials, MirrorsAndGlass) {
   EXPECT_NEAR(part(6).metal_eta[2], 1.1584, 1e-4) << "between samples at 442.8 and 476.9 nm";
   EXPECT_EQ(part(7).metal_eta[2], 3);
   EXPECT_EQ(part(7).metal_k[1], 4);
+  EXPECT_EQ(scene.materials[4].reflectance_of(false)[0], 0.0);
 }
 
 TEST(NativeMaterials, RefuseWhatCannotBe) {
@@ -71,6 +72,9 @@ TEST(NativeMaterials, RefuseWhatCannotBe) {
     expect_refused(with_material(material, kBox), parts);
   };
   refused(R"({"reflectance": 0.6, "mirror": 0.5})", {"#/materials/m", "1.1", "at most 1"});
+  refused(R"({"reflectance": 0.1, "back_reflectance": 0.6, "mirror": 0.5})", {"#/materials/m", "1.1"});
+  refused(R"({"back_reflectance": 1.1})", {"#/materials/m/back_reflectance", "from 0 to 1"});
+  refused(R"({"back_reflectance": 0.5, "sides": "front"})", {"#/materials/m/back_reflectance", "absorbs"});
   refused(R"({"mirror": 1.2})", {"#/materials/m/mirror", "1.2", "from 0 to 1"});
   refused(R"({"mirror": 0.5, "metal": 0.5})", {"#/materials/m/metal", "already a mirror"});
   refused(R"({"glass": {"ior": 0.9}})", {"#/materials/m/glass/ior", "0.9"});

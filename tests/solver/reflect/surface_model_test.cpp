@@ -44,8 +44,8 @@ class Surfaces : public testing::Test {
 TEST_F(Surfaces, KnowWhatEachSideReflects) {
   EXPECT_EQ(surfaces().surface_count(), 3U);
   EXPECT_EQ(surfaces().band_count(), 3U);
-  EXPECT_EQ(surfaces().reflectance(SurfaceId(0))[1], 0.4);
-  EXPECT_EQ(surfaces().largest_reflectance(SurfaceId(1)), 0.9);
+  EXPECT_EQ(surfaces().reflectance(SurfaceId(0), true)[1], 0.4);
+  EXPECT_EQ(surfaces().largest_reflectance(SurfaceId(1), true), 0.9);
   EXPECT_EQ(surfaces().reflectance(TriangleId(0), true)[2], 0.6F);
   EXPECT_EQ(surfaces().reflectance(TriangleId(0), false)[2], 0.0F) << "the back of a one-sided face absorbs";
   EXPECT_EQ(surfaces().reflectance(TriangleId(1), false)[0], 0.1F);
@@ -90,7 +90,7 @@ TEST_F(Surfaces, ReflectTheirReflectanceAndAreReciprocal) {
     }
   }
   for (std::size_t b = 0; b < 3; ++b)
-    EXPECT_NEAR(albedo[b], surfaces().reflectance(SurfaceId(1))[b], 1e-6) << b;
+    EXPECT_NEAR(albedo[b], surfaces().reflectance(SurfaceId(1), true)[b], 1e-6) << b;
 }
 
 TEST_F(Surfaces, SampleByTheDensityTheyState) {

@@ -12,6 +12,7 @@
 #include "solver/gather/path_tracer.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "solver/solution/mean_light.h"
 #include "tests/solver/shoot/methods.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/mean_test.h"
@@ -153,6 +154,39 @@ TEST(SpecularRooms, OpalSheetBetweenPlates) {
       area += s.mesh.zone_area(ZoneId(z));
     }
     EXPECT_NEAR(sent / area, mean_irradiance(s, kFloor).mean(), 0.01 * sent / area);
+    expect_closed_books(s);
+  }
+}
+
+TEST(SpecularRooms, SheetsWhoseSidesReflectDifferently) {
+  // As before, with r = 0.35 on the front, which the lit plate sees, and q = 0.1 on the back:
+  // h1 = r t + tau b, h2 = tau t + q b, t = E1 + r1 h1, b = r2 h2.
+  constexpr double kFront = 0.35, kBack = 0.1, kThrough = 0.55, kLit = 0.8, kOther = 0.3, kExitance = 10;
+  const double back = kOther * kThrough / (1 - kOther * kBack);  // b / t
+  const double top = kExitance / (1 - kLit * (kFront + kThrough * back));
+  RoomBuilder room = plates(plate(kOther, 0), plate(kLit, kExitance));
+  const MaterialId opal = room.material("opal", kFront, 0, true);
+  Material& sheet = room.scene().materials[opal.index()];
+  sheet.back_reflectance = one_band(kBack);
+  sheet.non_diffuse.diffuse_transmittance = one_band(kThrough);
+  room.quad(opal, {Vec3(0, 0, 0.3), Vec3(1, 0, 0.3), Vec3(1, 1.3, 0.3), Vec3(0, 1.3, 0.3)}, 2);
+  constexpr std::size_t kSheet = 6;
+  for (const SolveMethod method : kMethods) {
+    const Solution s = solved(room, method, 640'000);
+    EXPECT_TRUE(is_at(mean_irradiance(s, kSheet, true), top));
+    EXPECT_TRUE(is_at(mean_irradiance(s, kSheet, false), back * top));
+    EXPECT_TRUE(is_at(mean_irradiance(s, kCeiling), kFront * top + kThrough * back * top));
+    EXPECT_TRUE(is_at(mean_irradiance(s, kFloor), kThrough * top + kBack * back * top));
+    EXPECT_FALSE(is_at(mean_irradiance(s, kFloor), 1.02 * (kThrough + kBack * back) * top))
+        << "a bias of 2 % went unseen";
+    const RoomLight light = mean_light(s);
+    for (const SideLight& side : light.sides) {
+      if (side.surface.index() != kSheet) continue;
+      const double sent =
+          side.front ? kFront * top + kThrough * back * top : kThrough * top + kBack * back * top;
+      EXPECT_NEAR(side.light.exitance[0].mean, sent, 5 * side.light.exitance[0].stderr_of_mean);
+      EXPECT_LT(side.light.exitance[0].stderr_of_mean, 0.004 * sent);
+    }
     expect_closed_books(s);
   }
 }
