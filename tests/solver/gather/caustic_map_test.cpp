@@ -97,7 +97,7 @@ MeanTest over_truth(const std::vector<Vec3>& points, bool screen = false) {
   return mean;
 }
 
-TEST(CausticMap, MirrorShowsTheLampBehindIt) {
+TEST(CausticPower, MirrorShowsTheLampBehindIt) {
   std::vector<Vec3> points;
   for (int i = 0; i < 24; ++i)
     for (int j = 0; j < 24; ++j) points.emplace_back(0.4 + 0.14 * i, -1.7 + 0.14 * j, 0);
@@ -115,7 +115,7 @@ TEST(CausticMap, LosesNothingWhereAFaceEnds) {
   EXPECT_LT(mean.standard_error(), 0.02);
 }
 
-TEST(CausticMap, DoesNotReadThroughWhatStandsOnAFace) {
+TEST(CausticPower, DoesNotReadThroughWhatStandsOnAFace) {
   std::vector<Vec3> before;
   for (int i = 0; i < 300; ++i) before.emplace_back(kScreenAt - 0.03, -1.8 + 3.6 * i / 299, 0);
   const MeanTest lit = over_truth(before, true);
@@ -156,7 +156,7 @@ RoomBuilder room_with_bulb(bool glass) {
   return room;
 }
 
-TEST(CausticMap, LampInsideOfGlassSendsItsPower) {
+TEST(CausticPower, LampInsideOfGlassSendsItsPower) {
   // All its rays meet the glass within 20 degrees of upright, and what is mirrored there comes back to it: it
   // looks n times as large, n^2 times darker, and loses ((n-1)/(n+1))^2.
   constexpr double kLeft = 0.96;
