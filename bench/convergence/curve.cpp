@@ -8,6 +8,14 @@ namespace reemit::bench {
 namespace {
 
 constexpr double kBelievedShare = 0.5;
+/// Exponent of the work below which the last two points fall like noise that nothing stays of.
+constexpr double kOfNoise = -0.45;
+
+bool still_falls_like_noise(const std::vector<CurvePoint>& curve) {
+  const CurvePoint& before = curve[curve.size() - 2];
+  const CurvePoint& last = curve.back();
+  return std::log(last.error / before.error) < kOfNoise * std::log(last.work / before.work);
+}
 
 double log_log_time(const CurvePoint& before, const CurvePoint& after, double error) {
   const double share = std::log(before.error / error) / std::log(before.error / after.error);
@@ -41,7 +49,7 @@ double remaining_error(const std::vector<CurvePoint>& curve) {
     b1 += b;
   }
   const double determinant = aa * bb - ab * ab;
-  if (curve.size() < 2 || determinant <= 1e-12 * aa * bb) return 0;
+  if (curve.size() < 2 || determinant <= 1e-12 * aa * bb || still_falls_like_noise(curve)) return 0;
   const double left2 = (a1 * bb - b1 * ab) / determinant;
   const double left = std::sqrt(std::max(0.0, left2));
   // No more can stay than was left at the best point; a little may be the chance of a few runs.

@@ -44,7 +44,8 @@ struct TimeToError {
 TimeToError time_to_error(const std::vector<CurvePoint>& curve, double error);
 
 /// The part of the error that stays, as described above; 0 where it is less than half of the least error:
-/// that little cannot be told from chance.
+/// that little cannot be told from chance. 0 too where the error still falls with about the root of the work
+/// between the last two points: medians of few samples fall slower than that at first.
 double remaining_error(const std::vector<CurvePoint>& curve);
 
 /// Slope of log(error) over log(work) by least squares; nothing with fewer than two different amounts of

@@ -70,6 +70,12 @@ TEST(TimeToError, ACurveSteeperThanOneHalfIsExtrapolatedWithOneHalf) {
   EXPECT_NEAR(found.seconds, 64, 1e-6);
 }
 
+TEST(TimeToError, NothingStaysOfACurveThatFellSlowlyAtFirstOnly) {
+  const std::vector<CurvePoint> curve{{0.6, 8, 0.147}, {2.3, 32, 0.091}, {9, 128, 0.0463}};
+  EXPECT_EQ(remaining_error(curve), 0);
+  EXPECT_NEAR(time_to_error(curve, 0.03).seconds, 9 * (0.0463 * 0.0463) / (0.03 * 0.03), 1e-6);
+}
+
 TEST(TimeToError, OnePointIsExtrapolatedToo) {
   const TimeToError found = time_to_error({{2, 1, 0.1}}, 0.05);
   EXPECT_EQ(found.reach, Reach::kExtrapolated);
