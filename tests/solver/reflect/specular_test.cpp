@@ -154,6 +154,21 @@ TEST(SpecularSurface, MetalsReflectMoreAtGrazingAngles) {
   EXPECT_NEAR(shares_at(metal, 60).reflected[0], 0.6 + 0.3 / 32, 1e-6);
 }
 
+TEST(SpecularSurface, MetalsReflectWhatTheirIndexOfRefractionSays) {
+  constexpr double kEta = 0.958, kK = 6.69, kDiffuse = 0.1;
+  NonDiffusePart part = mirror(1, AngleLaw::kConductor);
+  part.metal_eta = Spectrum::Constant(1, kEta);
+  part.metal_k = Spectrum::Constant(1, kK);
+  const SpecularSurface metal(material_of(kDiffuse, part), 1);
+  const double normal = ((kEta - 1) * (kEta - 1) + kK * kK) / ((kEta + 1) * (kEta + 1) + kK * kK);
+  EXPECT_NEAR(shares_at(metal, 0).reflected[0], (1 - kDiffuse) * normal, 2e-6);
+  EXPECT_NEAR(shares_at(metal, 90).reflected[0], 1 - kDiffuse, 2e-6);
+  for (const double angle : {30.0, 60.0, 80.0}) {
+    const double truth = fresnel_of_metal(kEta, kK, std::cos(angle * kDegree)).mean();
+    EXPECT_NEAR(shares_at(metal, angle).reflected[0], (1 - kDiffuse) * truth, 2e-6) << angle;
+  }
+}
+
 TEST(SpecularSurface, RaysAreBentBySnellsLawAndComeBackTheSameWay) {
   const SpecularSurface body(material_of(0, glass(1.5, true)), 1);
   for (const double angle : {0.0, 20.0, 50.0, 80.0}) {
