@@ -4,12 +4,14 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include <tbb/parallel_for.h>
 
 #include "solver/gather/light_spread.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/gather/replicate_gather.h"
+#include "solver/gather/seen_light.h"
 #include "solver/reflect/lambert.h"
 
 namespace reemit {
@@ -23,8 +25,12 @@ constexpr double kUneven = 1;
 constexpr double kBright = 16;
 /// Zones darker than this in direct light, over the mean of the room, are not looked at.
 constexpr double kDim = 0.25;
+/// Share of the light that gather rays read, by which zones whose seen part is brighter than their mean may
+/// mislead them in all, and zones whose seen part is darker: the zones with the largest differences are
+/// uneven until the others stay below it. About the noise of the look in a room without such zones.
+constexpr double kMisread = 0.002;
 /// Share of the area that gather rays are continued from at most: bounds what that costs.
-constexpr double kMostArea = 0.05;
+constexpr double kMostArea = 0.2;
 /// Points per zone and shadow rays per point of each of two halves: of all zones, and of those that the first
 /// look leaves in doubt.
 struct Look {
@@ -63,8 +69,10 @@ std::vector<double> mean_radiance(const RadianceField& field) {
 /// Looks at zones; the room's mean is the measure.
 class Looker {
  public:
-  Looker(const RadianceField& field, const DirectLight& direct, std::uint64_t seed)
-      : room_(field.room()), field_(field), direct_(direct), seed_(seed), mean_(mean_radiance(field)) {}
+  /// `mean`: reflected radiance of the room, by band.
+  Looker(const RadianceField& field, const DirectLight& direct, std::span<const double> mean,
+         std::uint64_t seed)
+      : room_(field.room()), field_(field), direct_(direct), seed_(seed), mean_(mean) {}
 
   Spread look(ZoneId zone, const Look& effort) const {
     const std::size_t bands = field_.band_count();
@@ -115,12 +123,56 @@ class Looker {
   const RadianceField& field_;
   const DirectLight& direct_;
   std::uint64_t seed_;
-  std::vector<double> mean_;
+  std::span<const double> mean_;
 };
 
-bool exceeds(const Spread& spread, double share) {
-  return spread.variance > share * share * kUneven * kUneven || spread.mean > share * kBright;
+/// Over the limits: from 1 on a zone is uneven.
+double unevenness(const Spread& spread) {
+  return std::max(std::sqrt(std::max(spread.variance, 0.0)) / kUneven, spread.mean / kBright);
 }
+
+/// What gather rays read in all of the zones, and by how much of it they are misled: areas times radiance
+/// over the room's mean.
+class Misreading {
+ public:
+  Misreading(const RadianceField& field, const std::vector<double>& mean,
+             const std::vector<SeenLight::Zone>& seen)
+      : mesh_(field.room().mesh()), seen_(seen) {
+    for (std::size_t z = 0; z < seen.size(); ++z) {
+      const float* radiance = field.reflected(ZoneId(z));
+      for (std::size_t b = 0; b < mean.size(); ++b)
+        if (mean[b] > 0)
+          read_ += weight(z) * static_cast<double>(radiance[b]) / (mean[b] * static_cast<double>(mean.size()));
+    }
+  }
+
+  /// Raises harm[z] to the difference in those of the zones of one sign that have to be continued, so that
+  /// what is left of their sign stays within the limit; zones with harm are continued anyway.
+  void add_harm(double sign, std::vector<double>& harm) const {
+    std::vector<std::size_t> order;
+    double left = 0;
+    for (std::size_t z = 0; z < seen_.size(); ++z) {
+      if (harm[z] > 0 || !(sign * seen_[z].misread > 0)) continue;
+      order.push_back(z);
+      left += weight(z) * sign * seen_[z].misread;
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return sign * seen_[a].misread > sign * seen_[b].misread;
+    });
+    for (const std::size_t z : order) {
+      if (left <= kMisread * read_) return;
+      harm[z] = sign * seen_[z].misread;
+      left -= weight(z) * sign * seen_[z].misread;
+    }
+  }
+
+ private:
+  double weight(std::size_t z) const { return mesh_.zone_area(ZoneId(z)) * seen_[z].open; }
+
+  const ZoneMesh& mesh_;
+  const std::vector<SeenLight::Zone>& seen_;
+  double read_ = 0;
+};
 
 }  // namespace
 
@@ -130,15 +182,22 @@ std::vector<std::uint8_t> uneven_zones(const RadianceField& field, const DirectL
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
   const auto is_to_stop = [stop] { return stop != nullptr && stop->requested(); };
   if (direct.empty() || is_to_stop()) return uneven;
-  const Looker looker(field, direct, seed);
+  const std::vector<double> mean = mean_radiance(field);
+  const Looker looker(field, direct, mean, seed);
+  const SeenLight seen_light(field, direct, mean, seed);
+  std::vector<SeenLight::Zone> seen(mesh.zone_count());
   std::vector<double> harm(mesh.zone_count(), 0.0);
   tbb::parallel_for(std::size_t{0}, mesh.zone_count(), [&](std::size_t z) {
-    if (is_to_stop() || !exceeds(looker.look(ZoneId(z), kFirstLook), kDoubt)) return;
-    const Spread spread = looker.look(ZoneId(z), kSecondLook);
-    if (exceeds(spread, 1))
-      harm[z] = std::max(spread.variance, 0.0) + spread.mean * spread.mean / (kBright * kBright);
+    if (is_to_stop()) return;
+    const ZoneId zone(z);
+    seen[z] = seen_light.look(zone);
+    if (unevenness(looker.look(zone, kFirstLook)) <= kDoubt) return;
+    const double looked_at = unevenness(looker.look(zone, kSecondLook));
+    if (looked_at > 1) harm[z] = looked_at;
   });
   if (is_to_stop()) return uneven;
+  const Misreading misreading(field, mean, seen);
+  for (const double sign : {1.0, -1.0}) misreading.add_harm(sign, harm);
 
   std::vector<std::size_t> order;
   double area_left = 0;

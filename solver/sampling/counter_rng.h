@@ -32,6 +32,7 @@ enum class RngPurpose : std::uint32_t {
   kSpread,
   kSpreadCamera,
   kCaustic,
+  kSeenLight,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

@@ -1,0 +1,131 @@
+#include "solver/gather/seen_light.h"
+
+#include <bit>
+#include <numbers>
+#include <numeric>
+
+#include "solver/gather/replicate_gather.h"
+#include "solver/reflect/lambert.h"
+#include "solver/sampling/warp.h"
+
+namespace reemit {
+namespace {
+
+/// Radiance over the scale below which what a ray ends on counts as dark: sealed voids, where no one is.
+constexpr double kDarkEnd = 0.01;
+/// Likewise a zone that is not looked at.
+constexpr double kDarkZone = 0.05;
+/// Share of a first ray of each point that get far, above which nothing is taken to hide a part of the zone.
+constexpr double kOpen = 0.9;
+
+enum SamplerNumber : int { kPlaces, kGlance, kOneLook, kOtherLook };
+
+}  // namespace
+
+SeenLight::SeenLight(const RadianceField& field, const DirectLight& direct, std::span<const double> scale,
+                     std::uint64_t seed)
+    : field_(&field), direct_(&direct), scale_(scale), seed_(seed) {}
+
+bool SeenLight::is_dim(ZoneId zone, double limit) const {
+  const float* radiance = field_->reflected(zone);
+  for (std::size_t b = 0; b < scale_.size(); ++b)
+    if (static_cast<double>(radiance[b]) > limit * scale_[b]) return false;
+  return true;
+}
+
+SeenLight::Points SeenLight::points_of(ZoneId zone, const PointSampler& place) const {
+  Points points;
+  for (int i = 0; i < kPoints; ++i)
+    points[static_cast<std::size_t>(i)] = point_in_zone(field_->room(), zone, place.place(i));
+  return points;
+}
+
+void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& sampler, int ray, int rays,
+                         Look& look) const {
+  const Room& room = field_->room();
+  Ray16 packet;
+  for (int i = 0; i < kPoints; ++i) {
+    const SurfacePoint& x = points[static_cast<std::size_t>(i)];
+    const std::array<float, 2> u = sampler.hemisphere(i, ray, rays);
+    packet.set(i, ray_origin(room.rays(), x), sample_lambert(x.normal, u[0], u[1]));
+  }
+  // Without second looks: a ray in a thousand that slips through a hairline changes no choice.
+  Hit16 hits;
+  room.rays().closest16(packet, kPoints, hits);
+  const float reach = field_->zone_size(zone);
+  const std::size_t bands = scale_.size();
+  const float share = 1.0F / static_cast<float>(rays);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    if (hits.triangle[i] == RayTracer::kMiss) continue;
+    const ZoneId end =
+        room.mesh().zone_at(TriangleId(hits.triangle[i]), hits.u[i], hits.v[i], hits.front[i]);
+    const float* radiance = field_->reflected(end);
+    for (std::size_t b = 0; b < bands; ++b)
+      look.irradiance[i * bands + b] += std::numbers::pi_v<float> * share * radiance[b];
+    if (hits.distance[i] > reach && !is_dim(end, kDarkEnd)) look.open[i] += share;
+  }
+}
+
+SeenLight::Look SeenLight::look_around(ZoneId zone, const Points& points, const PointSampler& sampler) const {
+  const std::size_t bands = scale_.size();
+  const std::vector<float> weight(bands, 1.0F / kShadowRays);
+  Look found;
+  found.irradiance.assign(kPoints * bands, 0.0F);
+  for (int i = 0; i < kPoints; ++i)
+    for (int ray = 0; ray < kShadowRays; ++ray)
+      direct_->add_sample(points[static_cast<std::size_t>(i)], sampler.light(i, ray, kShadowRays),
+                          weight.data(), &found.irradiance[static_cast<std::size_t>(i) * bands]);
+  for (int ray = 0; ray < kRays; ++ray) look_out(zone, points, sampler, ray, kRays, found);
+  return found;
+}
+
+/// Openness of one look and light of the other, so that no noise is in both. Points that are spread evenly
+/// have the zone's own mean, which takes no degree of freedom.
+SeenLight::Half SeenLight::half_of(const std::array<float, kPoints>& open,
+                                    const std::vector<float>& irradiance, std::size_t band) {
+  const std::size_t bands = irradiance.size() / kPoints;
+  double sum_open = 0;
+  double sum_light = 0;
+  double product = 0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const auto o = static_cast<double>(open[i]);
+    const auto e = static_cast<double>(irradiance[i * bands + band]);
+    sum_open += o;
+    sum_light += e;
+    product += o * e;
+  }
+  return {sum_open / kPoints, (product - sum_open * sum_light / kPoints) / kPoints};
+}
+
+SeenLight::Zone SeenLight::look(ZoneId zone) const {
+  if (is_dim(zone, kDarkZone)) return {};
+  const auto sampler = [&](SamplerNumber number) {
+    return PointSampler(seed_, RngPurpose::kSeenLight, zone.index(), number,
+                        std::countr_zero(unsigned{kPoints}));
+  };
+  const Points points = points_of(zone, sampler(kPlaces));
+  Look glance;
+  glance.irradiance.assign(kPoints * scale_.size(), 0.0F);
+  look_out(zone, points, sampler(kGlance), 0, 1, glance);
+  const double openness = std::accumulate(glance.open.begin(), glance.open.end(), 0.0) / kPoints;
+  if (openness > kOpen) return {openness, 0};
+  const Look one = look_around(zone, points, sampler(kOneLook));
+  const Look other = look_around(zone, points, sampler(kOtherLook));
+  const float* reflectance = field_->room().zone_reflectance(zone);
+  Zone seen;
+  double lit_bands = 0;
+  for (std::size_t b = 0; b < scale_.size(); ++b) {
+    if (!(scale_[b] > 0)) continue;
+    ++lit_bands;
+    const Half half = half_of(one.open, other.irradiance, b);
+    const Half other_half = half_of(other.open, one.irradiance, b);
+    seen.open = 0.5 * (half.open + other_half.open);
+    if (seen.open == 0) return {};
+    seen.misread += 0.5 * (half.covariance + other_half.covariance) / seen.open *
+                    lambert_brdf_per_sr(reflectance[b]) / scale_[b];
+  }
+  if (lit_bands > 0) seen.misread /= lit_bands;
+  return seen;
+}
+
+}  // namespace reemit

@@ -1,0 +1,70 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/gather/direct_light.h"
+#include "solver/gather/point_sampler.h"
+#include "solver/gather/radiance_field.h"
+#include "solver/trace/surface_point.h"
+
+namespace reemit {
+
+/// How far the light of the part of a zone that the room sees is from the zone's mean. A zone that runs on
+/// under a desk or behind a panel is dark there, and no gather ray comes to it there either: all rays read
+/// a mean that is too dark for what they see.
+class SeenLight {
+ public:
+  /// `scale`: per band, the radiance that counts as 1 [W/(m2 sr)]; bands where it is 0 are left out. All
+  /// must outlive it.
+  SeenLight(const RadianceField& field, const DirectLight& direct, std::span<const double> scale,
+            std::uint64_t seed);
+
+  /// Of one zone; the means are over bands.
+  struct Zone {
+    /// Share of cosine-distributed rays from the zone that end on lit surfaces farther away than
+    /// GatherSettings::close_hit continues: by reciprocity, of rays that would read it [0,1].
+    double open = 0;
+    /// Mean reflected radiance over what such rays see less the mean over the zone, over `scale`: the
+    /// covariance over the zone of openness and reflected radiance, over `open`.
+    double misread = 0;
+  };
+
+  /// An estimate with four rays of each of sixteen points, seen twice; its noise is 0 on average. Zones with nothing nearby
+  /// are not looked at twice and have 0 of `misread`, dark zones have 0 of both.
+  Zone look(ZoneId zone) const;
+
+ private:
+  static constexpr int kPoints = 16;     // of a zone; their rays are traced together
+  static constexpr int kRays = 4;        // of a point in one look
+  static constexpr int kShadowRays = 2;  // likewise
+  using Points = std::array<SurfacePoint, kPoints>;
+
+  /// What one look finds, by point.
+  struct Look {
+    std::array<float, kPoints> open{};  // share of rays that end on lit surfaces far away
+    std::vector<float> irradiance;      // by point, then by band [W/m2]
+  };
+  /// Over the zone.
+  struct Half {
+    double open;
+    double covariance;  // of openness and irradiance [W/m2]
+  };
+
+  bool is_dim(ZoneId zone, double limit) const;
+  Points points_of(ZoneId zone, const PointSampler& place) const;
+  /// One ray of each point, the sampler's `ray` of `rays`.
+  void look_out(ZoneId zone, const Points& points, const PointSampler& sampler, int ray, int rays,
+                Look& look) const;
+  Look look_around(ZoneId zone, const Points& points, const PointSampler& sampler) const;
+  static Half half_of(const std::array<float, kPoints>& open, const std::vector<float>& irradiance,
+                       std::size_t band);
+
+  const RadianceField* field_;
+  const DirectLight* direct_;
+  std::span<const double> scale_;
+  std::uint64_t seed_;
+};
+
+}  // namespace reemit
