@@ -57,8 +57,7 @@ void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& 
   const float share = 1.0F / static_cast<float>(rays);
   for (std::size_t i = 0; i < kPoints; ++i) {
     if (hits.triangle[i] == RayTracer::kMiss) continue;
-    const ZoneId end =
-        room.mesh().zone_at(TriangleId(hits.triangle[i]), hits.u[i], hits.v[i], hits.front[i]);
+    const ZoneId end = room.mesh().zone_at(TriangleId(hits.triangle[i]), hits.u[i], hits.v[i], hits.front[i]);
     const float* radiance = field_->reflected(end);
     for (std::size_t b = 0; b < bands; ++b)
       look.irradiance[i * bands + b] += std::numbers::pi_v<float> * share * radiance[b];
@@ -82,7 +81,7 @@ SeenLight::Look SeenLight::look_around(ZoneId zone, const Points& points, const 
 /// Openness of one look and light of the other, so that no noise is in both. Points that are spread evenly
 /// have the zone's own mean, which takes no degree of freedom.
 SeenLight::Half SeenLight::half_of(const std::array<float, kPoints>& open,
-                                    const std::vector<float>& irradiance, std::size_t band) {
+                                   const std::vector<float>& irradiance, std::size_t band) {
   const std::size_t bands = irradiance.size() / kPoints;
   double sum_open = 0;
   double sum_light = 0;

@@ -31,8 +31,8 @@ class SeenLight {
     double misread = 0;
   };
 
-  /// An estimate with four rays of each of sixteen points, seen twice; its noise is 0 on average. Zones with nothing nearby
-  /// are not looked at twice and have 0 of `misread`, dark zones have 0 of both.
+  /// An estimate with four rays of each of sixteen points, seen twice; its noise is 0 on average. Zones with
+  /// nothing nearby are not looked at twice and have 0 of `misread`, dark zones have 0 of both.
   Zone look(ZoneId zone) const;
 
  private:
@@ -59,7 +59,7 @@ class SeenLight {
                 Look& look) const;
   Look look_around(ZoneId zone, const Points& points, const PointSampler& sampler) const;
   static Half half_of(const std::array<float, kPoints>& open, const std::vector<float>& irradiance,
-                       std::size_t band);
+                      std::size_t band);
 
   const RadianceField* field_;
   const DirectLight* direct_;

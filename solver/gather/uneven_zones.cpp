@@ -142,7 +142,8 @@ class Misreading {
       const float* radiance = field.reflected(ZoneId(z));
       for (std::size_t b = 0; b < mean.size(); ++b)
         if (mean[b] > 0)
-          read_ += weight(z) * static_cast<double>(radiance[b]) / (mean[b] * static_cast<double>(mean.size()));
+          read_ +=
+              weight(z) * static_cast<double>(radiance[b]) / (mean[b] * static_cast<double>(mean.size()));
     }
   }
 

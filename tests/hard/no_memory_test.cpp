@@ -45,7 +45,7 @@ std::string instanced_gltf(std::size_t corners, std::size_t copies) {
       R"(}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" +
       std::to_string(corners) +
       R"(}], "meshes": [{"primitives": [{"mode": 5, "attributes": {"POSITION": 0}}]}], "nodes": [)";
-  for (std::size_t i = 0; i < copies; ++i) file += (i == 0 ? "" : ",") + std::string(R"({"mesh": 0})");
+  for (std::size_t i = 0; i < copies; ++i) file += i == 0 ? R"({"mesh": 0})" : R"(, {"mesh": 0})";
   return file + "]}";
 }
 
