@@ -127,7 +127,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const Wor
     throw InputError("smallest angle", fmt::format("{} degrees is out of range", settings.smallest_angle_deg),
                      "use a value from 0 to 30");
   const MeshTolerances tolerances = MeshTolerances::of(bounds(room));
-  const RoomShapes shapes = separate_shapes(room, settings.exact_shapes, tolerances);
+  const RoomShapes shapes = separate_shapes(room, settings, tolerances);
   const Scene& scene = shapes.faceted ? *shapes.faceted : room;
   MeshReport report;
   report.surfaces.resize(scene.surfaces.size());
@@ -143,11 +143,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const Wor
   if (!(total_area > 0))
     throw InputError(scene.source.empty() ? "room" : scene.source, "there is no face with an area",
                      "check that the file holds polygons, and its unit of length");
-  double zoned_area = 0;
-  for (const FacePiece& p : pieces) zoned_area += (p.two_sided ? 2 : 1) * p.area;
-  for (std::size_t i = 0; i < shapes.exact.size(); ++i)
-    zoned_area += (shapes.is_two_sided(scene, i) ? 2 : 1) * shape_area(shapes.exact[i]);
-  const double zone_area = wanted_zone_area(settings, zoned_area);
+  const double zone_area = wanted_zone_area(settings, zoned_area(scene, pieces, shapes));
   const double zone_edge = std::sqrt(zone_area);
 
   PieceGroups groups =

@@ -1,23 +1,34 @@
 #include "mesh/shapes/room_shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "mesh/geometry/box_pairs.h"
+#include "mesh/geometry/disjoint_sets.h"
 #include "mesh/overlap/coplanar_overlap.h"
 #include "mesh/repair/polygon_repair.h"
 #include "mesh/shapes/shape_contacts.h"
 #include "mesh/shapes/tessellate.h"
+#include "mesh/zones/zone_sizing.h"
 
 namespace reemit {
 namespace {
 
-/// Around a full circle of a shape that becomes faces.
-constexpr int kFacetSegments = 32;
+/// Sides to a circle of a shape that becomes faces; multiples of kSegmentStep, so that circles with one axis
+/// have their corners in the same directions.
+constexpr int kFewestSegments = 8;
+constexpr int kMostSegments = 32;
+constexpr int kSegmentStep = 4;
+/// A side may pass the circle's middle by this share of the length of a zone: what is smaller does not show
+/// in the light of the room, and a room full of small round things would have most of its triangles from
+/// them.
+constexpr double kSagittaShare = 1.0 / 200;
 
 /// Circle in which a mantle or a disk ends.
 struct Rim {
@@ -38,24 +49,32 @@ std::vector<Rim> rims_of(std::span<const CurvedShape> shapes) {
   return rims;
 }
 
-/// Shapes that end in the same circle become faces together: a round cap on a mantle of flat faces would
-/// stick out between its corners and show its back.
-void add_neighbours(const Scene& room, const RoomShapes& shapes, const MeshTolerances& tolerances,
-                    std::vector<bool>& faceted) {
-  const std::vector<Rim> rims = rims_of(shapes.exact);
+/// Calls visit(i, j) for shapes that end in the same circle.
+template <class Visit>
+void for_each_shared_rim(std::span<const CurvedShape> shapes, const MeshTolerances& tolerances,
+                         Visit&& visit) {
+  const std::vector<Rim> rims = rims_of(shapes);
   std::vector<IndexedBox> boxes;
   for (std::uint32_t i = 0; i < rims.size(); ++i) {
     const Vec3 margin = Vec3::Constant(tolerances.weld);
     boxes.push_back({rims[i].centre - margin, rims[i].centre + margin, i});
   }
-  std::vector<std::vector<std::size_t>> neighbours(shapes.exact.size());
   for_each_box_pair(boxes, boxes, [&](std::uint32_t i, std::uint32_t j) {
     const Rim& a = rims[i];
     const Rim& b = rims[j];
     if (a.shape != b.shape && std::abs(a.radius - b.radius) <= tolerances.weld &&
         a.radius * a.axis.cross(b.axis).norm() <= tolerances.weld)
-      neighbours[a.shape].push_back(b.shape);
+      visit(a.shape, b.shape);
   });
+}
+
+/// Shapes that end in the same circle become faces together: a round cap on a mantle of flat faces would
+/// stick out between its corners and show its back.
+void add_neighbours(const Scene& room, const RoomShapes& shapes, const MeshTolerances& tolerances,
+                    std::vector<bool>& faceted) {
+  std::vector<std::vector<std::size_t>> neighbours(shapes.exact.size());
+  for_each_shared_rim(shapes.exact, tolerances,
+                      [&](std::size_t a, std::size_t b) { neighbours[a].push_back(b); });
   std::vector<std::size_t> spreads;
   for (std::size_t s = 0; s < faceted.size(); ++s)
     if (faceted[s]) spreads.push_back(s);
@@ -63,30 +82,69 @@ void add_neighbours(const Scene& room, const RoomShapes& shapes, const MeshToler
     const std::size_t from = spreads.back();
     spreads.pop_back();
     for (const std::size_t s : neighbours[from]) {
-      if (faceted[s] || room.material_of(room.surfaces[shapes.surface[s].index()]).emits()) continue;
+      if (faceted[s] || shapes.emits(room, s)) continue;
       faceted[s] = true;
       spreads.push_back(s);
     }
   }
 }
 
-std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes,
-                               const MeshTolerances& tolerances) {
+int segments_for(const CurvedShape& shape, double zone_edge) {
+  const auto* sphere = std::get_if<Sphere>(&shape);
+  const double radius = sphere != nullptr ? sphere->radius : frustum_of(shape).r0;
+  int segments = kFewestSegments;
+  while (segments < kMostSegments &&
+         radius * (1 - std::cos(std::numbers::pi / segments)) > kSagittaShare * zone_edge)
+    segments += kSegmentStep;
+  return segments;
+}
+
+/// Sides to a circle by shape; those that end in the same circle have as many, or there would be slits
+/// between them.
+std::vector<int> choose_segments(const RoomShapes& shapes, const std::vector<bool>& faceted,
+                                 const MeshTolerances& tolerances, double zone_edge) {
+  DisjointSets joined(shapes.exact.size());
+  for_each_shared_rim(shapes.exact, tolerances, [&](std::size_t a, std::size_t b) {
+    if (faceted[a] && faceted[b]) joined.join(a, b);
+  });
+  std::vector<int> most(shapes.exact.size(), 0);
+  for (std::size_t s = 0; s < faceted.size(); ++s)
+    if (faceted[s])
+      most[joined.find(s)] = std::max(most[joined.find(s)], segments_for(shapes.exact[s], zone_edge));
+  std::vector<int> segments(shapes.exact.size(), 0);
+  for (std::size_t s = 0; s < faceted.size(); ++s) segments[s] = most[joined.find(s)];
+  return segments;
+}
+
+std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes, const VertexTable& vertices,
+                               const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances) {
   std::vector<bool> pierced(shapes.exact.size(), false);
-  VertexTable vertices(tolerances.weld);
-  MeshReport ignored;
-  ignored.surfaces.resize(room.surfaces.size());
-  const std::vector<FacePiece> pieces = repair_polygons(room, tolerances, vertices, ignored);
   std::vector<IndexedBox> boxes;
   boxes.reserve(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, 0));
   for_each_box_pair(boxes_of(shapes.exact, 0), boxes, [&](std::uint32_t s, std::uint32_t piece) {
-    if (pierced[s] || room.material_of(room.surfaces[shapes.surface[s].index()]).emits()) return;
+    if (pierced[s] || shapes.emits(room, s)) return;
     // Not within the contact distance: what sticks out by less than that is a leak all the same.
     pierced[s] = is_pierced(shapes.exact[s], vertices, pieces[piece], tolerances.weld);
   });
   add_neighbours(room, shapes, tolerances, pierced);
   return pierced;
+}
+
+double faces_area(const Surface& surface, std::size_t first) {
+  double area = 0;
+  for (std::size_t f = first; f < surface.faces.size(); ++f) {
+    const auto loop_area = [&](const std::vector<std::uint32_t>& loop) {
+      Vec3 twice = Vec3::Zero();
+      for (std::size_t i = 1; i + 1 < loop.size(); ++i)
+        twice += (surface.positions[loop[i]] - surface.positions[loop[0]])
+                     .cross(surface.positions[loop[i + 1]] - surface.positions[loop[0]]);
+      return 0.5 * twice.norm();
+    };
+    area += loop_area(surface.faces[f].outer);
+    for (const auto& hole : surface.faces[f].holes) area -= loop_area(hole);
+  }
+  return area;
 }
 
 /// Gives the patches of one shape their corners; those at the same place are one vertex.
@@ -121,7 +179,8 @@ class CornerTable {
 
 }  // namespace
 
-RoomShapes separate_shapes(const Scene& room, bool exact_shapes, const MeshTolerances& tolerances) {
+RoomShapes separate_shapes(const Scene& room, const MeshSettings& settings,
+                           const MeshTolerances& tolerances) {
   RoomShapes all;
   for (std::size_t s = 0; s < room.surfaces.size(); ++s)
     for (std::uint32_t i = 0; i < room.surfaces[s].shapes.size(); ++i) {
@@ -130,10 +189,20 @@ RoomShapes separate_shapes(const Scene& room, bool exact_shapes, const MeshToler
       all.index.push_back(i);
     }
   if (all.exact.empty()) return all;
-  const std::vector<bool> faceted =
-      exact_shapes ? find_pierced(room, all, tolerances) : std::vector<bool>(all.exact.size(), true);
+  std::vector<bool> faceted(all.exact.size(), true);
+  std::vector<int> segments(all.exact.size(), kMostSegments);
+  if (settings.exact_shapes) {
+    VertexTable vertices(tolerances.weld);
+    MeshReport ignored;
+    ignored.surfaces.resize(room.surfaces.size());
+    const std::vector<FacePiece> pieces = repair_polygons(room, tolerances, vertices, ignored);
+    faceted = find_pierced(room, all, vertices, pieces, tolerances);
+    const double zone_area = wanted_zone_area(settings, zoned_area(room, pieces, all));
+    segments = choose_segments(all, faceted, tolerances, std::sqrt(zone_area));
+  }
   RoomShapes result;
-  result.all = !exact_shapes;
+  FacetedShapes& facets = result.facets;
+  facets.all = !settings.exact_shapes;
   for (std::size_t i = 0; i < all.exact.size(); ++i) {
     if (!faceted[i]) {
       result.exact.push_back(all.exact[i]);
@@ -142,10 +211,24 @@ RoomShapes separate_shapes(const Scene& room, bool exact_shapes, const MeshToler
       continue;
     }
     if (!result.faceted) result.faceted = room;
-    append_faces(all.exact[i], kFacetSegments, result.faceted->surfaces[all.surface[i].index()]);
-    ++result.replaced;
+    Surface& surface = result.faceted->surfaces[all.surface[i].index()];
+    const std::size_t first = surface.faces.size();
+    append_faces(all.exact[i], segments[i], surface);
+    facets.fewest_sides = facets.count == 0 ? segments[i] : std::min(facets.fewest_sides, segments[i]);
+    facets.most_sides = std::max(facets.most_sides, segments[i]);
+    facets.round_area += shape_area(all.exact[i]);
+    facets.flat_area += faces_area(surface, first);
+    ++facets.count;
   }
   return result;
+}
+
+double zoned_area(const Scene& scene, const std::vector<FacePiece>& pieces, const RoomShapes& shapes) {
+  double area = 0;
+  for (const FacePiece& p : pieces) area += (p.two_sided ? 2 : 1) * p.area;
+  for (std::size_t i = 0; i < shapes.exact.size(); ++i)
+    area += (shapes.is_two_sided(scene, i) ? 2 : 1) * shape_area(shapes.exact[i]);
+  return area;
 }
 
 void append_patches(const Scene& scene, const RoomShapes& shapes, BaseMesh& mesh, MeshReport& report) {
@@ -166,12 +249,18 @@ void append_patches(const Scene& scene, const RoomShapes& shapes, BaseMesh& mesh
     areas.meshed += shape_area(shapes.exact[i]);
   }
   mesh.shapes = shapes.exact;
-  if (shapes.replaced > 0)
+  const FacetedShapes& facets = shapes.facets;
+  if (facets.count > 0)
     report.warnings.push_back(fmt::format(
-        "{} round shape(s) were replaced by flat faces with {} sides to a circle, {}; they have up to 1.5 % "
-        "less area and, as luminaires, power",
-        shapes.replaced, kFacetSegments,
-        shapes.all ? "because this method needs flat zones" : "because other faces pass through them"));
+        "{} round shape(s) were replaced by flat faces with {} sides to a circle, {}; together they have "
+        "{:.1f} % "
+        "less area{}",
+        facets.count,
+        facets.fewest_sides == facets.most_sides
+            ? fmt::format("{}", facets.most_sides)
+            : fmt::format("{} to {}", facets.fewest_sides, facets.most_sides),
+        facets.all ? "because this method needs flat zones" : "because other faces pass through them",
+        100 * (1 - facets.flat_area / facets.round_area), facets.all ? " and, as luminaires, power" : ""));
 }
 
 }  // namespace reemit

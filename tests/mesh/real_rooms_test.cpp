@@ -36,7 +36,7 @@ std::vector<fs::path> rooms_below(const fs::path& folder) {
   return out;
 }
 
-/// Of polygons, and of the 32 sides that stand for a round shape if a face passes through it [m].
+/// Of polygons, and of the up to 32 sides that stand for a round shape if a face passes through it [m].
 double length_of_outlines(const Surface& surface) {
   double length = 0;
   for (const CurvedShape& shape : surface.shapes) {
