@@ -98,10 +98,10 @@ class WaitingPackets {
       add(more.origin_[i], more.direction_[i], more.id_[i], more.way_[i], &more.power_[i * bands_]);
   }
 
-  /// Moves those whose way has gone beyond this part into `other`.
-  void move_beyond(LightPart part, WaitingPackets& other) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count(); ++i) {
+  /// Moves those from `first` on whose way has gone beyond this part into `other`.
+  void move_beyond(LightPart part, WaitingPackets& other, std::size_t first = 0) {
+    std::size_t kept = first;
+    for (std::size_t i = first; i < count(); ++i) {
       if (way_[i].part > part) {
         other.add(origin_[i], direction_[i], id_[i], way_[i], &power_[i * bands_]);
         continue;

@@ -130,6 +130,7 @@ class SweepTracer {
     // The compiler cannot know that booking leaves the members of this object alone.
     const std::size_t bands = bands_;
     const bool any_specular = specular_.any();
+    const std::size_t carried_before = carried_.count();
     std::int64_t* quanta = block.power.data();
     for (int lane = 0; lane < block.count; ++lane, quanta += bands) {
       const Account& account = accounts_[lane];
@@ -154,7 +155,7 @@ class SweepTracer {
       if (account.quanta != nullptr && any_specular)
         specular_.carry_on(block, hits_, lane, number_, carried_);
     }
-    if (holds_beyond_) carried_.move_beyond(*holds_beyond_, held_);
+    if (holds_beyond_) carried_.move_beyond(*holds_beyond_, held_, carried_before);
   }
 
   const PacketRoom& transport_;
