@@ -17,28 +17,30 @@ struct ZoneCell {
   bool upper;  ///< The half of the cell away from its corner (i,j).
 };
 
-/// Number of the zone inside its base triangle that holds barycentric point (u,v); any u, v are clamped into
-/// it.
-inline std::uint32_t zone_in_triangle(std::uint32_t divisions, float u, float v) {
-  if (divisions == 1) return 0;
+/// Place of the zone of a base triangle that holds barycentric point (u,v); any u, v are clamped into it.
+inline ZoneCell place_in_triangle(std::uint32_t divisions, float u, float v) {
   const auto n = static_cast<std::int64_t>(divisions);
   const float un = u * static_cast<float>(n);
   const float vn = v * static_cast<float>(n);
   const std::int64_t i = std::clamp<std::int64_t>(static_cast<std::int64_t>(un), 0, n - 1);
   const std::int64_t j = std::clamp<std::int64_t>(static_cast<std::int64_t>(vn), 0, n - 1 - i);
-  const bool upper = (un - static_cast<float>(i)) + (vn - static_cast<float>(j)) > 1.0F && j < n - 1 - i;
-  return static_cast<std::uint32_t>(2 * n * i - i * i + 2 * j + (upper ? 1 : 0));
+  return {i, j, (un - static_cast<float>(i)) + (vn - static_cast<float>(j)) > 1.0F && j < n - 1 - i};
 }
-
-struct Barycentric {
-  double u, v;
-};
 
 /// The number of a place: the inverse of zone_cell.
 inline std::uint32_t cell_number(std::uint32_t divisions, const ZoneCell& cell) {
   const auto n = static_cast<std::int64_t>(divisions);
   return static_cast<std::uint32_t>(2 * n * cell.i - cell.i * cell.i + 2 * cell.j + (cell.upper ? 1 : 0));
 }
+
+/// Number of the zone of place_in_triangle.
+inline std::uint32_t zone_in_triangle(std::uint32_t divisions, float u, float v) {
+  return divisions == 1 ? 0 : cell_number(divisions, place_in_triangle(divisions, u, v));
+}
+
+struct Barycentric {
+  double u, v;
+};
 
 /// Parts of a cell that is cut between the middles of its edges.
 inline constexpr std::uint32_t kCellParts = 4;
@@ -58,27 +60,26 @@ struct InCell {
   float a, b;
 };
 
-/// Of barycentric point (u,v), in the cell that zone_in_triangle finds for it.
+/// Of barycentric point (u,v), in the cell that place_in_triangle finds for it.
 inline InCell in_cell(std::uint32_t divisions, const ZoneCell& cell, float u, float v) {
   const float a = u * static_cast<float>(divisions) - static_cast<float>(cell.i);
   const float b = v * static_cast<float>(divisions) - static_cast<float>(cell.j);
   return cell.upper ? InCell{1 - a, 1 - b} : InCell{a, b};
 }
 
-/// The part of a cell that holds a point of it, which is put into the coordinates of that part.
+/// The part of a cell that holds a point of it, which is put into the coordinates of that part. Which part it
+/// is nothing could predict, so there are no branches.
 inline std::uint32_t part_of(InCell& x) {
-  x = {2 * x.a, 2 * x.b};
-  if (x.a >= 1) {
-    x.a -= 1;
-    return 1;
-  }
-  if (x.b >= 1) {
-    x.b -= 1;
-    return 2;
-  }
-  if (x.a + x.b <= 1) return 0;
-  x = {1 - x.a, 1 - x.b};
-  return 3;
+  const float a = 2 * x.a;
+  const float b = 2 * x.b;
+  const auto first = static_cast<std::uint32_t>(a >= 1);
+  const auto second = static_cast<std::uint32_t>(b >= 1) & (first ^ 1U);
+  const auto middle = static_cast<std::uint32_t>(a + b > 1) & ((first | second) ^ 1U);
+  const auto turn = static_cast<float>(1 - 2 * static_cast<std::int32_t>(middle));
+  const auto to_a = static_cast<float>(static_cast<std::int32_t>(middle) - static_cast<std::int32_t>(first));
+  const auto to_b = static_cast<float>(static_cast<std::int32_t>(middle) - static_cast<std::int32_t>(second));
+  x = {to_a + turn * a, to_b + turn * b};
+  return first + 2 * second + 3 * middle;
 }
 
 /// Inverse of the numbering of zone_in_triangle.

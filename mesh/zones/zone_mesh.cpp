@@ -111,12 +111,15 @@ void ZoneMesh::add_node(SideId side, std::size_t node, std::uint32_t divisions, 
     add_node(side, parts + k, 2 * divisions, cell_part(cell, k), next_bit);
 }
 
-std::uint32_t ZoneMesh::zone_in_cell(const Side& side, std::uint32_t cell, float u, float v) const {
-  const Node* node = &nodes_[side.nodes + cell];
-  if (!node->is_split) return node->at;
-  InCell x = in_cell(side.divisions, reemit::zone_cell(side.divisions, cell), u, v);
-  while (node->is_split) node = &nodes_[node->at + part_of(x)];
-  return node->at;
+ZoneId ZoneMesh::zone_in_parts(const Side& side, float u, float v) const {
+  const ZoneCell cell = place_in_triangle(side.divisions, u, v);
+  const Node* node = &nodes_[side.nodes + cell_number(side.divisions, cell)];
+  if (node->is_split) {
+    InCell x = in_cell(side.divisions, cell, u, v);
+    do node = &nodes_[node->at + part_of(x)];
+    while (node->is_split);
+  }
+  return ZoneId(side.first_zone.index() + node->at);
 }
 
 void ZoneMesh::add_groups() {

@@ -74,8 +74,8 @@ class ZoneMesh {
   ZoneId zone_at(TriangleId t, float u, float v, bool front) const {
     const Side& s = side(t, front);
     if (!s.first_zone.valid()) return ZoneId();
-    const std::uint32_t cell = zone_in_triangle(s.divisions, u, v);
-    return ZoneId(s.first_zone.index() + (s.nodes == kWhole ? cell : zone_in_cell(s, cell, u, v)));
+    if (s.nodes != kWhole) return zone_in_parts(s, u, v);
+    return ZoneId(s.first_zone.index() + zone_in_triangle(s.divisions, u, v));
   }
   /// The cell that a zone is. Pre: not a group.
   SideCell zone_cell(ZoneId z) const {
@@ -132,7 +132,8 @@ class ZoneMesh {
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   std::size_t first_member(ZoneId group) const { return first_member_[group.index() - cell_zone_count()]; }
   SideCell member_cell(ZoneId group, float& u) const;
-  std::uint32_t zone_in_cell(const Side& side, std::uint32_t cell, float u, float v) const;
+  /// Of a side with cells that are cut further.
+  ZoneId zone_in_parts(const Side& side, float u, float v) const;
 
   void add_shapes();
   void add_cells();
