@@ -32,12 +32,15 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 EnergyAudit empty_audit(const Solution& solution) {
   EnergyAudit audit;
-  for (const std::string& name : solution.bands.names()) {
+  const Channels& channels = solution.sums.channels;
+  channels.for_each([&](std::size_t channel, std::size_t b) {
     BandAudit& band = audit.bands.emplace_back();
-    band.band = name;
+    band.band = solution.bands.name(b);
+    if (channels.groups() > 1)
+      band.band += " of light group " + std::to_string(channel / channels.bands() + 1);
     band.absorbed.assign(solution.surface_names.size(), 0);
     band.absorbed_on_backs.assign(solution.surface_names.size(), 0);
-  }
+  });
   return audit;
 }
 
@@ -122,7 +125,7 @@ Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings&
   keep_surfaces(scene, solution);
   solution.mesh_report = std::move(mesh.report);
   solution.mesh = std::move(mesh.mesh);
-  solution.sums.clear(solution.mesh.zone_count() * scene.bands.count(), scene.bends_light());
+  solution.sums.clear(solution.mesh.zone_count(), channels_of(scene), scene.bends_light());
   solution.audit = empty_audit(solution);
   return solution;
 }
@@ -204,13 +207,13 @@ class ProgressiveSolver::Run {
     SolveRecord& record = start.record;
     if (record.cut_off) {
       // A part of a batch is no independent estimate; it starts again.
-      start.sums.clear(start.sums.direct.size(), start.sums.has_caustics());
+      start.sums.clear(start.mesh.zone_count(), start.sums.channels, start.sums.has_caustics());
       start.audit = empty_audit(start);
       const SolveRecord cut_off = std::exchange(record, {});
       record.seconds = cut_off.seconds;
       record.unit_packets = cut_off.unit_packets;
     }
-    start.gathered.restore(start.sums, start.bands.count());
+    start.gathered.restore(start.sums);
     record.rays -= start.gathered.rays;
     start.gathered = {};
     record.stopped = StopReason::kUnderWay;
@@ -344,12 +347,11 @@ Solution ProgressiveSolver::finish(const ProgressCallback& progress, Examination
 std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution) {
   if (solution.record.stopped == StopReason::kNoLuminaire) return StopReason::kNoLuminaire;
   if (solution.sums.batches == 0 || solution.record.cut_off) return std::nullopt;
-  const std::size_t bands = solution.bands.count();
   GatheredZones gathered;
-  gathered.keep(solution.sums, bands, solution.gathered.zones);
-  solution.gathered.restore(solution.sums, bands);
+  gathered.keep(solution.sums, solution.gathered.zones);
+  solution.gathered.restore(solution.sums);
   const double bound = zone_error(SurfaceModel(scene, solution.mesh, 1), solution.mesh, solution.sums).bound;
-  gathered.restore(solution.sums, bands);
+  gathered.restore(solution.sums);
 
   const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);
   RunState state;

@@ -31,13 +31,12 @@ CausticShooter::CausticShooter(const Room& room, std::uint64_t seed)
     : transport_(room), emission_(collect_packet_sources(transport_)), seed_(seed) {}
 
 std::vector<float> CausticShooter::density_of_surfaces(double packets) const {
-  const std::size_t bands = transport_.bands();
   const double metres = transport_.rays().metres_per_unit();
   std::vector<double> share(transport_.surfaces(), 0.0), area(transport_.surfaces(), 0.0);
   double all = 0;
   for (std::size_t s = 0; s < emission_.sources.size(); ++s) {
     double quanta = 0;
-    for (std::size_t b = 0; b < bands; ++b) quanta += static_cast<double>(emission_.quanta[s * bands + b]);
+    for (const std::int64_t q : emission_.quanta_of(s)) quanta += static_cast<double>(q);
     all += quanta;
     const ZoneId zone = emission_.sources[s].zone;
     if (!zone.valid()) continue;
@@ -55,9 +54,9 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
                                      const StopToken* stop) const {
   CausticPhotons all;
   if (emission_.sources.empty()) return all;
-  const std::size_t bands = transport_.bands();
+  const Channels channels = transport_.channels();
   const double offset = static_cast<double>(CounterRng(seed_, RngPurpose::kCaustic).uniform4(0, batch, 0)[0]);
-  const Flight flight = plan_first_flight(emission_, bands, packets, offset);
+  const Flight flight = plan_first_flight(emission_, packets, offset);
   const FlightNumbers numbers(SamplingKind::kSobol, seed_ ^ 0x9e3779b97f4a7c15ULL, batch, 0);
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   std::vector<CausticPhotons> of_task(tasks);
@@ -67,8 +66,8 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
     FlightCursor cursor(transport_, flight, begin);
     Ray16 rays;
     Hit16 hits;
-    std::vector<std::int64_t> quanta(16 * bands);
-    std::vector<float> power(bands);
+    std::vector<std::int64_t> quanta(16 * channels.count());
+    std::vector<float> power(channels.bands());
     for (std::uint32_t first = begin; first < end; first += 16) {
       if (stop != nullptr && stop->requested()) return;
       const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
@@ -84,10 +83,11 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
             flight.first_packet.begin() - 1);
         const ZoneId zone = flight.sources[source].zone;
         const SurfaceId luminaire = zone.valid() ? transport_.mesh().zone_surface(zone) : SurfaceId();
-        for (std::size_t b = 0; b < bands; ++b)
-          power[b] =
-              static_cast<float>(emission_.watts_per_quantum[b] *
-                                 static_cast<double>(quanta[static_cast<std::size_t>(lane) * bands + b]));
+        const std::int64_t* own = &quanta[static_cast<std::size_t>(lane) * channels.count()];
+        std::fill(power.begin(), power.end(), 0.0F);
+        channels.for_each([&](std::size_t c, std::size_t band) {
+          power[band] += static_cast<float>(emission_.watts_per_quantum[c] * static_cast<double>(own[c]));
+        });
         follow(rays.origin(lane), rays.direction(lane), id, batch, luminaire, power, of_task[task]);
       }
     }
@@ -101,7 +101,7 @@ void CausticShooter::follow(const Vec3f& origin, const Vec3f& direction, std::ui
                             CausticPhotons& result) const {
   const RayTracer& rays = transport_.rays();
   const SurfaceModel& surfaces = transport_.surface_model();
-  const std::size_t bands = transport_.bands();
+  const std::size_t bands = transport_.channels().bands();
   const CounterRng choice(seed_, RngPurpose::kCaustic);
   SpecularStep step(bands);
   Vec3f from = origin;

@@ -12,6 +12,17 @@
 #include "solver/solution/opposite_zones.h"
 
 namespace reemit {
+namespace {
+
+/// Of all light groups and batches.
+float mean_irradiance(const ZoneSums& sums, const std::vector<double>& of_part, std::size_t zone,
+                      std::size_t band) {
+  const double sum = sums.channels.over_groups(
+      band, [&](std::size_t c) { return of_part[zone * sums.channels.count() + c]; });
+  return static_cast<float>(sum / static_cast<double>(sums.weight()));
+}
+
+}  // namespace
 
 RadianceField::RadianceField(const Room& room, const Solution& solution, std::size_t parts)
     : room_(&room), bands_(room.band_count()), parts_(parts), zero_(bands_, 0.0F) {
@@ -40,11 +51,11 @@ void RadianceField::read_zones(const Solution& solution) {
   reflected_direct_.assign(values_, 0.0F);
   reflected_caustic_.assign(sums.has_caustics() ? values_ : 0, 0.0F);
   if (sums.batches <= 0) return;
-  if (sums.direct.size() != values_ || sums.indirect.size() != values_ ||
-      sums.group_total.size() != ZoneSums::kGroups * values_)
+  const std::size_t sum_count = zones * sums.channels.count();
+  if (sums.direct.size() != sum_count || sums.indirect.size() != sum_count ||
+      sums.group_total.size() != ZoneSums::kGroups * sum_count)
     throw InputError(solution.room_path, "the solution does not hold one value per zone and band",
                      "Solve the room again: the file is damaged.");
-  const auto weight = static_cast<double>(sums.weight());
   std::vector<double> part_weight(parts_, 0.0);
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
     part_weight[g % parts_] += static_cast<double>(sums.group_weight[g]);
@@ -56,13 +67,13 @@ void RadianceField::read_zones(const Solution& solution) {
       const std::size_t k = z * bands_ + b;
       const auto reflectance = static_cast<float>(rho[b]);
       reflected_direct_[k] =
-          lambert_reflected_radiance(reflectance, static_cast<float>(sums.direct[k] / weight));
+          lambert_reflected_radiance(reflectance, mean_irradiance(sums, sums.direct, z, b));
       if (!reflected_caustic_.empty())
         reflected_caustic_[k] =
-            lambert_reflected_radiance(reflectance, static_cast<float>(sums.caustic[k] / weight));
+            lambert_reflected_radiance(reflectance, mean_irradiance(sums, sums.caustic, z, b));
       for (std::size_t p = 0; p < parts_; ++p)
         reflected_[p * values_ + k] =
-            lambert_reflected_radiance(reflectance, irradiance(sums, p, part_weight[p], k));
+            lambert_reflected_radiance(reflectance, irradiance(sums, p, part_weight[p], z, b));
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, zones, 4096), [&](const auto& range) {
@@ -71,20 +82,24 @@ void RadianceField::read_zones(const Solution& solution) {
   add_transmitted(solution, part_weight);
 }
 
-float RadianceField::irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t k) const {
-  double total = 0;
-  if (parts_ == 1)
-    total = sums.total(k);
-  else
+float RadianceField::irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t zone,
+                                std::size_t band) const {
+  const std::size_t channels = sums.channels.count();
+  const std::size_t values = sums.direct.size();
+  const double total = sums.channels.over_groups(band, [&](std::size_t c) {
+    const std::size_t k = zone * channels + c;
+    if (parts_ == 1) return sums.total(k);
+    double of_part = 0;
     for (std::size_t g = part; g < ZoneSums::kGroups; g += parts_)
-      total += static_cast<double>(sums.group_total[g * values_ + k]);
+      of_part += static_cast<double>(sums.group_total[g * values + k]);
+    return of_part;
+  });
   return static_cast<float>(total / weight);
 }
 
 void RadianceField::add_transmitted(const Solution& solution, const std::vector<double>& part_weight) {
   const Scene& scene = room_->scene();
   const ZoneSums& sums = solution.sums;
-  const auto weight = static_cast<double>(sums.weight());
   for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
     const SurfaceId surface = solution.mesh.zone_surface(ZoneId(z));
     const Material& material = scene.material_of(scene.surfaces[surface.index()]);
@@ -93,15 +108,15 @@ void RadianceField::add_transmitted(const Solution& solution, const std::vector<
       for (std::size_t b = 0; b < bands_; ++b) {
         const auto through = static_cast<float>(behind.share * material.diffuse_transmittance(b));
         const std::size_t to = z * bands_ + b;
-        const std::size_t from = behind.zone.index() * bands_ + b;
+        const std::size_t from = behind.zone.index();
         reflected_direct_[to] +=
-            lambert_reflected_radiance(through, static_cast<float>(sums.direct[from] / weight));
+            lambert_reflected_radiance(through, mean_irradiance(sums, sums.direct, from, b));
         if (!reflected_caustic_.empty())
           reflected_caustic_[to] +=
-              lambert_reflected_radiance(through, static_cast<float>(sums.caustic[from] / weight));
+              lambert_reflected_radiance(through, mean_irradiance(sums, sums.caustic, from, b));
         for (std::size_t p = 0; p < parts_; ++p)
           reflected_[p * values_ + to] +=
-              lambert_reflected_radiance(through, irradiance(sums, p, part_weight[p], from));
+              lambert_reflected_radiance(through, irradiance(sums, p, part_weight[p], from, b));
       }
   }
 }

@@ -39,8 +39,9 @@ class RadianceField {
 
  private:
   void read_zones(const Solution& solution);
-  /// Of value k of a part, whose batches weigh `weight` together [W/m2].
-  float irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t k) const;
+  /// Of a zone in a part, whose batches weigh `weight` together [W/m2].
+  float irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t zone,
+                   std::size_t band) const;
   void add_transmitted(const Solution& solution, const std::vector<double>& part_weight);
 
   const Room* room_;

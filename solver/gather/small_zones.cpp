@@ -234,7 +234,7 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   // As many rays as the mean zone meets packets leave about its error.
   const double enough = packet_rays / static_cast<double>(mesh.zone_count() * kRaysPerPoint);
   const int points = whole_points(std::min(enough, points_left / static_cast<double>(chosen.size())));
-  solution.gathered.keep(solution.sums, bands, chosen);
+  solution.gathered.keep(solution.sums, chosen);
   const std::size_t gathered = gatherer.gather(
       chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, std::size_t b, const ZoneReplicates& x) {
         std::span<const double> caustic;

@@ -38,15 +38,12 @@ struct ProbeSet {
 
 /// As luminaires send out their light, directional ones excepted: theirs comes from outside.
 ProbeSet emitted_probes(const PacketRoom& transport, const PacketSources& emission) {
-  const std::size_t bands = transport.bands();
   ProbeSet probes;
-  probes.flight = plan_first_flight(emission, bands, kProbes, 0.5);
+  probes.flight = plan_first_flight(emission, kProbes, 0.5);
   for (std::size_t s = 0; s < emission.sources.size(); ++s) {
     const PacketSource& source = emission.sources[s];
     const bool outside = !source.zone.valid() && is_at_infinity(transport.scene().lights[source.light]);
-    double power = 0;
-    for (std::size_t b = 0; b < bands && !outside; ++b)
-      power += static_cast<double>(emission.quanta[s * bands + b]) * emission.watts_per_quantum[b];
+    const double power = outside ? 0 : emission.watts_of(s);
     probes.watts.push_back(power / (probes.flight.first_packet[s + 1] - probes.flight.first_packet[s]));
   }
   return probes;
@@ -77,7 +74,7 @@ ProbeSet reflected_probes(const Solution& solution) {
     }
     before = upto;
   }
-  probes.flight.quanta.assign(probes.watts.size() * bands, 0);
+  probes.flight.quanta.assign(probes.watts.size() * solution.sums.channels.count(), 0);
   return probes;
 }
 

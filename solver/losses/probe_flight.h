@@ -46,7 +46,7 @@ void trace_probes(const PacketRoom& transport, const Flight& flight, std::uint32
                   const StopToken* stop = nullptr) {
   constexpr std::uint64_t kSeed = 0;
   const FlightNumbers numbers(SamplingKind::kSobol, kSeed, 0, stream);
-  std::vector<std::int64_t> quanta(16 * transport.bands());
+  std::vector<std::int64_t> quanta(16 * transport.channels().count());
   if (flight.packets() == 0) return;
   FlightCursor cursor(transport, flight, 0);
   std::size_t source = 0;

@@ -67,26 +67,22 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const PacketRoom& transport, c
                                                   const StopToken* stop) {
   const Scene& scene = transport.scene();
   const ZoneMesh& mesh = transport.mesh();
-  const std::size_t bands = transport.bands();
-  PacketSources surfaces;  // without the lights that have no area
+  PacketSources surfaces(emission.channels);  // without the lights that have no area
   std::vector<double> watts;
   std::vector<bool> emits(scene.surfaces.size(), false);
   for (std::size_t s = 0; s < emission.sources.size(); ++s) {
     if (!emission.sources[s].zone.valid()) continue;
     surfaces.sources.push_back(emission.sources[s]);
-    double power = 0;
-    for (std::size_t b = 0; b < bands; ++b) {
-      surfaces.quanta.push_back(emission.quanta[s * bands + b]);
-      power += static_cast<double>(emission.quanta[s * bands + b]) * emission.watts_per_quantum[b];
-    }
-    watts.push_back(power);
+    const auto quanta = emission.quanta_of(s);
+    surfaces.quanta.insert(surfaces.quanta.end(), quanta.begin(), quanta.end());
+    watts.push_back(emission.watts_of(s));
     emits[mesh.zone_surface(emission.sources[s].zone).index()] = true;
   }
   LampGroups lamps(scene, emits, stop);
   if (lamps.extents().empty()) return {};
   const auto packets =
       static_cast<std::uint32_t>(std::clamp<std::size_t>(1024 * lamps.extents().size(), 4096, 65536));
-  const Flight flight = plan_first_flight(surfaces, bands, packets, 0.5);
+  const Flight flight = plan_first_flight(surfaces, packets, 0.5);
   std::map<std::size_t, double> sent;
   std::map<std::size_t, double> kept;
   const auto visit = [&](const ProbeRay& probe) {

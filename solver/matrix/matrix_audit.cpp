@@ -39,7 +39,7 @@ void book_matrix_solution(const PacketRoom& transport, const PacketSources& emis
   const Eigen::VectorXd row_sums = factors.row_sums();
   audit.batches = batches;
   audit.weight = batches;
-  for (std::size_t b = 0; b < transport.bands(); ++b) {
+  for (std::size_t b = 0; b < transport.channels().bands(); ++b) {
     BandAudit& band = audit.bands[b];
     if (!(emission.watts_per_quantum[b] > 0)) continue;
     const auto column = static_cast<Eigen::Index>(b);

@@ -77,7 +77,7 @@ void add_punctual_lights(const PacketRoom& transport, std::uint64_t seed, ZonalS
 
 ZonalSystem make_system(const PacketRoom& transport, const FormFactors& factors, const Solution& solution) {
   const Eigen::Index zones = to_index(factors.zones());
-  const Eigen::Index bands = to_index(transport.bands());
+  const Eigen::Index bands = to_index(transport.channels().bands());
   ZonalSystem system{factors,
                      Eigen::VectorXd(zones),
                      RowMatrix(zones, bands),
@@ -89,7 +89,7 @@ ZonalSystem make_system(const PacketRoom& transport, const FormFactors& factors,
   for (Eigen::Index z = 0; z < zones; ++z) {
     const ZoneId zone(static_cast<std::size_t>(z));
     system.areas(z) = factors.zone_area(zone.index());
-    for (std::size_t b = 0; b < transport.bands(); ++b) {
+    for (std::size_t b = 0; b < transport.channels().bands(); ++b) {
       system.emitted(z, to_index(b)) = solution.emitted_radiosity(zone, b);
       system.reflectance(z, to_index(b)) = transport.surface_model().reflectance(
           transport.mesh().zone_surface(zone), transport.mesh().zone_is_front(zone))[b];

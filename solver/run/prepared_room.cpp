@@ -8,8 +8,8 @@ PreparedRoom::PreparedRoom(const Scene& scene, Solution& solution, const WorkWat
     : room((preparing.at(0), scene), solution.mesh),
       transport(room),
       emission(collect_packet_sources(transport)) {
-  for (std::size_t b = 0; b < scene.bands.count(); ++b)
-    solution.audit.bands[b].watts_per_quantum = emission.watts_per_quantum[b];
+  for (std::size_t c = 0; c < emission.channels.count(); ++c)
+    solution.audit.bands[c].watts_per_quantum = emission.watts_per_quantum[c];
   if (is_dark()) {
     solution.record.stopped = StopReason::kNoLuminaire;
     solution.record.unreached_zones = solution.mesh.zone_count();

@@ -22,7 +22,9 @@ StopToken::Clock::duration clock_duration(double seconds) {
 }  // namespace
 
 bool gathers_small_zones(const Solution& solution) {
-  return solution.settings.gather_small_zones && small_zone_count(solution.mesh) > 0;
+  // What is gathered tells bands apart, not light groups.
+  return solution.settings.gather_small_zones && solution.sums.channels.groups() == 1 &&
+         small_zone_count(solution.mesh) > 0;
 }
 
 double seconds_since(StopToken::Clock::time_point start) {

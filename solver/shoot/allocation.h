@@ -10,12 +10,12 @@ namespace reemit {
 
 /// Chooses which zones re-emit and with how much: systematic sampling along the cumulative unshot power. A
 /// zone with power for a packet or more shoots exactly what it has. Of the others the chosen ones take over
-/// the power of those passed over, band by band in equal proportion, so the sum is kept to the quantum; what
-/// changes hands is recorded as roulette gain and loss, which cancel. Results do not depend on the number of
-/// threads.
+/// the power of those passed over, channel by channel in equal proportion, so the sum is kept to the quantum;
+/// what changes hands is recorded as roulette gain and loss, which cancel. Results do not depend on the
+/// number of threads.
 class Allocation {
  public:
-  Allocation(std::size_t zones, std::size_t bands);
+  Allocation(std::size_t zones, Channels channels);
 
   /// Sum of the unshot power, to be called before each plan().
   std::int64_t measure(const SweepAccounts& accounts);
@@ -31,22 +31,22 @@ class Allocation {
   };
   /// Consecutive zones that one thread looks at.
   struct Chunk {
-    std::int64_t power = 0;   // of all bands
+    std::int64_t power = 0;   // of all channels
     std::int64_t before = 0;  // power of all chunks before this one
     std::vector<Chosen> chosen;
-    std::vector<std::int64_t> small_total;  // power of all small zones per band
-    std::vector<double> small_wanted;       // power of the chosen small zones after growth, per band
+    std::vector<std::int64_t> small_total;  // power of all small zones per channel
+    std::vector<double> small_wanted;       // power of the chosen small zones after growth, per channel
   };
   static constexpr std::size_t kChunkBlocks = 64;
 
   template <class Visit>
   static void for_live_blocks(std::size_t chunk, const SweepAccounts& accounts, const Visit& visit);
   void choose(std::size_t chunk, const SweepAccounts& accounts, double quantum, double offset);
-  bool hand_over(std::vector<std::int64_t>& unshot, std::size_t band, Flight& flight,
+  bool hand_over(std::vector<std::int64_t>& unshot, std::size_t channel, Flight& flight,
                  BatchBooks& books) const;
   void drop_passed_over(SweepAccounts& accounts, const std::vector<bool>& exchanged, BatchBooks& books) const;
 
-  std::size_t bands_;
+  std::size_t values_;  // of each zone
   std::vector<Chunk> chunks_;
 };
 

@@ -16,7 +16,7 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 /// Of one batch: its books, and what zones have caught and have yet to send on in a sweep.
 std::size_t bytes_of_batch(const PacketRoom& transport) {
   constexpr std::size_t kAccountsPerValue = 4;
-  return kAccountsPerValue * transport.zones() * transport.bands() * sizeof(std::int64_t);
+  return kAccountsPerValue * transport.zones() * transport.channels().count() * sizeof(std::int64_t);
 }
 
 }  // namespace

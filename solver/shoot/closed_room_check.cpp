@@ -30,7 +30,7 @@ class WayOut {
     if (source.zone.valid() && open_[source.zone.index()]) return true;
     Flight flight;
     flight.add(source, kProbes);
-    flight.quanta.assign(transport_.bands(), 0);
+    flight.quanta.assign(transport_.channels().count(), 0);
     met_.clear();
     for (std::uint32_t first = 0; first < kProbes; first += 16)
       if (block_ends(flight, first)) {
@@ -55,7 +55,7 @@ class WayOut {
     ZoneLanes lanes{};
     UniformLanes numbers{};
     FlightCursor cursor(transport_, flight, first);
-    std::vector<std::int64_t> power(16 * transport_.bands());
+    std::vector<std::int64_t> power(16 * transport_.channels().count());
     cursor.start16(first, 16, numbers_, rays, power.data());
     for (std::uint32_t bounce = 0; bounce < kMostProbeBounces; ++bounce) {
       transport_.rays().closest16(rays, 16, hits);
@@ -86,7 +86,7 @@ class WayOut {
     const double kept = surfaces.reflectance(surfaces.surface(t), hits.front[lane])[band_];
     if (!surfaces.is_specular(t, hits.front[lane])) return kept < 1;
     if (surfaces.specular(t).is_rough()) return true;  // no lobe keeps all light
-    SpecularStep at_normal(transport_.bands());
+    SpecularStep at_normal(transport_.channels().bands());
     surfaces.specular(t).shares(1, hits.front[lane], at_normal);
     const auto mirrored = static_cast<double>(at_normal.reflected[band_]);
     const auto crossing =
@@ -129,17 +129,16 @@ std::string list_of(const std::set<std::size_t>& surfaces, const Scene& scene) {
 void refuse_closed_perfect_reflector(const PacketRoom& transport, const PacketSources& emission,
                                      std::uint64_t seed) {
   const Scene& scene = transport.scene();
-  const std::size_t bands = transport.bands();
-  for (std::size_t b = 0; b < bands; ++b) {
+  emission.channels.for_each([&](std::size_t channel, std::size_t b) {
     bool any_perfect = false;
     for (std::size_t s = 0; s < transport.surfaces(); ++s)
       for (const bool front : {true, false})
         any_perfect = any_perfect || transport.surface_model().reflectance(SurfaceId(s), front)[b] >= 1;
     any_perfect = any_perfect || transport.surface_model().any_specular();
-    if (!any_perfect) continue;
+    if (!any_perfect) return;
     WayOut way_out(transport, b, seed);
     for (std::size_t s = 0; s < emission.sources.size(); ++s) {
-      if (emission.quanta[s * bands + b] == 0 || way_out.exists(emission.sources[s])) continue;
+      if (emission.quanta_of(s)[channel] == 0 || way_out.exists(emission.sources[s])) continue;
       throw InputError(
           scene.source,
           "the luminaire '" + name_of(emission.sources[s], transport) +
@@ -148,7 +147,7 @@ void refuse_closed_perfect_reflector(const PacketRoom& transport, const PacketSo
               "): the radiosity there has no finite value",
           "Give at least one of these surfaces a reflectance below 1, or open the part.");
     }
-  }
+  });
 }
 
 }  // namespace reemit

@@ -16,8 +16,7 @@ std::uint64_t scramble_seed(std::uint64_t seed, std::uint32_t batch, std::uint32
 
 }  // namespace
 
-Flight plan_first_flight(const PacketSources& emission, std::size_t bands, std::uint32_t packets,
-                         double offset) {
+Flight plan_first_flight(const PacketSources& emission, std::uint32_t packets, double offset) {
   Flight flight;
   flight.quanta = emission.quanta;
   double total = 0;
@@ -25,7 +24,7 @@ Flight plan_first_flight(const PacketSources& emission, std::size_t bands, std::
   double running = 0;
   double before = 0;
   for (std::size_t s = 0; s < emission.sources.size(); ++s) {
-    for (std::size_t b = 0; b < bands; ++b) running += static_cast<double>(emission.quanta[s * bands + b]);
+    for (const std::int64_t q : emission.quanta_of(s)) running += static_cast<double>(q);
     const double upto = std::floor(running / total * packets + offset);
     flight.add(emission.sources[s], static_cast<std::uint32_t>(std::max(1.0, upto - before)));
     before = upto;
@@ -42,10 +41,10 @@ void leave_unshot(const Flight& flight, std::uint32_t begin, std::uint32_t end, 
     const std::int64_t packets = first[source + 1] - first[source];
     const std::int64_t from = std::max(begin, first[source]) - first[source];
     const std::int64_t until = std::min(end, first[source + 1]) - first[source];
-    for (std::size_t b = 0; b < books.bands; ++b) {
-      const std::int64_t quanta = flight.quanta[source * books.bands + b];
+    for (std::size_t c = 0; c < books.channels.count(); ++c) {
+      const std::int64_t quanta = flight.quanta[source * books.channels.count() + c];
       const std::int64_t remainder = quanta % packets;
-      book(books.unshot[b],
+      book(books.unshot[c],
            (until - from) * (quanta / packets) + std::min(until, remainder) - std::min(from, remainder));
     }
   }
@@ -85,9 +84,9 @@ FlightCursor::FlightCursor(const PacketRoom& transport, const Flight& flight, st
     : transport_(transport),
       flight_(flight),
       arrivals_(arrivals),
-      bands_(transport.bands()),
-      share_(transport.bands()),
-      remainder_(transport.bands()) {
+      values_(transport.channels().count()),
+      share_(values_),
+      remainder_(values_) {
   const auto after = std::upper_bound(flight.first_packet.begin(), flight.first_packet.end(), first_packet);
   enter_source(static_cast<std::size_t>(after - flight.first_packet.begin()) - 1);
 }
@@ -98,10 +97,10 @@ void FlightCursor::enter_source(std::size_t source) {
   end_ = flight_.first_packet[source + 1];
   const std::int64_t packets = end_ - begin_;
   if (arrivals_ != nullptr) dealer_ = arrivals_->deal(flight_.sources[source].zone, end_ - begin_);
-  for (std::size_t b = 0; b < bands_; ++b) {
-    const std::int64_t quanta = flight_.quanta[source * bands_ + b];
-    share_[b] = packets == 1 ? quanta : quanta / packets;
-    remainder_[b] = quanta - share_[b] * packets;
+  for (std::size_t c = 0; c < values_; ++c) {
+    const std::int64_t quanta = flight_.quanta[source * values_ + c];
+    share_[c] = packets == 1 ? quanta : quanta / packets;
+    remainder_[c] = quanta - share_[c] * packets;
   }
 }
 
@@ -149,7 +148,7 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
     }
     std::int64_t k = packet - begin_;
     for (; lane < until; ++lane, ++k)
-      for (std::size_t b = 0; b < bands_; ++b) *quanta++ = share_[b] + (k < remainder_[b] ? 1 : 0);
+      for (std::size_t c = 0; c < values_; ++c) *quanta++ = share_[c] + (k < remainder_[c] ? 1 : 0);
   }
   UniformLanes x;
   if (any_uniform)

@@ -17,7 +17,7 @@ namespace reemit {
 struct Flight {
   std::vector<PacketSource> sources;
   std::vector<std::uint32_t> first_packet{0};  ///< One more entry than sources.
-  std::vector<std::int64_t> quanta;            ///< [source * bands + band]
+  std::vector<std::int64_t> quanta;            ///< [source * channels + channel]
 
   std::uint32_t packets() const { return first_packet.back(); }
   void clear() {
@@ -33,8 +33,7 @@ struct Flight {
 
 /// The first flight of a batch: `packets` packets over the luminaires in proportion to power, at least one
 /// each. Sources keep exactly their own power; only how many packets carry it depends on `offset` in [0,1).
-Flight plan_first_flight(const PacketSources& emission, std::size_t bands, std::uint32_t packets,
-                         double offset);
+Flight plan_first_flight(const PacketSources& emission, std::uint32_t packets, double offset);
 
 /// Books the power of packets begin .. end-1, which stay where they are, as unshot. Any thread may call it.
 void leave_unshot(const Flight& flight, std::uint32_t begin, std::uint32_t end, BatchBooks& books);
@@ -66,7 +65,7 @@ class FlightCursor {
                const ArrivalPoints* arrivals = nullptr);
 
   /// Starts packets first .. first+count-1 (first is a multiple of 16, count <= 16).
-  /// quanta[lane * bands + band] becomes the power of each.
+  /// quanta[lane * channels + channel] becomes the power of each.
   void start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
                std::int64_t* quanta);
 
@@ -80,12 +79,12 @@ class FlightCursor {
   const PacketRoom& transport_;
   const Flight& flight_;
   const ArrivalPoints* arrivals_;
-  std::size_t bands_;
+  std::size_t values_;  // of each packet
   std::size_t current_ = 0;
   ArrivalPoints::Dealer dealer_;
   std::uint32_t begin_ = 0;  // packets of the current source
   std::uint32_t end_ = 0;
-  std::vector<std::int64_t> share_;      // of one packet of the current source, per band
+  std::vector<std::int64_t> share_;      // of one packet of the current source, per channel
   std::vector<std::int64_t> remainder_;  // the first so many packets carry one quantum more
   ZoneLanes lanes_{};
 };

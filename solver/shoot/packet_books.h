@@ -27,7 +27,7 @@ class LocalBooks {
   }
 
   /// Power that left the room in direction (x,y,z), booked under the nearest axis.
-  void escape(float x, float y, float z, std::size_t band, std::int64_t quanta) {
+  void escape(float x, float y, float z, std::size_t channel, std::int64_t quanta) {
     const float ax = x < 0 ? -x : x;
     const float ay = y < 0 ? -y : y;
     const float az = z < 0 ? -z : z;
@@ -38,8 +38,8 @@ class LocalBooks {
       axis = y < 0 ? 3 : 2;
     else
       axis = z < 0 ? 5 : 4;
-    escaped_[axis * books_.bands + band] += quanta;
-    if (band == 0) count_event(books_.events.escapes);
+    escaped_[axis * books_.channels.count() + channel] += quanta;
+    if (channel == 0) count_event(books_.events.escapes);
   }
 
  private:
@@ -63,12 +63,12 @@ struct SpecularWay {
 
 /// 16 rays with what their packets carry.
 struct PacketBlock {
-  explicit PacketBlock(std::size_t bands) : power(16 * bands) {}
+  explicit PacketBlock(Channels channels) : power(16 * channels.count()) {}
   int count = 0;
   Ray16 rays{};
   std::uint32_t id[16] = {};
   SpecularWay way[16] = {};
-  std::vector<std::int64_t> power;  ///< [lane * bands + band]
+  std::vector<std::int64_t> power;  ///< [lane * channels + channel]
 };
 
 /// Packets that wait until there are enough for a block: those whose rays ended in doubt
@@ -76,7 +76,7 @@ struct PacketBlock {
 /// by one beside others, they would cost as much as a whole block.
 class WaitingPackets {
  public:
-  explicit WaitingPackets(std::size_t bands) : bands_(bands) {}
+  explicit WaitingPackets(Channels channels) : values_(channels.count()) {}
 
   std::size_t count() const { return id_.size(); }
 
@@ -86,16 +86,16 @@ class WaitingPackets {
     direction_.push_back(direction);
     id_.push_back(id);
     way_.push_back(way);
-    power_.insert(power_.end(), power, power + bands_);
+    power_.insert(power_.end(), power, power + values_);
   }
   /// Adds a packet of a block for its second look.
   void add_doubtful(const RayTracer& scene, const PacketBlock& block, const Hit16& hits, int lane) {
     add(block.rays.origin(lane), scene.second_direction(block.rays.direction(lane), hits, lane),
-        block.id[lane], block.way[lane], &block.power[static_cast<std::size_t>(lane) * bands_]);
+        block.id[lane], block.way[lane], &block.power[static_cast<std::size_t>(lane) * values_]);
   }
   void append(const WaitingPackets& more) {
     for (std::size_t i = 0; i < more.count(); ++i)
-      add(more.origin_[i], more.direction_[i], more.id_[i], more.way_[i], &more.power_[i * bands_]);
+      add(more.origin_[i], more.direction_[i], more.id_[i], more.way_[i], &more.power_[i * values_]);
   }
 
   /// Moves those from `first` on whose way has gone beyond this part into `other`.
@@ -103,14 +103,14 @@ class WaitingPackets {
     std::size_t kept = first;
     for (std::size_t i = first; i < count(); ++i) {
       if (way_[i].part > part) {
-        other.add(origin_[i], direction_[i], id_[i], way_[i], &power_[i * bands_]);
+        other.add(origin_[i], direction_[i], id_[i], way_[i], &power_[i * values_]);
         continue;
       }
       origin_[kept] = origin_[i];
       direction_[kept] = direction_[i];
       id_[kept] = id_[i];
       way_[kept] = way_[i];
-      std::copy_n(&power_[i * bands_], bands_, &power_[kept * bands_]);
+      std::copy_n(&power_[i * values_], values_, &power_[kept * values_]);
       ++kept;
     }
     resize(kept);
@@ -129,7 +129,7 @@ class WaitingPackets {
       block.rays.set(lane, origin_[i], direction_[i]);
       block.id[lane] = id_[i];
       block.way[lane] = way_[i];
-      std::copy_n(&power_[i * bands_], bands_, &block.power[static_cast<std::size_t>(lane) * bands_]);
+      std::copy_n(&power_[i * values_], values_, &block.power[static_cast<std::size_t>(lane) * values_]);
     }
   }
 
@@ -139,10 +139,10 @@ class WaitingPackets {
     direction_.resize(count);
     id_.resize(count);
     way_.resize(count);
-    power_.resize(count * bands_);
+    power_.resize(count * values_);
   }
 
-  std::size_t bands_;
+  std::size_t values_;  // of each packet
   std::vector<Vec3f> origin_;
   std::vector<Vec3f> direction_;
   std::vector<std::uint32_t> id_;

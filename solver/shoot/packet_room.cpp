@@ -4,8 +4,8 @@
 
 namespace reemit {
 
-PacketRoom::PacketRoom(const Room& room)
-    : room_(&room), mesh_(&room.mesh()), rays_(&room.rays()), bands_(room.band_count()) {
+PacketRoom::PacketRoom(const Room& room, Channels channels)
+    : room_(&room), mesh_(&room.mesh()), rays_(&room.rays()), channels_(channels) {
   const ZoneMesh& mesh = *mesh_;
   const RayTracer& rays = *rays_;
   for (const PunctualLight& light : lights_before_faces(room.scene(), rays))

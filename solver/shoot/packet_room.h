@@ -18,7 +18,9 @@ namespace reemit {
 /// The room must outlive it.
 class PacketRoom {
  public:
-  explicit PacketRoom(const Room& room);
+  explicit PacketRoom(const Room& room) : PacketRoom(room, channels_of(room.scene())) {}
+  /// With light groups other than those of the scene.
+  PacketRoom(const Room& room, Channels channels);
 
   const Room& room() const { return *room_; }
   const Scene& scene() const { return room_->scene(); }
@@ -27,12 +29,12 @@ class PacketRoom {
   const ZoneMesh& mesh() const { return *mesh_; }
   const RayTracer& rays() const { return *rays_; }
   const SurfaceModel& surface_model() const { return room_->surfaces(); }
-  std::size_t bands() const { return bands_; }
+  Channels channels() const { return channels_; }
   std::size_t zones() const { return mesh_->zone_count(); }
   std::size_t surfaces() const { return room_->surfaces().surface_count(); }
 
   /// Empty books of a batch in this room.
-  BatchBooks new_books() const { return {zones(), surfaces(), bands(), scene().bends_light()}; }
+  BatchBooks new_books() const { return {zones(), surfaces(), channels(), scene().bends_light()}; }
 
   /// Puts the geometry of a zone into lanes first .. last-1.
   void put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {
@@ -150,7 +152,7 @@ class PacketRoom {
   const Room* room_;
   const ZoneMesh* mesh_;
   const RayTracer* rays_;
-  std::size_t bands_;
+  Channels channels_;
   std::vector<PunctualEmitter> emitters_;
   std::vector<TrianglePatch> patches_;
 };

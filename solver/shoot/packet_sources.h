@@ -1,6 +1,6 @@
 #pragma once
 #include <cstdint>
-#include <variant>
+#include <span>
 #include <vector>
 
 #include "solver/shoot/packet_room.h"
@@ -13,16 +13,29 @@ struct PacketSource {
   ZoneId zone;              ///< Valid for surfaces that emit.
   std::uint32_t light = 0;  ///< Else index into Scene::lights.
   float exponent = 0;       ///< Of a surface: Material::emission_exponent.
+  std::uint32_t group = 0;  ///< Light group (Channels): its packets have power in the channels of that alone.
 };
 
-/// All that emits, with its power in quanta: the sources of one band share kBatchQuanta exactly.
+/// All that emits, with its power in quanta: the sources of one channel share kBatchQuanta exactly.
 struct PacketSources {
+  explicit PacketSources(Channels of_packets) : channels(of_packets) {}
+
+  Channels channels;
   std::vector<PacketSource> sources;
-  std::vector<std::int64_t> quanta;       ///< [source * bands + band]
-  std::vector<double> watts;              ///< Emitted power of the room per band [W].
-  std::vector<double> watts_per_quantum;  ///< Per band [W]; 0 for a band in which nothing emits.
+  std::vector<std::int64_t> quanta;       ///< [source * channels + channel]
+  std::vector<double> watts_per_quantum;  ///< Per channel [W]; 0 for one in which nothing emits.
+
+  std::span<const std::int64_t> quanta_of(std::size_t source) const {
+    return {&quanta[source * channels.count()], channels.count()};
+  }
+  double watts_of(std::size_t source) const;  ///< Power of a source in all bands together [W].
 };
 
+/// Luminaires with their power [W], watts[source * channels.bands() + band], as packets.
+PacketSources make_packet_sources(std::vector<PacketSource> sources, const std::vector<double>& watts,
+                                  Channels channels);
+
+/// All luminaires of a room, as one group.
 PacketSources collect_packet_sources(const PacketRoom& transport);
 
 }  // namespace reemit

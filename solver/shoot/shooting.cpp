@@ -26,7 +26,7 @@ constexpr std::uint32_t kMostSweeps = 200'000;
 
 /// Account that a packet is booked to, and whether other threads may book to it at the same time.
 struct Account {
-  std::int64_t* quanta = nullptr;  ///< By band; null if the packet left the room or needs a second look.
+  std::int64_t* quanta = nullptr;  ///< By channel; null if the packet left the room or needs a second look.
   bool shared = false;
   std::uint64_t* place = nullptr;    ///< Among the arrival points of its zone, if they are kept.
   std::uint32_t member = kNoMember;  ///< Of the zone, if that is a group.
@@ -39,7 +39,7 @@ struct Account {
 void find_accounts(const PacketRoom& transport, const Hit16& hits, int count,
                    SweepAccounts::Incident& incident, bool shared, bool second_look, ArrivalPoints* arrivals,
                    const std::uint32_t* bits, BatchBooks& books, Account* accounts) {
-  const std::size_t bands = transport.bands();
+  const std::size_t channels = transport.channels().count();
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t t = hits.triangle[lane];
     accounts[lane] = {};
@@ -48,7 +48,7 @@ void find_accounts(const PacketRoom& transport, const Hit16& hits, int count,
     if (!second_look && (!zone.valid() || transport.rays().is_at_edge(t, hits.u[lane], hits.v[lane])))
       continue;
     if (zone.valid()) {
-      accounts[lane] = {&incident.quanta[zone.index() * bands], shared};
+      accounts[lane] = {&incident.quanta[zone.index() * channels], shared};
       incident.touch(zone.index());
       if (arrivals != nullptr && ArrivalPoints::has_points(transport.mesh(), zone)) {
         if (transport.mesh().is_group(zone))
@@ -58,7 +58,7 @@ void find_accounts(const PacketRoom& transport, const Hit16& hits, int count,
       }
     } else {
       const SurfaceId surface = transport.mesh().triangle(TriangleId(t)).surface;
-      accounts[lane] = {&books.absorbed_on_backs[surface.index() * bands], true};
+      accounts[lane] = {&books.absorbed_on_backs[surface.index() * channels], true};
       count_event(books.events.back_hits);
     }
     __builtin_prefetch(accounts[lane].quanta, 1);
@@ -72,7 +72,7 @@ class SweepTracer {
   SweepTracer(const BatchTask& batch, std::uint32_t number, ArrivalPoints* arrivals, SweepAccounts& sweep,
               BatchBooks& books)
       : transport_(batch.transport),
-        bands_(batch.transport.bands()),
+        channels_(batch.transport.channels()),
         number_(number),
         observer_(batch.ray_observer),
         shared_(accounts_are_shared(sweep.incident.size())),
@@ -82,10 +82,10 @@ class SweepTracer {
         incident_(sweep.mine()),
         local_(books),
         specular_(batch, books),
-        doubtful_(bands_),
-        carried_(bands_),
-        held_(bands_),
-        waiting_(bands_) {}
+        doubtful_(channels_),
+        carried_(channels_),
+        held_(channels_),
+        waiting_(channels_) {}
 
   /// Packets whose way goes beyond this part of the light are held instead of traced on.
   void hold_beyond(LightPart part) { holds_beyond_ = part; }
@@ -128,11 +128,11 @@ class SweepTracer {
     find_accounts(transport_, hits_, block.count, incident_, shared_, second_look, arrivals_, bits_.word[0],
                   books_, accounts_);
     // The compiler cannot know that booking leaves the members of this object alone.
-    const std::size_t bands = bands_;
+    const std::size_t channels = channels_.count();
     const bool any_specular = specular_.any();
     const std::size_t carried_before = carried_.count();
     std::int64_t* quanta = block.power.data();
-    for (int lane = 0; lane < block.count; ++lane, quanta += bands) {
+    for (int lane = 0; lane < block.count; ++lane, quanta += channels) {
       const Account& account = accounts_[lane];
       if (account.quanta == nullptr && !second_look) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
@@ -147,11 +147,11 @@ class SweepTracer {
           arrivals_->add_in_group(account.place, bits_.word[0][lane], account.member, hits_.u[lane],
                                   hits_.v[lane]);
       }
-      for (std::size_t b = 0; b < bands; ++b)
+      for (std::size_t c = 0; c < channels; ++c)
         if (account.quanta != nullptr)
-          book(account.quanta[b], quanta[b], account.shared);
+          book(account.quanta[c], quanta[c], account.shared);
         else
-          local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], b, quanta[b]);
+          local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], c, quanta[c]);
       if (account.quanta != nullptr && any_specular)
         specular_.carry_on(block, hits_, lane, number_, carried_);
     }
@@ -159,7 +159,7 @@ class SweepTracer {
   }
 
   const PacketRoom& transport_;
-  std::size_t bands_;
+  Channels channels_;
   std::uint32_t number_;
   const RayObserver* observer_;
   bool shared_;
@@ -195,7 +195,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     SweepTracer tracer(batch, number, arrivals, sweep, books);
     if (number == 0) tracer.hold_beyond(LightPart::kDirect);
-    PacketBlock block(transport.bands());
+    PacketBlock block(transport.channels());
     for (std::uint32_t task = range.begin(); task != range.end(); ++task) {
       const std::uint32_t begin = task * kPacketsPerTask;
       const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
@@ -228,7 +228,7 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
 /// beyond it stay in `held`.
 void trace_held(const BatchTask& batch, LightPart part, WaitingPackets& held, ArrivalPoints* arrivals,
                 SweepAccounts& sweep, BatchBooks& books) {
-  WaitingPackets packets(batch.transport.bands());
+  WaitingPackets packets(batch.transport.channels());
   std::swap(packets, held);
   packets.move_beyond(part, held);
   std::atomic<std::uint64_t> carried{0};
@@ -237,7 +237,7 @@ void trace_held(const BatchTask& batch, LightPart part, WaitingPackets& held, Ar
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, kPacketsPerTask / 16), [&](const auto& range) {
     SweepTracer tracer(batch, 0, arrivals, sweep, books);
     tracer.hold_beyond(part);
-    PacketBlock block(batch.transport.bands());
+    PacketBlock block(batch.transport.channels());
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       packets.copy(16 * i, block);
       tracer.trace_on(block);
@@ -255,15 +255,16 @@ void trace_held(const BatchTask& batch, LightPart part, WaitingPackets& held, Ar
 /// Moves what a sweep brought in into `part` of the books; the reflected share becomes unshot power.
 void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std::int64_t>& part,
              BatchBooks& books) {
-  const std::size_t bands = transport.bands();
+  const Channels channels = transport.channels();
+  const std::size_t values = channels.count();
   const ZoneMesh& mesh = transport.mesh();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sweep.block_count(), 16), [&](const auto& range) {
-    std::vector<std::int64_t> absorbed(bands, 0);
+    std::vector<std::int64_t> absorbed(values, 0);
     SurfaceId surface;
     const auto settle = [&] {
-      for (std::size_t b = 0; b < bands; ++b) {
-        if (absorbed[b] != 0) book(books.absorbed[surface.index() * bands + b], absorbed[b]);
-        absorbed[b] = 0;
+      for (std::size_t c = 0; c < values; ++c) {
+        if (absorbed[c] != 0) book(books.absorbed[surface.index() * values + c], absorbed[c]);
+        absorbed[c] = 0;
       }
     };
     for (std::size_t block = range.begin(); block != range.end(); ++block) {
@@ -280,16 +281,16 @@ void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std:
           surface = s;
         }
         const double* rho = transport.surface_model().reflectance(surface, mesh.zone_is_front(ZoneId(z)));
-        for (std::size_t b = 0; b < bands; ++b) {
-          const std::size_t i = z * bands + b;
+        channels.for_each([&](std::size_t c, std::size_t band) {
+          const std::size_t i = z * values + c;
           std::int64_t in = 0;
           for (std::int64_t* copy : copies) in += std::exchange(copy[i], 0);
-          if (in == 0) continue;
-          const std::int64_t reflected = share_of(in, rho[b]);
+          if (in == 0) return;
+          const std::int64_t reflected = share_of(in, rho[band]);
           part[i] += in;
           sweep.unshot[i] += reflected;
-          absorbed[b] += in - reflected;
-        }
+          absorbed[c] += in - reflected;
+        });
       }
     }
     settle();
@@ -300,19 +301,19 @@ void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std:
 
 bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   const PacketRoom& transport = task.transport;
-  const std::size_t bands = transport.bands();
+  const Channels channels = transport.channels();
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
-  SweepAccounts accounts(transport.zones(), bands);
+  SweepAccounts accounts(transport.zones(), channels);
 
-  Flight flight =
-      plan_first_flight(task.emission, bands, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
-  for (std::size_t i = 0; i < flight.quanta.size(); ++i) books.emitted[i % bands] += flight.quanta[i];
+  Flight flight = plan_first_flight(task.emission, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
+  for (std::size_t i = 0; i < flight.quanta.size(); ++i)
+    books.emitted[i % channels.count()] += flight.quanta[i];
   const auto emitted =
       static_cast<double>(std::accumulate(books.emitted.begin(), books.emitted.end(), std::int64_t{0}));
   books.packets += flight.packets();
   const double quantum = emitted / flight.packets();
 
-  Allocation allocation(transport.zones(), bands);
+  Allocation allocation(transport.zones(), channels);
   std::optional<ArrivalPoints> arrivals;
   if (task.settings.reemission == Reemission::kFromHits)
     arrivals.emplace(transport.zones(), flight.packets());
@@ -320,7 +321,7 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   for (std::uint32_t sweep = 0;; ++sweep) {
     if (arrivals) arrivals->begin(sweep);
     ArrivalPoints* points = arrivals ? &*arrivals : nullptr;
-    WaitingPackets held(bands);
+    WaitingPackets held(channels);
     whole = trace_flight(task, flight, sweep, points, accounts, held, books);
     reflect(transport, accounts, sweep == 0 ? books.direct : books.indirect, books);
     if (held.count() > 0 && !books.caustic.empty()) {
@@ -339,7 +340,8 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
     const double packets = std::max(1.0, std::round(left / quantum));
     allocation.plan(accounts, left / packets, offsets.uniform4(0, task.batch, sweep + 1)[0], flight, books);
   }
-  for (std::size_t i = 0; i < accounts.unshot.size(); ++i) books.unshot[i % bands] += accounts.unshot[i];
+  for (std::size_t i = 0; i < accounts.unshot.size(); ++i)
+    books.unshot[i % channels.count()] += accounts.unshot[i];
   return whole;
 }
 

@@ -22,8 +22,9 @@ SpecularPackets::SpecularPackets(const BatchTask& task, BatchBooks& books)
       rng_(task.settings.seed, RngPurpose::kSpecular),
       batch_(task.batch),
       any_(surfaces_.any_specular()),
-      way_(task.transport.bands()),
-      power_(task.transport.bands()) {}
+      channels_(task.transport.channels()),
+      way_(channels_.bands()),
+      power_(channels_.count()) {}
 
 void SpecularPackets::draw_bits(const CounterRng& rng, const PacketBlock& block, std::uint32_t step,
                                 BitLanes& bits) const {
@@ -41,14 +42,13 @@ void SpecularPackets::attenuate(const SpecularWay& way, const Hit16& hits, int l
   if (hits.triangle[lane] == RayTracer::kMiss) return;
   const TriangleId body = surfaces_.body_around(TriangleId(hits.triangle[lane]), hits.front[lane], way.body);
   if (!body.valid()) return;
-  const std::size_t bands = power_.size();
-  const std::size_t account = mesh_.triangle(body).surface.index() * bands;
-  for (std::size_t b = 0; b < bands; ++b) {
-    const std::int64_t left =
-        share_of(power[b], static_cast<double>(surfaces_.specular(body).left_inside(b, hits.distance[lane])));
-    book(books_.absorbed[account + b], power[b] - left);
-    power[b] = left;
-  }
+  const std::size_t account = mesh_.triangle(body).surface.index() * channels_.count();
+  channels_.for_each([&](std::size_t c, std::size_t band) {
+    const float share = surfaces_.specular(body).left_inside(band, hits.distance[lane]);
+    const std::int64_t left = share_of(power[c], static_cast<double>(share));
+    book(books_.absorbed[account + c], power[c] - left);
+    power[c] = left;
+  });
 }
 
 float SpecularPackets::chances(const PacketBlock& block, const Hit16& hits, int lane) {
@@ -82,16 +82,17 @@ void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
   SurfacePoint x = surface_point(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]);
   x.towards = -block.rays.direction(lane);
   if (!surfaces_.specular(t).choose(x, u, spread, Survival::kRoulette, way_, most)) return;
-  const std::size_t bands = power_.size();
-  const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * bands];
+  const std::size_t values = channels_.count();
+  const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * values];
   const std::size_t surface = mesh_.triangle(t).surface.index();
   const bool ends = block.way[lane].steps + 1 == kMostSteps;
-  for (std::size_t b = 0; b < bands; ++b) {
-    power_[b] = share_of(power[b], static_cast<double>(way_.share()[b]) / static_cast<double>(way_.chance));
-    if (power_[b] == 0) continue;
-    book(books_.absorbed[surface * bands + b], -power_[b]);
-    if (ends) book(books_.unshot[b], power_[b]);
-  }
+  channels_.for_each([&](std::size_t c, std::size_t band) {
+    power_[c] =
+        share_of(power[c], static_cast<double>(way_.share()[band]) / static_cast<double>(way_.chance));
+    if (power_[c] == 0) return;
+    book(books_.absorbed[surface * values + c], -power_[c]);
+    if (ends) book(books_.unshot[c], power_[c]);
+  });
   if (!ends)
     next.add(rays_.ray_origin(t, x.u, x.v, way_.front), way_.direction, block.id[lane],
              {block.way[lane].steps + 1, std::max(block.way[lane].part, part_of(way_)),

@@ -24,7 +24,7 @@ class SpecularPackets {
   /// Random bits of the packets of a block; those of packets that were sent on differ from surface to
   /// surface.
   void draw_bits(const CounterRng& rng, const PacketBlock& block, std::uint32_t step, BitLanes& bits) const;
-  /// Takes from a packet's power, per band, what a body of glass absorbed on the way to where it met the
+  /// Takes from a packet's power, per channel, what a body of glass absorbed on the way to where it met the
   /// room.
   void attenuate(const SpecularWay& way, const Hit16& hits, int lane, std::int64_t* power) const;
   /// Sends the packet of a lane on from what it met, into `next`, if it met such a surface and is chosen.
@@ -55,6 +55,7 @@ class SpecularPackets {
   CounterRng rng_;
   std::uint32_t batch_;
   bool any_;
+  Channels channels_;
   SpecularStep way_;
   std::vector<std::int64_t> power_;
 };

@@ -10,22 +10,23 @@
 
 namespace reemit {
 
-/// What zones have caught in a sweep and have yet to send on, in quanta, indexed zone * bands + band. Late
-/// sweeps have few packets, so zones are grouped in blocks, and blocks without power are passed over.
+/// What zones have caught in a sweep and have yet to send on, in quanta, indexed [zone * values +
+/// channel]. Late sweeps have few packets, so zones are grouped in blocks, and blocks without power are
+/// passed over.
 struct SweepAccounts {
   static constexpr std::size_t kBlockZones = 64;
 
-  SweepAccounts(std::size_t zone_count, std::size_t band_count)
+  SweepAccounts(std::size_t zone_count, Channels channels)
       : zones(zone_count),
-        bands(band_count),
-        incident(account_copies(zones * bands),
-                 Incident(zones * bands, (zones + kBlockZones - 1) / kBlockZones)),
-        unshot(zones * bands),
+        values(channels.count()),
+        incident(account_copies(zones * values),
+                 Incident(zones * values, (zones + kBlockZones - 1) / kBlockZones)),
+        unshot(zones * values),
         live((zones + kBlockZones - 1) / kBlockZones) {}
 
   /// Incident power booked by one thread, or by all of them if there is one copy only.
   struct Incident {
-    Incident(std::size_t values, std::size_t blocks) : quanta(values), live(blocks) {}
+    Incident(std::size_t accounts, std::size_t blocks) : quanta(accounts), live(blocks) {}
     std::vector<std::int64_t> quanta;
     std::vector<std::uint8_t> live;  // by block: 0 only if all its quanta are 0
 
@@ -44,7 +45,7 @@ struct SweepAccounts {
   std::size_t block_end(std::size_t block) const { return std::min(zones, (block + 1) * kBlockZones); }
 
   std::size_t zones;
-  std::size_t bands;
+  std::size_t values;  ///< Of each zone.
   std::vector<Incident> incident;
   std::vector<std::int64_t> unshot;
   std::vector<std::uint8_t> live;  ///< By block: 0 only if all its unshot power is 0.

@@ -30,7 +30,7 @@ struct ScatteredPackets {
     std::array<float, 4> u;  ///< Uniform, for the point and direction it leaves with.
   };
   std::vector<Packet> packets;
-  std::vector<std::int64_t> quanta;  ///< [packet * bands + band]
+  std::vector<std::int64_t> quanta;  ///< [packet * channels + channel]
 
   void clear() {
     packets.clear();
@@ -60,7 +60,8 @@ class WalkTask {
   WalkTask(const BatchTask& task, BatchBooks& books, WalkAccounts& zones, std::vector<std::int64_t>& absorbed,
            bool shared)
       : transport_(task.transport),
-        bands_(task.transport.bands()),
+        channels_(task.transport.channels()),
+        values_(channels_.count()),
         rng_(task.settings.seed, RngPurpose::kReflection),
         batch_(task.batch),
         from_hits_(task.settings.reemission == Reemission::kFromHits),
@@ -69,13 +70,13 @@ class WalkTask {
         books_(books),
         local_(books),
         specular_(task, books),
-        doubtful_(bands_),
-        carried_(bands_),
-        again_(bands_),
+        doubtful_(channels_),
+        carried_(channels_),
+        again_(channels_),
         zones_(zones),
         absorbed_(absorbed),
         shared_(shared),
-        block_(bands_) {}
+        block_(channels_) {}
 
   /// False if it was cut off: packets that have not ended, or not set out, are unshot.
   bool run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
@@ -129,7 +130,7 @@ class WalkTask {
                               lane + 1);
       }
       transport_.start(lanes_, numbers, block_.rays);
-      std::copy_n(&leaving_.quanta[first * bands_], static_cast<std::size_t>(block_.count) * bands_,
+      std::copy_n(&leaving_.quanta[first * values_], static_cast<std::size_t>(block_.count) * values_,
                   block_.power.begin());
       trace(bounce);
     }
@@ -180,14 +181,14 @@ class WalkTask {
       if (hits_.triangle[lane] == RayTracer::kMiss) continue;
       zone[lane] = transport_.zone_of(hits_.triangle[lane], hits_.u[lane], hits_.v[lane], hits_.front[lane]);
       // With many zones the books are larger than the caches.
-      if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * bands_], 1);
+      if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * values_], 1);
     }
     BitLanes bits;
     specular_.draw_bits(rng_, block, bounce, bits);
     // The compiler cannot know that booking leaves the members of this object alone.
-    const std::size_t bands = bands_;
+    const std::size_t values = values_;
     for (int lane = 0; lane < block.count; ++lane) {
-      std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * bands];
+      std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * values];
       if (!second_look && (!zone[lane].valid() || transport_.rays().is_at_edge(
                                                       hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
@@ -195,20 +196,21 @@ class WalkTask {
         continue;
       }
       if (hits_.triangle[lane] == RayTracer::kMiss) {
-        for (std::size_t b = 0; b < bands; ++b)
-          local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], b, quanta[b]);
+        for (std::size_t c = 0; c < values; ++c)
+          local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], c, quanta[c]);
         continue;
       }
       const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits_.triangle[lane])).surface;
       if (!zone[lane].valid()) {
         count_event(books_.events.back_hits);
-        for (std::size_t b = 0; b < bands; ++b)
-          book(books_.absorbed_on_backs[surface.index() * bands + b], quanta[b]);
+        for (std::size_t c = 0; c < values; ++c)
+          book(books_.absorbed_on_backs[surface.index() * values + c], quanta[c]);
         continue;
       }
       if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       std::vector<std::int64_t>& part = account_of(block.way[lane].part, bounce);
-      for (std::size_t b = 0; b < bands; ++b) book(part[zone[lane].index() * bands + b], quanta[b], shared_);
+      for (std::size_t c = 0; c < values; ++c)
+        book(part[zone[lane].index() * values + c], quanta[c], shared_);
       reflect(surface, block, lane, bounce, bits);
     }
   }
@@ -217,15 +219,15 @@ class WalkTask {
   void reflect(SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce,
                const BitLanes& bits) {
     const auto k = static_cast<std::size_t>(lane);
-    const std::int64_t* quanta = &block.power[k * bands_];
+    const std::int64_t* quanta = &block.power[k * values_];
     const double* rho = transport_.surface_model().reflectance(surface, hits_.front[lane]);
     double survival = transport_.surface_model().largest_reflectance(surface, hits_.front[lane]);
-    std::int64_t* absorbed = &absorbed_[surface.index() * bands_];
+    std::int64_t* absorbed = &absorbed_[surface.index() * values_];
     const float u = low_bytes_to_unit(bits, k);
     const double on = specular_.any() ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;
     if (survival + on > 1) survival /= survival + on;
     if (!(u < survival)) {
-      for (std::size_t b = 0; b < bands_; ++b) absorbed[b] += quanta[b];
+      for (std::size_t c = 0; c < values_; ++c) absorbed[c] += quanta[c];
       if (on > 0)
         specular_.carry_on(block, hits_, lane, bounce, u - static_cast<float>(survival),
                            1 - static_cast<float>(survival), carried_);
@@ -239,20 +241,21 @@ class WalkTask {
          block.id[lane],
          {CounterRng::to_unit(bits.word[0][k]), CounterRng::to_unit(bits.word[1][k]),
           CounterRng::to_unit(bits.word[2][k]), CounterRng::to_unit(bits.word[3][k])}});
-    for (std::size_t b = 0; b < bands_; ++b) {
-      const std::int64_t kept = share_of(quanta[b], rho[b] / survival);
+    channels_.for_each([&](std::size_t c, std::size_t band) {
+      const std::int64_t kept = share_of(quanta[c], rho[band] / survival);
       waiting_.quanta.push_back(kept);
-      absorbed[b] += quanta[b] - kept;
-    }
+      absorbed[c] += quanta[c] - kept;
+    });
   }
 
   void leave_waiting_unshot() {
     for (std::size_t i = 0; i < waiting_.quanta.size(); ++i)
-      book(books_.unshot[i % bands_], waiting_.quanta[i]);
+      book(books_.unshot[i % values_], waiting_.quanta[i]);
   }
 
   const PacketRoom& transport_;
-  std::size_t bands_;
+  Channels channels_;
+  std::size_t values_;  // of each packet
   CounterRng rng_;
   std::uint32_t batch_;
   bool from_hits_;
@@ -285,12 +288,11 @@ void add(const std::vector<std::int64_t>& from, std::vector<std::int64_t>& to) {
 }  // namespace
 
 bool walk_batch(const BatchTask& task, BatchBooks& books) {
-  const std::size_t bands = task.transport.bands();
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
-  const Flight flight =
-      plan_first_flight(task.emission, bands, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
+  const Flight flight = plan_first_flight(task.emission, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
   const FlightNumbers numbers(task.settings.sampling, task.settings.seed, task.batch, 0);
-  for (std::size_t i = 0; i < flight.quanta.size(); ++i) books.emitted[i % bands] += flight.quanta[i];
+  for (std::size_t i = 0; i < flight.quanta.size(); ++i)
+    books.emitted[i % books.channels.count()] += flight.quanta[i];
   books.packets += flight.packets();
 
   // Absorbed power is few numbers that every packet adds to, so each thread has its own in any case.

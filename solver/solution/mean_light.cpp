@@ -68,7 +68,7 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
   const ZoneMesh& mesh = solution.mesh;
   const ZoneSums& sums = solution.sums;
   const std::size_t bands = solution.bands.count();
-  const std::size_t values = mesh.zone_count() * bands;
+  const std::size_t values = sums.direct.size();
   std::vector<GroupedMean> sides(2 * solution.surface_names.size(), GroupedMean(bands));
   const auto side_of = [&](ZoneId z) -> GroupedMean& {
     return sides[2 * mesh.zone_surface(z).index() + (mesh.zone_is_front(z) ? 0 : 1)];
@@ -78,7 +78,9 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
       Spectrum& sum = into(side_of(ZoneId(z)));
       const double area = mesh.zone_area(ZoneId(z));
       for (std::size_t b = 0; b < bands; ++b)
-        sum[static_cast<Eigen::Index>(b)] += area * value_of(z * bands + b);
+        sum[static_cast<Eigen::Index>(b)] += area * sums.channels.over_groups(b, [&](std::size_t c) {
+          return value_of(z * sums.channels.count() + c);
+        });
     }
   };
   for (std::size_t z = 0; z < mesh.zone_count(); ++z) {

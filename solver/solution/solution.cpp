@@ -41,7 +41,9 @@ std::vector<const std::vector<double>*> ZoneSums::columns() const {
   return columns_of<const std::vector<double>>(*this);
 }
 
-void ZoneSums::clear(std::size_t values, bool caustics) {
+void ZoneSums::clear(std::size_t zones, Channels of_zones, bool caustics) {
+  channels = of_zones;
+  const std::size_t values = zones * channels.count();
   batches = 0;
   group_weight.fill(0);
   weight_squared = 0;
@@ -75,32 +77,35 @@ double ZoneSums::squared_error(double sum, double cross, double squares) const {
   return std::max(0.0, squares - 2 * mean * cross + mean * mean * weight_squared) / (w * w - weight_squared);
 }
 
-void GatheredZones::keep(const ZoneSums& from, std::size_t bands, std::vector<ZoneId> of_zones) {
+void GatheredZones::keep(const ZoneSums& from, std::vector<ZoneId> of_zones) {
+  const std::size_t channels = from.channels.count();
   zones = std::move(of_zones);
   sums.clear();
   group_total.clear();
   for (const ZoneId z : zones)
-    for (std::size_t i = z.index() * bands; i < (z.index() + 1) * bands; ++i)
+    for (std::size_t i = z.index() * channels; i < (z.index() + 1) * channels; ++i)
       for (const std::vector<double>* column : from.columns()) sums.push_back((*column)[i]);
   const std::size_t values = from.direct.size();
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
     for (const ZoneId z : zones) {
-      const auto row = from.group_total.begin() + static_cast<std::ptrdiff_t>(g * values + z.index() * bands);
-      group_total.insert(group_total.end(), row, row + static_cast<std::ptrdiff_t>(bands));
+      const auto row =
+          from.group_total.begin() + static_cast<std::ptrdiff_t>(g * values + z.index() * channels);
+      group_total.insert(group_total.end(), row, row + static_cast<std::ptrdiff_t>(channels));
     }
 }
 
-void GatheredZones::restore(ZoneSums& to, std::size_t bands) const {
+void GatheredZones::restore(ZoneSums& to) const {
+  const std::size_t channels = to.channels.count();
   auto next = sums.begin();
   for (const ZoneId z : zones)
-    for (std::size_t i = z.index() * bands; i < (z.index() + 1) * bands; ++i)
+    for (std::size_t i = z.index() * channels; i < (z.index() + 1) * channels; ++i)
       for (std::vector<double>* column : to.columns()) (*column)[i] = *next++;
   const std::size_t values = to.direct.size();
   auto next_total = group_total.begin();
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
     for (const ZoneId z : zones)
-      for (std::size_t b = 0; b < bands; ++b)
-        to.group_total[g * values + z.index() * bands + b] = *next_total++;
+      for (std::size_t c = 0; c < channels; ++c)
+        to.group_total[g * values + z.index() * channels + c] = *next_total++;
 }
 
 std::string to_string(StopReason reason) {
@@ -127,25 +132,40 @@ std::string to_string(StopReason reason) {
   return "unknown";
 }
 
+template <class Part>
+Estimate Solution::over_groups(ZoneId z, std::size_t band, const Part& part) const {
+  Estimate all;
+  for (std::size_t group = 0; group < sums.channels.groups(); ++group) {
+    const Estimate one = part(z.index() * sums.channels.count() + sums.channels.channel(group, band));
+    all.mean += one.mean;
+    all.stderr_of_mean += one.stderr_of_mean;
+  }
+  return all;
+}
+
 Estimate Solution::direct_irradiance(ZoneId z, std::size_t band) const {
-  const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums, sums.direct[i], sums.direct_cross[i], sums.direct_squared[i]);
+  return over_groups(z, band, [&](std::size_t i) {
+    return batch_mean(sums, sums.direct[i], sums.direct_cross[i], sums.direct_squared[i]);
+  });
 }
 
 Estimate Solution::indirect_irradiance(ZoneId z, std::size_t band) const {
-  const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums, sums.indirect[i], sums.indirect_cross[i], sums.indirect_squared[i]);
+  return over_groups(z, band, [&](std::size_t i) {
+    return batch_mean(sums, sums.indirect[i], sums.indirect_cross[i], sums.indirect_squared[i]);
+  });
 }
 
 Estimate Solution::caustic_irradiance(ZoneId z, std::size_t band) const {
   if (!sums.has_caustics()) return {};
-  const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums, sums.caustic[i], sums.caustic_cross[i], sums.caustic_squared[i]);
+  return over_groups(z, band, [&](std::size_t i) {
+    return batch_mean(sums, sums.caustic[i], sums.caustic_cross[i], sums.caustic_squared[i]);
+  });
 }
 
 Estimate Solution::irradiance(ZoneId z, std::size_t band) const {
-  const std::size_t i = z.index() * bands.count() + band;
-  return batch_mean(sums, sums.total(i), sums.total_cross(i), sums.total_squared[i]);
+  return over_groups(z, band, [&](std::size_t i) {
+    return batch_mean(sums, sums.total(i), sums.total_cross(i), sums.total_squared[i]);
+  });
 }
 
 double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {

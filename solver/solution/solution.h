@@ -10,6 +10,7 @@
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/bands.h"
 #include "scenes/model/scene.h"
+#include "solver/solution/channels.h"
 #include "solver/solution/energy_audit.h"
 #include "solver/solution/form_factor_report.h"
 #include "solver/solution/solver_settings.h"
@@ -17,10 +18,11 @@
 
 namespace reemit {
 
-/// Sums over batches of the irradiance x of every zone [W/m2], index zone * bands + band. One batch is one
-/// independent estimate, of weight w: its packets over those of the smallest batch. Means and standard errors
-/// follow from the sums alone, and more batches can be added later. The mean is sum(w x)/sum(w), and its
-/// squared standard error sum(w^2 (x - mean)^2) / (sum(w)^2 - sum(w^2)): that of a ratio estimate
+/// Sums over batches of the irradiance x of every zone [W/m2], index zone * channels.count() + channel. One
+/// batch is one independent estimate, of weight w: its packets over those of the smallest batch. Means and
+/// standard errors follow from the sums alone, and more batches can be added later. The mean is sum(w
+/// x)/sum(w), and its squared standard error sum(w^2 (x - mean)^2) / (sum(w)^2 - sum(w^2)): that of a ratio
+/// estimate
 /// ([COC77] 6.4), which does not presume that the variance of a batch falls as 1/w, with the correction for
 /// few batches that is exact if it does. With equal weights it is the textbook's.
 struct ZoneSums {
@@ -29,6 +31,7 @@ struct ZoneSums {
   /// too.
   static constexpr std::size_t kGroups = 16;
 
+  Channels channels{1};
   std::int64_t batches = 0;
   std::array<std::int64_t, kGroups> group_weight{};  ///< Sum of w over the batches of a group.
   double weight_squared = 0;                         ///< Sum of w^2 over all batches.
@@ -39,9 +42,9 @@ struct ZoneSums {
   std::vector<double> direct_squared, indirect_squared, total_squared;
   /// The same of light from luminaires over mirrors, glass and gloss; size 0 in rooms that bend no light.
   std::vector<double> caustic, caustic_cross, caustic_squared;
-  /// Sum of w times the total over the batches of one group: index group * values + zone * bands + band,
-  /// with values = zones * bands. Single precision, as the file has it: a run that was resumed must not
-  /// differ from one that was not.
+  /// Sum of w times the total over the batches of one group: index group * values + value, with
+  /// values = zones * channels.count(). These groups of batches are not groups of luminaires. Single
+  /// precision, as the file has it: a run that was resumed must not differ from one that was not.
   std::vector<float> group_total;
 
   bool has_caustics() const { return !caustic.empty(); }
@@ -54,12 +57,12 @@ struct ZoneSums {
     const double sum = direct_cross[i] + indirect_cross[i];
     return has_caustics() ? sum + caustic_cross[i] : sum;
   }
-  /// The sums with one value per zone and band; those of caustics only where there are any.
+  /// The sums with one value per zone and channel; those of caustics only where there are any.
   std::vector<std::vector<double>*> columns();
   std::vector<const std::vector<double>*> columns() const;
 
-  /// No batches, and all sums 0, for `values` = zones * bands.
-  void clear(std::size_t values, bool caustics);
+  /// No batches, and all sums 0.
+  void clear(std::size_t zones, Channels of_zones, bool caustics);
   /// Notes a batch of weight `w`, whose values must be added too; returns its group.
   std::size_t count_batch(std::int64_t w);
   std::int64_t weight() const;  ///< Sum of w over all batches.
@@ -78,14 +81,14 @@ struct Estimate {
 /// What packets brought to zones whose sums hold light that was gathered since; to go on, a run needs it.
 struct GatheredZones {
   std::vector<ZoneId> zones;
-  std::vector<double> sums;        ///< Rows of ZoneSums::columns(): [zone][band][column].
-  std::vector<float> group_total;  ///< [group][zone][band]
+  std::vector<double> sums;        ///< Rows of ZoneSums::columns(): [zone][channel][column].
+  std::vector<float> group_total;  ///< [group][zone][channel]
   std::uint64_t rays = 0;          ///< Traced to gather, part of SolveRecord::rays.
 
   /// Keeps what the sums of these zones are.
-  void keep(const ZoneSums& sums, std::size_t bands, std::vector<ZoneId> of_zones);
+  void keep(const ZoneSums& sums, std::vector<ZoneId> of_zones);
   /// Puts it back.
-  void restore(ZoneSums& sums, std::size_t bands) const;
+  void restore(ZoneSums& sums) const;
 };
 
 enum class StopReason {
@@ -150,7 +153,8 @@ struct Solution {
   // Batch means and their standard errors, as ZoneSums has them. One batch alone
   // says nothing about its error: the standard error is then +infinity, never 0. Exceptions that are known to
   // be exact: no batch at all, which only a room without luminaire ends with, and a zone that met no packet
-  // in n >= 2 batches.
+  // in n >= 2 batches. They are of all light groups together; how the errors of groups go together the sums
+  // do not tell, so that of several is the sum of theirs, the most that it can be.
   Estimate direct_irradiance(ZoneId z, std::size_t band) const;    ///< [W/m2]
   Estimate indirect_irradiance(ZoneId z, std::size_t band) const;  ///< [W/m2]
   /// From luminaires over mirrors, glass and gloss [W/m2]; exactly 0 in rooms that bend no light.
@@ -172,6 +176,11 @@ struct Solution {
   /// That and what the zone reflects of its own: rho E + tau E' [W/m2].
   Estimate scattered(ZoneId z, std::size_t band, Irradiance of) const;
   Estimate radiosity(ZoneId z, std::size_t band) const;  ///< B = M_e + rho E + tau E' [W/m2].
+
+ private:
+  /// Mean and error of what `part` (sum, cross, squares of value i) tells of a zone, over all light groups.
+  template <class Part>
+  Estimate over_groups(ZoneId z, std::size_t band, const Part& part) const;
 };
 
 /// The files of its room, one or more, in order.

@@ -253,9 +253,10 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
 /// No sum of sixteen of these overflows.
 constexpr std::int64_t kMostGroupWeight = std::int64_t{1} << 53;
 
-ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
+ZoneSums read_sums(const Hdf5Group& root, const Channels& channels) {
   const Hdf5Group group = root.open_group("sums");
   ZoneSums sums;
+  sums.channels = channels;
   sums.batches = group.read_attribute<std::int64_t>("batches");
   require(sums.batches >= 0, "a negative number of batches");
   sums.weight_squared = group.read_attribute<double>("weight_squared");
@@ -268,7 +269,7 @@ ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
   const auto weight = static_cast<double>(sums.weight());
   require(sums.weight_squared >= weight && (sums.batches < 2 || sums.weight_squared < weight * weight),
           "squares of weights that do not go with the weights");
-  const Hdf5Shape shape{rows_of(group, "direct"), bands};
+  const Hdf5Shape shape{rows_of(group, "direct"), channels.count()};
   std::vector<std::pair<const char*, std::vector<double>*>> columns{
       {"direct", &sums.direct},
       {"direct_cross", &sums.direct_cross},
@@ -285,14 +286,14 @@ ZoneSums read_sums(const Hdf5Group& root, std::uint64_t bands) {
     *values = group.read<double>(name, shape);
     require(all_finite(*values), std::string("/sums/") + name + " holds a number that is not finite");
   }
-  sums.group_total = group.read<float>("group_total", {ZoneSums::kGroups, shape[0], bands});
+  sums.group_total = group.read<float>("group_total", {ZoneSums::kGroups, shape[0], channels.count()});
   require(all_finite(sums.group_total), "/sums/group_total holds a number that is not finite");
   return sums;
 }
 
 GatheredZones read_gathered(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group group = root.open_group("gathered");
-  const std::uint64_t bands = solution.bands.count();
+  const std::uint64_t channels = solution.sums.channels.count();
   const std::uint64_t count = rows_of(group, "zone");
   GatheredZones gathered;
   gathered.rays = group.read_attribute<std::uint64_t>("rays");
@@ -301,8 +302,8 @@ GatheredZones read_gathered(const Hdf5Group& root, const Solution& solution) {
     require(zone < solution.mesh.zone_count(), "gathered zones out of range");
     gathered.zones.emplace_back(zone);
   }
-  gathered.sums = group.read<double>("sums", {count, bands, solution.sums.columns().size()});
-  gathered.group_total = group.read<float>("group_total", {ZoneSums::kGroups, count, bands});
+  gathered.sums = group.read<double>("sums", {count, channels, solution.sums.columns().size()});
+  gathered.group_total = group.read<float>("group_total", {ZoneSums::kGroups, count, channels});
   require(all_finite(gathered.sums) && all_finite(gathered.group_total),
           "/gathered holds a number that is not finite");
   return gathered;
@@ -326,7 +327,7 @@ bool can_be_added(const BandAudit& band) {
 
 EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group group = root.open_group("audit");
-  const std::uint64_t bands = solution.bands.count();
+  const std::uint64_t channels = solution.sums.channels.count();
   const std::uint64_t surfaces = solution.surface_names.size();
   EnergyAudit audit;
   audit.batches = group.read_attribute<std::int64_t>("batches");
@@ -336,18 +337,18 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
   audit.events.escapes = group.read_attribute<std::uint64_t>("escapes");
   require(audit.batches >= 0 && audit.weight >= audit.batches, "a negative number of batches");
   const std::vector<std::string> names = group.read_texts("band");
-  require(names.size() == bands, "an audit of another number of bands");
-  const auto watts = group.read<double>("watts_per_quantum", {bands});
-  const auto gain = group.read<double>("roulette_gain", {bands});
+  require(names.size() == channels, "an audit of another number of bands");
+  const auto watts = group.read<double>("watts_per_quantum", {channels});
+  const auto gain = group.read<double>("roulette_gain", {channels});
   require(all_finite(watts) && all_finite(gain), "power that is not finite");
-  const auto escaped = group.read<std::int64_t>("escaped", {bands, 6});
-  const auto absorbed = group.read<std::int64_t>("absorbed", {bands, surfaces});
-  const auto on_backs = group.read<std::int64_t>("absorbed_on_backs", {bands, surfaces});
-  audit.bands.resize(bands);
+  const auto escaped = group.read<std::int64_t>("escaped", {channels, 6});
+  const auto absorbed = group.read<std::int64_t>("absorbed", {channels, surfaces});
+  const auto on_backs = group.read<std::int64_t>("absorbed_on_backs", {channels, surfaces});
+  audit.bands.resize(channels);
   const auto row = [](const std::vector<std::int64_t>& values, std::size_t b, std::uint64_t columns) {
     return values.begin() + static_cast<std::ptrdiff_t>(b * columns);
   };
-  for (std::size_t b = 0; b < bands; ++b) {
+  for (std::size_t b = 0; b < channels; ++b) {
     BandAudit& band = audit.bands[b];
     band.band = names[b];
     band.watts_per_quantum = watts[b];
@@ -361,8 +362,8 @@ EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
       {"unshot", &BandAudit::unshot},
       {"roulette_net", &BandAudit::roulette_net}};
   for (const auto& [name, member] : columns) {
-    const auto values = group.read<std::int64_t>(name, {bands});
-    for (std::size_t b = 0; b < bands; ++b) audit.bands[b].*member = values[b];
+    const auto values = group.read<std::int64_t>(name, {channels});
+    for (std::size_t b = 0; b < channels; ++b) audit.bands[b].*member = values[b];
   }
   require(std::all_of(audit.bands.begin(), audit.bands.end(), can_be_added),
           "more quanta in the books than can be added");
@@ -380,9 +381,9 @@ Solution read_all(const Hdf5Group& root) {
   solution.bands = read_bands(root);
   read_materials(root, solution);
   read_surfaces(root, solution);
-  const std::uint64_t bands = solution.bands.count();
-  solution.sums = read_sums(root, bands);
-  solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / bands);
+  const Channels channels(solution.bands.count());
+  solution.sums = read_sums(root, channels);
+  solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / channels.count());
   solution.gathered = read_gathered(root, solution);
   solution.audit = read_audit(root, solution);
   solution.light_warnings = root.open_group("audit").read_texts("warnings");

@@ -57,15 +57,17 @@ void check_consistent(const Solution& solution) {
   require(solution.mesh_report.surfaces.size() == surfaces,
           "one row of the mesh report per surface expected");
   const ZoneSums& sums = solution.sums;
+  const std::size_t channels = sums.channels.count();
+  require(sums.channels.bands() == bands, "sums of another number of bands");
   for (const std::vector<double>* values : sums.columns())
-    require(values->size() == solution.mesh.zone_count() * bands, "one sum per zone and band expected");
-  require(sums.group_total.size() == ZoneSums::kGroups * solution.mesh.zone_count() * bands,
-          "one sum per group, zone and band expected");
-  const std::size_t gathered = solution.gathered.zones.size() * bands;
+    require(values->size() == solution.mesh.zone_count() * channels, "one sum per zone and channel expected");
+  require(sums.group_total.size() == ZoneSums::kGroups * solution.mesh.zone_count() * channels,
+          "one sum per group, zone and channel expected");
+  const std::size_t gathered = solution.gathered.zones.size() * channels;
   require(solution.gathered.sums.size() == gathered * sums.columns().size() &&
               solution.gathered.group_total.size() == gathered * ZoneSums::kGroups,
           "one row per gathered zone expected");
-  require(solution.audit.bands.size() == bands, "one audit per band expected");
+  require(solution.audit.bands.size() == channels, "one audit per channel expected");
   for (const BandAudit& audit : solution.audit.bands)
     require(audit.absorbed.size() == surfaces && audit.absorbed_on_backs.size() == surfaces,
             "one absorbed power per surface expected");
@@ -94,11 +96,11 @@ void put(const Hdf5Group& group, const char* name, const std::vector<T>& values,
   group.write<T>(name, values, shape, unit, description);
 }
 
-// Rows of bands keep their second dimension when there is only one band.
+// Rows of bands or channels keep their second dimension when there is only one.
 template <class T>
-void put_bands(const Hdf5Group& group, const char* name, const std::vector<T>& values, std::size_t bands,
-               const char* unit, const char* description) {
-  group.write<T>(name, values, {values.size() / bands, bands}, unit, description);
+void put_rows(const Hdf5Group& group, const char* name, const std::vector<T>& values, std::size_t columns,
+              const char* unit, const char* description) {
+  group.write<T>(name, values, {values.size() / columns, columns}, unit, description);
 }
 
 void write_settings(const Hdf5Group& root, const Solution& solution) {
@@ -147,28 +149,28 @@ void write_surfaces(const Hdf5Group& root, const Solution& solution) {
   const std::size_t bands = solution.bands.count();
   materials.write("name", column<std::string>(solution.materials, std::mem_fn(&Material::name)),
                   "name of each material");
-  put_bands(materials, "reflectance",
-            flattened<double>(solution.materials,
-                              [](const Material& m) -> const Spectrum& { return m.reflectance; }),
-            bands, "1", "diffuse reflectance");
+  put_rows(materials, "reflectance",
+           flattened<double>(solution.materials,
+                             [](const Material& m) -> const Spectrum& { return m.reflectance; }),
+           bands, "1", "diffuse reflectance");
   if (std::any_of(solution.materials.begin(), solution.materials.end(),
                   [](const Material& m) { return m.back_reflectance.size() > 0; }))
-    put_bands(materials, "back_reflectance",
-              flattened<double>(solution.materials,
-                                [](const Material& m) -> const Spectrum& { return m.reflectance_of(false); }),
-              bands, "1", "diffuse reflectance of the back");
+    put_rows(materials, "back_reflectance",
+             flattened<double>(solution.materials,
+                               [](const Material& m) -> const Spectrum& { return m.reflectance_of(false); }),
+             bands, "1", "diffuse reflectance of the back");
   if (std::any_of(solution.materials.begin(), solution.materials.end(),
                   [](const Material& m) { return m.non_diffuse.transmits_diffusely(); })) {
     std::vector<double> through;
     for (const Material& m : solution.materials)
       for (std::size_t b = 0; b < bands; ++b) through.push_back(m.diffuse_transmittance(b));
-    put_bands(materials, "diffuse_transmittance", through, bands, "1",
-              "share of the light on one side that leaves the other in all directions");
+    put_rows(materials, "diffuse_transmittance", through, bands, "1",
+             "share of the light on one side that leaves the other in all directions");
   }
-  put_bands(materials, "emitted_radiance",
-            flattened<double>(solution.materials,
-                              [](const Material& m) -> const Spectrum& { return m.emitted_radiance; }),
-            bands, "W/(m2 sr)", "radiance emitted by itself");
+  put_rows(materials, "emitted_radiance",
+           flattened<double>(solution.materials,
+                             [](const Material& m) -> const Spectrum& { return m.emitted_radiance; }),
+           bands, "W/(m2 sr)", "radiance emitted by itself");
   put(materials, "emission_exponent",
       column<double>(solution.materials, std::mem_fn(&Material::emission_exponent)), 1, "1",
       "e: the emitted radiance falls as cos^e from the normal; 0 = the same in all directions");
@@ -229,7 +231,7 @@ void put_zone_bands(const Hdf5Group& zones, const Solution& solution, const char
   for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
     for (std::size_t band = 0; band < bands; ++band)
       values.push_back(static_cast<float>(value_of(ZoneId(z), band)));
-  put_bands(zones, name, values, bands, "W/m2", description);
+  put_rows(zones, name, values, bands, "W/m2", description);
 }
 
 void write_zone_geometry(const Hdf5Group& zones, const ZoneMesh& mesh) {
@@ -296,35 +298,36 @@ void write_zone_values(const Hdf5Group& zones, const Solution& s) {
 void write_sums(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group group = root.create_group("sums");
   const ZoneSums& sums = solution.sums;
-  const std::size_t bands = solution.bands.count();
+  const std::size_t channels = solution.sums.channels.count();
   group.write_attribute("batches", sums.batches);
   group.write_attribute("weight_squared", sums.weight_squared);
   group.write<std::int64_t>("group_weight", {sums.group_weight.begin(), sums.group_weight.end()},
                             {ZoneSums::kGroups}, "1",
                             "sum over the batches of each group of their weights w");
-  put_bands(group, "direct", sums.direct, bands, "W/m2", "sum over batches of w times the direct irradiance");
-  put_bands(group, "direct_cross", sums.direct_cross, bands, "W/m2",
-            "sum of w^2 times the direct irradiance");
-  put_bands(group, "direct_squared", sums.direct_squared, bands, "W2/m4",
-            "sum of the squares of w times the direct irradiance");
-  put_bands(group, "indirect", sums.indirect, bands, "W/m2",
-            "sum over batches of w times the indirect irradiance");
-  put_bands(group, "indirect_cross", sums.indirect_cross, bands, "W/m2",
-            "sum of w^2 times the indirect irradiance");
-  put_bands(group, "indirect_squared", sums.indirect_squared, bands, "W2/m4",
-            "sum of the squares of w times the indirect irradiance");
-  put_bands(group, "total_squared", sums.total_squared, bands, "W2/m4",
-            "sum of the squares of w times the irradiance, direct + indirect + caustic");
+  put_rows(group, "direct", sums.direct, channels, "W/m2",
+           "sum over batches of w times the direct irradiance");
+  put_rows(group, "direct_cross", sums.direct_cross, channels, "W/m2",
+           "sum of w^2 times the direct irradiance");
+  put_rows(group, "direct_squared", sums.direct_squared, channels, "W2/m4",
+           "sum of the squares of w times the direct irradiance");
+  put_rows(group, "indirect", sums.indirect, channels, "W/m2",
+           "sum over batches of w times the indirect irradiance");
+  put_rows(group, "indirect_cross", sums.indirect_cross, channels, "W/m2",
+           "sum of w^2 times the indirect irradiance");
+  put_rows(group, "indirect_squared", sums.indirect_squared, channels, "W2/m4",
+           "sum of the squares of w times the indirect irradiance");
+  put_rows(group, "total_squared", sums.total_squared, channels, "W2/m4",
+           "sum of the squares of w times the irradiance, direct + indirect + caustic");
   if (sums.has_caustics()) {
-    put_bands(group, "caustic", sums.caustic, bands, "W/m2",
-              "sum over batches of w times the caustic irradiance");
-    put_bands(group, "caustic_cross", sums.caustic_cross, bands, "W/m2",
-              "sum of w^2 times the caustic irradiance");
-    put_bands(group, "caustic_squared", sums.caustic_squared, bands, "W2/m4",
-              "sum of the squares of w times the caustic irradiance");
+    put_rows(group, "caustic", sums.caustic, channels, "W/m2",
+             "sum over batches of w times the caustic irradiance");
+    put_rows(group, "caustic_cross", sums.caustic_cross, channels, "W/m2",
+             "sum of w^2 times the caustic irradiance");
+    put_rows(group, "caustic_squared", sums.caustic_squared, channels, "W2/m4",
+             "sum of the squares of w times the caustic irradiance");
   }
-  group.write<float>("group_total", sums.group_total, {ZoneSums::kGroups, sums.direct.size() / bands, bands},
-                     "W/m2",
+  group.write<float>("group_total", sums.group_total,
+                     {ZoneSums::kGroups, sums.direct.size() / channels, channels}, "W/m2",
                      "sum of w times the irradiance over batches k, k + 16, k + 32 ... for k = 0 ... 15");
 }
 
@@ -332,15 +335,15 @@ void write_gathered(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group group = root.create_group("gathered");
   const GatheredZones& gathered = solution.gathered;
   const std::size_t zones = gathered.zones.size();
-  const std::size_t bands = solution.bands.count();
+  const std::size_t channels = solution.sums.channels.count();
   group.write_attribute("rays", gathered.rays);
   put(group, "zone", column<std::uint32_t>(gathered.zones, std::mem_fn(&ZoneId::index)), 1, "",
       "rows of /zones whose light was gathered after the last batch");
-  group.write<double>("sums", gathered.sums, {zones, bands, solution.sums.columns().size()}, "",
+  group.write<double>("sums", gathered.sums, {zones, channels, solution.sums.columns().size()}, "",
                       "what packets brought there: direct, indirect, direct_cross, indirect_cross, "
                       "direct_squared, indirect_squared, total_squared and, where they are, caustic, "
                       "caustic_cross and caustic_squared as in /sums");
-  group.write<float>("group_total", gathered.group_total, {ZoneSums::kGroups, zones, bands}, "W/m2",
+  group.write<float>("group_total", gathered.group_total, {ZoneSums::kGroups, zones, channels}, "W/m2",
                      "the same of group_total");
 }
 

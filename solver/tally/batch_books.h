@@ -6,11 +6,12 @@
 #include <tbb/task_arena.h>
 
 #include "mesh/zones/zone_mesh.h"
+#include "solver/solution/channels.h"
 #include "solver/solution/energy_audit.h"
 
 namespace reemit {
 
-/// Quanta that each emitting band sends out in one batch. 2^42 leaves a packet of a 10^8-packet batch 4 x
+/// Quanta that each emitting channel sends out in one batch. 2^42 leaves a packet of a 10^8-packet batch 4 x
 /// 10^4 quanta, and 2^20 batches still fit into 63 bits.
 inline constexpr std::int64_t kBatchQuanta = std::int64_t{1} << 42;
 
@@ -48,22 +49,22 @@ inline std::int64_t share_of(std::int64_t quanta, double share) {
   return static_cast<std::int64_t>(static_cast<double>(quanta) * share + 0.5);
 }
 
-/// Where the power of one batch went, in quanta. Zone arrays are indexed zone * bands + band, surface arrays
-/// surface * bands + band, escaped by axis * bands + band (axes as in BandAudit::escaped).
+/// Where the power of one batch went, in quanta. Arrays are indexed [item * channels.count() + channel],
+/// where items are zones, surfaces, or axes as in BandAudit::escaped.
 struct BatchBooks {
   /// `has_caustics`: luminaires of the room light zones over surfaces that bend light (Scene::bends_light).
-  BatchBooks(std::size_t zones, std::size_t surfaces, std::size_t band_count, bool has_caustics = false)
-      : bands(band_count),
-        direct(zones * bands),
-        caustic(has_caustics ? zones * bands : 0),
-        indirect(zones * bands),
-        absorbed(surfaces * bands),
-        absorbed_on_backs(surfaces * bands),
-        escaped(6 * bands),
-        emitted(bands),
-        unshot(bands),
-        roulette_gain(bands),
-        roulette_loss(bands) {}
+  BatchBooks(std::size_t zones, std::size_t surfaces, Channels of_packets, bool has_caustics = false)
+      : channels(of_packets),
+        direct(zones * channels.count()),
+        caustic(has_caustics ? zones * channels.count() : 0),
+        indirect(zones * channels.count()),
+        absorbed(surfaces * channels.count()),
+        absorbed_on_backs(surfaces * channels.count()),
+        escaped(6 * channels.count()),
+        emitted(channels.count()),
+        unshot(channels.count()),
+        roulette_gain(channels.count()),
+        roulette_loss(channels.count()) {}
 
   void clear() {
     for (auto* account : {&direct, &caustic, &indirect, &absorbed, &absorbed_on_backs, &escaped, &emitted,
@@ -74,7 +75,7 @@ struct BatchBooks {
     events = {};
   }
 
-  std::size_t bands;
+  Channels channels;
   std::vector<std::int64_t> direct;    ///< Incident straight from luminaires, also across panes.
   std::vector<std::int64_t> caustic;   ///< From luminaires over mirrors, glass and gloss; size 0 = none.
   std::vector<std::int64_t> indirect;  ///< Incident after light was scattered.

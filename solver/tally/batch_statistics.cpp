@@ -17,17 +17,17 @@ namespace reemit {
 
 void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<double>& watts_per_quantum,
                std::int64_t weight, ZoneSums& sums) {
-  const std::size_t bands = books.bands;
+  const std::size_t channels = books.channels.count();
   const auto w = static_cast<double>(weight);
   const bool caustics = sums.has_caustics();
-  float* group_total = &sums.group_total[sums.count_batch(weight) * mesh.zone_count() * bands];
+  float* group_total = &sums.group_total[sums.count_batch(weight) * mesh.zone_count() * channels];
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.zone_count(), 4096), [&](const auto& range) {
     for (std::size_t z = range.begin(); z != range.end(); ++z) {
       const double per_area = 1.0 / mesh.zone_area(ZoneId(z));
-      for (std::size_t b = 0; b < bands; ++b) {
-        const std::size_t i = z * bands + b;
+      for (std::size_t c = 0; c < channels; ++c) {
+        const std::size_t i = z * channels + c;
         if (books.direct[i] == 0 && books.indirect[i] == 0 && !(caustics && books.caustic[i] != 0)) continue;
-        const double scale = w * watts_per_quantum[b] * per_area;
+        const double scale = w * watts_per_quantum[c] * per_area;
         const double direct = static_cast<double>(books.direct[i]) * scale;
         const double indirect = static_cast<double>(books.indirect[i]) * scale;
         sums.direct[i] += direct;
@@ -55,19 +55,19 @@ void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit)
   ++audit.batches;
   audit.weight += weight;
   audit.events += books.events;
-  const std::size_t bands = books.bands;
-  for (std::size_t b = 0; b < bands; ++b) {
-    BandAudit& a = audit.bands[b];
-    a.emitted += weight * books.emitted[b];
-    a.unshot += weight * books.unshot[b];
-    a.roulette_net += weight * (books.roulette_gain[b] - books.roulette_loss[b]);
-    a.roulette_gain += static_cast<double>(weight) * static_cast<double>(books.roulette_gain[b]);
+  const std::size_t channels = books.channels.count();
+  for (std::size_t c = 0; c < channels; ++c) {
+    BandAudit& a = audit.bands[c];
+    a.emitted += weight * books.emitted[c];
+    a.unshot += weight * books.unshot[c];
+    a.roulette_net += weight * (books.roulette_gain[c] - books.roulette_loss[c]);
+    a.roulette_gain += static_cast<double>(weight) * static_cast<double>(books.roulette_gain[c]);
     for (std::size_t s = 0; s < a.absorbed.size(); ++s) {
-      a.absorbed[s] += weight * books.absorbed[s * bands + b];
-      a.absorbed_on_backs[s] += weight * books.absorbed_on_backs[s * bands + b];
+      a.absorbed[s] += weight * books.absorbed[s * channels + c];
+      a.absorbed_on_backs[s] += weight * books.absorbed_on_backs[s * channels + c];
     }
     for (std::size_t axis = 0; axis < a.escaped.size(); ++axis)
-      a.escaped[axis] += weight * books.escaped[axis * bands + b];
+      a.escaped[axis] += weight * books.escaped[axis * channels + c];
     if (a.balance() != 0)
       throw std::logic_error("the energy books of band " + a.band + " are off by " +
                              std::to_string(a.balance()) + " quanta after batch " +
@@ -110,8 +110,8 @@ namespace {
 constexpr std::size_t kChunk = 4096;
 constexpr std::size_t kGroups = ZoneSums::kGroups;
 
-/// Sums over zones for one band.
-struct BandError {
+/// Sums over zones for one channel.
+struct ChannelError {
   double noise = 0;   // sum A rho^2 s^2
   double signal = 0;  // sum A (rho E)^2
   /// Inner products of the deviations of the batch groups from the mean, for largest_error_quotient.
@@ -127,7 +127,7 @@ std::size_t groups_with_batches(const ZoneSums& sums) {
 }
 
 /// Adds the inner products of value i with weight `weight` to the upper half of the table.
-void add_products(const ZoneSums& sums, std::size_t i, double mean, double weight, BandError& part) {
+void add_products(const ZoneSums& sums, std::size_t i, double mean, double weight, ChannelError& part) {
   const std::size_t groups = groups_with_batches(sums);
   std::array<double, kGroups> deviation{};
   for (std::size_t g = 0; g < groups; ++g) {
@@ -140,71 +140,72 @@ void add_products(const ZoneSums& sums, std::size_t i, double mean, double weigh
       part.products[g * groups + h] += weight * deviation[g] * deviation[h];
 }
 
-/// By band. Partial sums of fixed chunks are added in order: the same bits on any number of threads.
-std::vector<BandError> band_errors(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums,
-                                   bool with_groups) {
-  const std::size_t bands = surfaces.band_count();
+/// By channel. Partial sums of fixed chunks are added in order: the same bits on any number of threads.
+std::vector<ChannelError> channel_errors(const SurfaceModel& surfaces, const ZoneMesh& mesh,
+                                         const ZoneSums& sums, bool with_groups) {
+  const std::size_t channels = sums.channels.count();
   const std::size_t zones = mesh.zone_count();
   const std::size_t chunks = (zones + kChunk - 1) / kChunk;
   const auto w = static_cast<double>(sums.weight());
-  std::vector<BandError> parts(chunks * bands);
+  std::vector<ChannelError> parts(chunks * channels);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     for (std::size_t z = chunk * kChunk; z < std::min(zones, (chunk + 1) * kChunk); ++z) {
       const double area = mesh.zone_area(ZoneId(z));
       const double* reflectance =
           surfaces.reflectance(mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
-      for (std::size_t b = 0; b < bands; ++b) {
-        const std::size_t i = z * bands + b;
+      sums.channels.for_each([&](std::size_t c, std::size_t band) {
+        const std::size_t i = z * channels + c;
         const double mean = sums.total(i) / w;
-        if (mean == 0) continue;
-        const double r = reflectance[b];
-        BandError& part = parts[chunk * bands + b];
+        if (mean == 0) return;
+        const double r = reflectance[band];
+        ChannelError& part = parts[chunk * channels + c];
         part.noise += area * r * r * variance_of_mean(sums, i);
         part.signal += area * r * r * mean * mean;
         if (with_groups) add_products(sums, i, mean, area * r * r, part);
-      }
+      });
     }
   });
-  std::vector<BandError> result(bands);
+  std::vector<ChannelError> result(channels);
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    BandError& band = result[p % bands];
-    band.noise += parts[p].noise;
-    band.signal += parts[p].signal;
-    std::transform(band.products.begin(), band.products.end(), parts[p].products.begin(),
-                   band.products.begin(), std::plus<>());
+    ChannelError& sum = result[p % channels];
+    sum.noise += parts[p].noise;
+    sum.signal += parts[p].signal;
+    std::transform(sum.products.begin(), sum.products.end(), parts[p].products.begin(), sum.products.begin(),
+                   std::plus<>());
   }
   const std::size_t groups = groups_with_batches(sums);
-  for (BandError& band : result)
+  for (ChannelError& sum : result)
     for (std::size_t g = 0; g < groups; ++g)
-      for (std::size_t h = 0; h < g; ++h) band.products[g * groups + h] = band.products[h * groups + g];
+      for (std::size_t h = 0; h < g; ++h) sum.products[g * groups + h] = sum.products[h * groups + g];
   return result;
 }
 
-double relative_rms(const BandError& band) {
-  return band.signal > 0 ? std::sqrt(band.noise / band.signal) : 0.0;
+double relative_rms(const ChannelError& sum) {
+  return sum.signal > 0 ? std::sqrt(sum.noise / sum.signal) : 0.0;
 }
 
 /// 95th percentile of s/E over lit zones, and the zones that nothing reached.
-void find_percentile(const ZoneSums& sums, std::size_t bands, ZoneError& result) {
+void find_percentile(const ZoneSums& sums, ZoneError& result) {
+  const std::size_t channels = sums.channels.count();
   const std::size_t values = sums.direct.size();
   const auto total = [&](std::size_t i) { return sums.total(i); };
-  for (std::size_t first = 0; first < values; first += bands) {
+  for (std::size_t first = 0; first < values; first += channels) {
     bool reached = false;
-    for (std::size_t i = first; i < first + bands; ++i) reached = reached || total(i) > 0;
+    for (std::size_t i = first; i < first + channels; ++i) reached = reached || total(i) > 0;
     if (!reached) ++result.unreached;
   }
   if (sums.batches < 2) return;
   const auto w = static_cast<double>(sums.weight());
-  std::vector<double> percentiles(bands, 0.0);
-  tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t b) {
+  std::vector<double> percentiles(channels, 0.0);
+  tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t c) {
     std::vector<float> lit;
-    for (std::size_t i = b; i < values; i += bands)
+    for (std::size_t i = c; i < values; i += channels)
       if (total(i) > 0)
         lit.push_back(static_cast<float>(std::sqrt(variance_of_mean(sums, i)) * w / total(i)));
     if (lit.empty()) return;
     const auto at = lit.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(lit.size() - 1));
     std::nth_element(lit.begin(), at, lit.end());
-    percentiles[b] = static_cast<double>(*at);
+    percentiles[c] = static_cast<double>(*at);
   });
   for (const double p : percentiles) result.percentile_95 = std::max(result.percentile_95, p);
 }
@@ -214,23 +215,23 @@ void find_percentile(const ZoneSums& sums, std::size_t bands, ZoneError& result)
 double zone_rms_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums) {
   if (sums.batches < 2) return std::numeric_limits<double>::infinity();
   double worst = 0;
-  for (const BandError& band : band_errors(surfaces, mesh, sums, false))
-    worst = std::max(worst, relative_rms(band));
+  for (const ChannelError& sum : channel_errors(surfaces, mesh, sums, false))
+    worst = std::max(worst, relative_rms(sum));
   return worst;
 }
 
 ZoneError zone_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums) {
   ZoneError result;
-  find_percentile(sums, surfaces.band_count(), result);
+  find_percentile(sums, result);
   if (sums.batches < 2) {
     result.rms = result.bound = result.percentile_95 = std::numeric_limits<double>::infinity();
     return result;
   }
   const std::size_t groups = groups_with_batches(sums);
-  for (const BandError& band : band_errors(surfaces, mesh, sums, true)) {
-    const double rms = relative_rms(band);
+  for (const ChannelError& sum : channel_errors(surfaces, mesh, sums, true)) {
+    const double rms = relative_rms(sum);
     result.rms = std::max(result.rms, rms);
-    const double quotient = largest_error_quotient(std::span(band.products).first(groups * groups), groups);
+    const double quotient = largest_error_quotient(std::span(sum.products).first(groups * groups), groups);
     result.bound = std::max(result.bound, rms * std::sqrt(quotient));
   }
   return result;

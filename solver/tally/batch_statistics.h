@@ -23,7 +23,7 @@ struct ZoneError {
   std::uint64_t unreached = 0;  ///< Zones that no packet met; they count with s = 0 and cannot block a stop.
 };
 
-/// Adds one batch of weight `weight` >= 1 (ZoneSums) to the sums. `watts_per_quantum`: per band [W].
+/// Adds one batch of weight `weight` >= 1 (ZoneSums) to the sums. `watts_per_quantum`: per channel [W].
 /// Deterministic for any number of threads.
 void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<double>& watts_per_quantum,
                std::int64_t weight, ZoneSums& sums);
@@ -32,10 +32,10 @@ void add_batch(const ZoneMesh& mesh, const BatchBooks& books, const std::vector<
 /// std::logic_error if the books of the batch do not balance.
 void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit);
 
-/// Replaces the sums of value i = zone * bands + band by what gives the means, and the standard errors that
-/// follow from the spread, of independent estimates of its irradiance [W/m2]: one per group that has batches,
-/// that is min(kGroups, batches) of them, taken as equally good. Pre: batches > 0.
-/// `caustic` may be empty: nothing.
+/// Replaces the sums of value i = zone * channels + channel by what gives the means, and the standard errors
+/// that follow from the spread, of independent estimates of its irradiance [W/m2]: one per group that has
+/// batches, that is min(kGroups, batches) of them, taken as equally good. Pre: batches > 0. `caustic` may be
+/// empty: nothing.
 void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> direct,
                       std::span<const double> indirect, std::span<const double> caustic = {});
 

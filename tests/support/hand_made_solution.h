@@ -13,9 +13,9 @@ inline Solution uniform_solution(const RoomBuilder& room, double direct, double 
   solution.bands = room.scene().bands;
   keep_surfaces(room.scene(), solution);
   solution.mesh = room.mesh().mesh;
-  const std::size_t values = solution.mesh.zone_count() * solution.bands.count();
   ZoneSums& sums = solution.sums;
-  sums.clear(values, false);
+  sums.clear(solution.mesh.zone_count(), channels_of(room.scene()), false);
+  const std::size_t values = sums.direct.size();
   sums.count_batch(1);
   sums.direct.assign(values, direct);
   sums.direct_cross = sums.direct;

@@ -19,7 +19,7 @@ constexpr std::uint64_t kSeed = 0;
 constexpr float kEscape = 1;
 
 /// Packets over sources in proportion to weight, by systematic sampling: each gets its share to within one.
-Flight spread_packets(const PacketSources& emission, const std::vector<double>& weights, std::size_t bands) {
+Flight spread_packets(const PacketSources& emission, const std::vector<double>& weights) {
   double total = 0;
   for (const double w : weights) total += w;
   Flight flight;
@@ -31,7 +31,8 @@ Flight spread_packets(const PacketSources& emission, const std::vector<double>& 
     const auto until = std::min(kPackets, static_cast<std::uint32_t>(due));
     if (until <= sent) continue;
     flight.add(emission.sources[s], until - sent);
-    for (std::size_t b = 0; b < bands; ++b) flight.quanta.push_back(emission.quanta[s * bands + b]);
+    const auto quanta = emission.quanta_of(s);
+    flight.quanta.insert(flight.quanta.end(), quanta.begin(), quanta.end());
     sent = until;
   }
   return flight;
@@ -104,24 +105,21 @@ LitSpace follow(const PacketRoom& transport, const Flight& flight) {
 LitSpace trace_light(const Room& room) {
   const PacketRoom transport(room);
   const PacketSources emission = collect_packet_sources(transport);
-  const std::size_t bands = transport.bands();
-  std::vector<double> weights(emission.sources.size(), 0.0);
-  for (std::size_t s = 0; s < weights.size(); ++s)
-    for (std::size_t b = 0; b < bands; ++b)
-      weights[s] += static_cast<double>(emission.quanta[s * bands + b]) * emission.watts_per_quantum[b];
-  return follow(transport, spread_packets(emission, weights, bands));
+  std::vector<double> weights;
+  for (std::size_t s = 0; s < emission.sources.size(); ++s) weights.push_back(emission.watts_of(s));
+  return follow(transport, spread_packets(emission, weights));
 }
 
 LitSpace trace_from_all_surfaces(const Room& room) {
   const PacketRoom transport(room);
-  PacketSources all;
+  PacketSources all(transport.channels());
   std::vector<double> weights;
   for (std::size_t z = 0; z < transport.zones(); ++z) {
     all.sources.push_back({ZoneId(z)});
     weights.push_back(room.mesh().zone_area(ZoneId(z)));
   }
-  all.quanta.assign(all.sources.size() * transport.bands(), 1);
-  return follow(transport, spread_packets(all, weights, transport.bands()));
+  all.quanta.assign(all.sources.size() * transport.channels().count(), 1);
+  return follow(transport, spread_packets(all, weights));
 }
 
 }  // namespace reemit

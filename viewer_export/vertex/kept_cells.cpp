@@ -53,8 +53,8 @@ std::vector<std::size_t> sheets(const BaseMesh& base) {
 /// By sheet, whether its backs get light.
 std::vector<bool> lit_backs(const Solution& solution, const ZoneCells& cells,
                             const std::vector<std::size_t>& sheet) {
-  const std::size_t bands = solution.bands.count();
   const ZoneSums& sums = solution.sums;
+  const std::size_t channels = sums.channels.count();
   std::vector<double> power(sheet.size());
   std::vector<double> area(sheet.size());
   double total_power = 0;
@@ -63,7 +63,7 @@ std::vector<bool> lit_backs(const Solution& solution, const ZoneCells& cells,
     const double cell_area = cells.area(i);
     const std::size_t z = cells.zone(i).index();
     double irradiance = 0;
-    for (std::size_t k = z * bands; k < (z + 1) * bands; ++k) irradiance += sums.total(k);
+    for (std::size_t k = z * channels; k < (z + 1) * channels; ++k) irradiance += sums.total(k);
     total_power += cell_area * irradiance;
     total_area += cell_area;
     const SideCell cell = cells.cell(i);

@@ -36,7 +36,7 @@ class Batches {
         room_(room.scene(), mesh_),
         transport_(room_),
         emission_(collect_packet_sources(transport_)),
-        books_(transport_.zones(), transport_.surfaces(), transport_.bands()) {}
+        books_(transport_.zones(), transport_.surfaces(), transport_.channels()) {}
 
   std::size_t shares() const { return books_.absorbed.size(); }
 

@@ -45,7 +45,7 @@ class LitBox {
     solution.bands = room_.scene().bands;
     keep_surfaces(room_.scene(), solution);
     solution.mesh = mesh_;
-    solution.sums.clear(mesh_.zone_count() * 3, false);
+    solution.sums.clear(mesh_.zone_count(), Channels(3), false);
     SolverSettings settings;
     settings.seed = seed;
     BatchBooks books = transport_->new_books();
@@ -67,7 +67,7 @@ class LitBox {
   ZoneMesh mesh_{BaseMesh{}};
   std::optional<Room> walls_;
   std::optional<PacketRoom> transport_;
-  PacketSources emission_;
+  PacketSources emission_{Channels(3)};
 };
 
 /// Twenty batches, the last four as large as five others: groups of unequal weight.

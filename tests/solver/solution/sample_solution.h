@@ -78,6 +78,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.mesh_report.cut_faces = 6;
   s.mesh_report.warnings = {"wall: two faces overlap", "", "lamp: flipped"};
 
+  s.sums.channels = Channels(bands.count());
   for (const std::int64_t weight : {1, 2, 1, 3}) s.sums.count_batch(weight);
   double next = 0.1;
   const auto fill = [&](std::vector<double>& values, double scale) {
@@ -98,7 +99,7 @@ inline Solution sample_solution(const BandSet& bands) {
   }
   for (std::size_t i = 0; i < ZoneSums::kGroups * s.sums.direct.size(); ++i)
     s.sums.group_total.push_back(0.1F * static_cast<float>(i));
-  s.gathered.keep(s.sums, bands.count(), {ZoneId(3), ZoneId(1)});
+  s.gathered.keep(s.sums, {ZoneId(3), ZoneId(1)});
   s.gathered.rays = 9;
 
   s.light_warnings = {"light 'spot': 40 % of its light is lost", "", "5 % leaves the room"};

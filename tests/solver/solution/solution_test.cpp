@@ -24,7 +24,7 @@ struct Batch {
 Solution with_batches(const std::vector<Batch>& batches) {
   Solution s = test::sample_solution(BandSet::grey());
   ZoneSums& sums = s.sums;
-  sums.clear(sums.direct.size(), false);
+  sums.clear(s.mesh.zone_count(), Channels(1), false);
   for (const Batch& batch : batches) {
     sums.count_batch(batch.weight);
     const auto w = static_cast<double>(batch.weight);

@@ -176,7 +176,7 @@ TEST(ZoneError, true_errors_stay_below_the_bound) {
 TEST(EnergyAudit, roulette_does_not_overflow_before_the_emitted_power_does) {
   // A batch of a bright room in which power changes hands 10,000 times over, as often as the books can hold.
   constexpr std::int64_t kMost = (std::int64_t{1} << 21) - 1;
-  BatchBooks books(1, 1, 1);
+  BatchBooks books(1, 1, Channels(1));
   books.emitted[0] = books.absorbed[0] = kBatchQuanta;
   books.roulette_gain[0] = books.roulette_loss[0] = 10'000 * kBatchQuanta;
   EnergyAudit audit;
