@@ -30,7 +30,7 @@ class Numbers {
   explicit Numbers(std::uint64_t seed) : rng_(seed, RngPurpose::kProbe) {}
   double unit() {
     const auto bits = rng_.bits4(index_++, 0, 0);
-    return full_unit(bits[0], bits[1]);
+    return static_cast<double>((std::uint64_t{bits[0]} << 21) | (bits[1] >> 11)) * 0x1p-53;
   }
   float between(float from, float to) { return from + (to - from) * static_cast<float>(unit()); }
 

@@ -50,7 +50,7 @@ Result run(const Scene& scene, double zone_area) {
 
 std::int64_t escaped(const Solution& s) {
   std::int64_t quanta = 0;
-  for (const BandAudit& band : s.audit.bands) quanta += band.total_escaped();
+  for (const BandAudit& band : s.audit.bands) quanta += static_cast<std::int64_t>(band.total_escaped());
   return quanta;
 }
 

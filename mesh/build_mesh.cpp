@@ -13,6 +13,7 @@
 #include "mesh/pieces/edge_points.h"
 #include "mesh/repair/dropped_luminaires.h"
 #include "mesh/repair/duplicate_faces.h"
+#include "mesh/repair/face_checks.h"
 #include "mesh/repair/orientation.h"
 #include "mesh/repair/polygon_repair.h"
 #include "mesh/shapes/room_shapes.h"

@@ -8,10 +8,6 @@
 
 namespace reemit {
 
-/// Throws InputError, naming the face, for an index out of range, a corner that is not finite, or fewer than
-/// three corners.
-void check_faces(const Scene& scene);
-
 /// Turns every face of the scene into planar pieces with welded vertices: repeated corners are merged, faces
 /// without area dropped, bent polygons and polygons with varying shading normals split into triangles. Books
 /// the areas as read and as removed, the counts, and warnings. Throws InputError for an outline that crosses

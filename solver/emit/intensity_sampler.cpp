@@ -130,33 +130,4 @@ Vec3 sample_intensity(const IntensityTable& table, double u0, double u1) {
   return table.direction(theta, sample_azimuth({table, low, share}, u1));
 }
 
-double intensity_pdf_per_sr(const IntensityTable& table, const Vec3& direction) {
-  return table.intensity(direction) / table.total_flux();
-}
-
-std::array<double, 2> invert_intensity(const IntensityTable& table, const Vec3& direction) {
-  double theta = 0;
-  double phi = 0;
-  table.angles(direction, theta, phi);
-  const std::vector<double>& polar = table.polar();
-  const std::vector<double>& azimuth = table.azimuth();
-  const auto cell_of = [](const std::vector<double>& lines, double x) {
-    return static_cast<std::size_t>(std::upper_bound(lines.begin() + 1, lines.end() - 1, x) - lines.begin()) -
-           1;
-  };
-  const std::size_t i = cell_of(polar, theta);
-  const std::size_t last = azimuth.size() - 1;
-  const double fa = table.azimuth_integral(last, i);
-  const double share = std::clamp((theta - polar[i]) / (polar[i + 1] - polar[i]), 0.0, 1.0);
-  const Ring ring{table, i, share};
-  const double flux =
-      table.flux_below(i) + integral_of_linear_times_sine(polar[i], theta, fa, ring.upto(last));
-  const std::size_t j = cell_of(azimuth, phi);
-  const double t = std::clamp((phi - azimuth[j]) / (azimuth[j + 1] - azimuth[j]), 0.0, 1.0);
-  const double f0 = ring.candela(j);
-  const double f1 = ring.candela(j + 1);
-  const double below = ring.upto(j) + (azimuth[j + 1] - azimuth[j]) * t * (f0 + 0.5 * t * (f1 - f0));
-  return {flux / table.total_flux(), below / ring.upto(last)};
-}
-
 }  // namespace reemit

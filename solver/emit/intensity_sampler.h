@@ -1,6 +1,4 @@
 #pragma once
-#include <array>
-
 #include "scenes/model/photometry.h"
 
 namespace reemit {
@@ -12,13 +10,7 @@ namespace reemit {
 // thread.
 
 /// Unit direction in luminaire coordinates for two uniform numbers in [0,1); continuous in both within the
-/// grid.
+/// grid. Its density per steradian is intensity over total flux.
 Vec3 sample_intensity(const IntensityTable& table, double u0, double u1);
-
-/// Density of sample_intensity per steradian: intensity over total flux.
-double intensity_pdf_per_sr(const IntensityTable& table, const Vec3& direction);
-
-/// The uniform numbers of a direction that has intensity.
-std::array<double, 2> invert_intensity(const IntensityTable& table, const Vec3& direction);
 
 }  // namespace reemit

@@ -46,7 +46,7 @@ class LightTree {
   /// luminaire can light x.
   ///
   /// Each pick uses up log2(1/probability) bits of u, 20 or more among a million. That is why u is a double:
-  /// give it 53 random bits (see full_unit), or what is left over comes in steps.
+  /// give it 53 random bits, or what is left over comes in steps.
   bool pick(const Vec3f& x, const Vec3f& n, double& u, Pick& result) const;
 
   /// The probability of that pick, the same bits as pick gives. Takes as long as a pick.
@@ -69,11 +69,5 @@ class LightTree {
   std::vector<double> intensity_to_;   // Of those before a place, and of all.
   std::vector<std::uint32_t> guide_;   // Place of the k-th part of the whole intensity.
 };
-
-/// A number in [0,1) with 53 bits out of two random words; the upper ones come first, so that points that are
-/// well distributed in `high` stay so.
-constexpr double full_unit(std::uint32_t high, std::uint32_t low) {
-  return static_cast<double>((std::uint64_t{high} << 21) | (low >> 11)) * 0x1p-53;
-}
 
 }  // namespace reemit

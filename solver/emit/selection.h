@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <optional>
 #include <string_view>
 
 namespace reemit {
@@ -19,13 +18,6 @@ inline constexpr std::array<std::string_view, 3> kSelectionNames = {"constant", 
 
 constexpr std::string_view name_of(Selection selection) {
   return kSelectionNames[static_cast<std::size_t>(selection)];
-}
-
-/// Nothing if the name is not one of kSelectionNames.
-constexpr std::optional<Selection> selection_from_name(std::string_view name) {
-  for (std::size_t i = 0; i < kSelectionNames.size(); ++i)
-    if (kSelectionNames[i] == name) return static_cast<Selection>(i);
-  return std::nullopt;
 }
 
 }  // namespace reemit

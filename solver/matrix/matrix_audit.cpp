@@ -57,9 +57,9 @@ void book_matrix_solution(const PacketRoom& transport, const PacketSources& emis
     for (const LuminaireLeak& loss : light_losses) powers.leak(std::max(0.0, loss.watts(column)), loss.leaks);
 
     const auto quanta = [&](double watts) {
-      return batches * std::llround(watts / emission.watts_per_quantum[b]);
+      return RunQuanta{batches} * std::llround(watts / emission.watts_per_quantum[b]);
     };
-    band.emitted = batches * kBatchQuanta;
+    band.emitted = RunQuanta{batches} * kBatchQuanta;
     for (std::size_t s = 0; s < transport.surfaces(); ++s) {
       band.absorbed[s] = quanta(powers.absorbed[s]);
       band.absorbed_on_backs[s] = quanta(powers.absorbed_on_backs[s]);

@@ -59,9 +59,6 @@ inline Vec3f sample_cosine_hemisphere(float u0, float u1) {
 inline float cosine_hemisphere_pdf_per_sr(float cos_theta) {
   return std::max(0.0F, cos_theta) * std::numbers::inv_pi_v<float>;
 }
-inline std::array<float, 2> invert_cosine_hemisphere(const Vec3f& direction) {
-  return invert_disk({direction.x(), direction.y()});
-}
 
 /// Direction about +z with density (k+1)/(2 pi) cos(theta)^k per steradian, k >= 0.
 inline Vec3f sample_cosine_power(float u0, float u1, float k) {
@@ -71,18 +68,11 @@ inline Vec3f sample_cosine_power(float u0, float u1, float k) {
   const float stretch = r2 > 0 ? std::sqrt(std::max(0.0F, 1 - z * z) / r2) : 0.0F;
   return {stretch * d.x, stretch * d.y, z};
 }
-inline float cosine_power_pdf_per_sr(float cos_theta, float k) {
-  return cos_theta > 0 ? (k + 1) / (2 * std::numbers::pi_v<float>)*std::pow(cos_theta, k) : 0.0F;
-}
 
 /// Barycentric (u,v) of a uniform point in a triangle [TUR90]; density 1/area per area.
 inline std::array<float, 2> sample_triangle(float u0, float u1) {
   const float s = std::sqrt(u0);
   return {s * (1 - u1), s * u1};
-}
-inline std::array<float, 2> invert_triangle(float u, float v) {
-  const float s = u + v;
-  return {s * s, s > 0 ? v / s : 0.0F};
 }
 
 /// Uniform on the unit sphere; density 1/(4 pi) per steradian.
@@ -91,12 +81,6 @@ inline Vec3f sample_sphere(float u0, float u1) {
   const float r = std::sqrt(std::max(0.0F, 1 - z * z));
   const float phi = 2 * std::numbers::pi_v<float> * u1;
   return {r * std::cos(phi), r * std::sin(phi), z};
-}
-inline constexpr float kSpherePdfPerSr = 0.25F * std::numbers::inv_pi_v<float>;
-inline std::array<float, 2> invert_sphere(const Vec3f& d) {
-  float phi = std::atan2(d.y(), d.x());
-  if (phi < 0) phi += 2 * std::numbers::pi_v<float>;
-  return {(1 - d.z()) / 2, phi / (2 * std::numbers::pi_v<float>)};
 }
 
 /// Orthonormal frame about a unit normal without a branch on its direction [DUF17].

@@ -7,6 +7,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/shoot/packet_books.h"
+
 namespace reemit {
 
 Allocation::Allocation(std::size_t zones, Channels channels)
@@ -94,6 +96,7 @@ bool Allocation::hand_over(std::vector<std::int64_t>& unshot, std::size_t channe
   // Where no chosen small zone has power in this channel there is nobody to hand over to, and all keep what
   // they have.
   const bool exchange = wanted > 0;
+  const bool jumps = static_cast<double>(total) > kUsualRoulette * wanted;
   double running = 0;
   std::int64_t given = 0;
   std::size_t source = 0;
@@ -110,6 +113,7 @@ bool Allocation::hand_over(std::vector<std::int64_t>& unshot, std::size_t channe
         given = until;
         (sent > own ? books.roulette_gain[channel] : books.roulette_loss[channel]) += std::abs(sent - own);
         last_taker = &sent;
+        if (jumps) books.events.roulette_jumps += c.packets;
       }
       own = 0;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "solver/emit/punctual_emitter.h"
@@ -128,8 +129,8 @@ bool FlightCursor::put_arrivals_in_group(ZoneId group, std::uint32_t packet, int
   return true;
 }
 
-void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
-                           std::int64_t* quanta) {
+int FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
+                          std::int64_t* quanta) {
   std::array<const PacketSource*, 16> special{};  // those that do not send packets as zones reflect them
   bool any_special = false;
   bool any_uniform = false;  // points are to be drawn
@@ -155,20 +156,22 @@ void FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& 
     numbers.get16(first, x);
   else
     numbers.get_directions16(first, x);
-  transport_.start(lanes_, x, rays);
-  if (!any_special) return;
+  std::uint32_t behind = transport_.start(lanes_, x, rays) & ((1U << count) - 1);
+  if (!any_special) return std::popcount(behind);
   for (int lane = 0; lane < count; ++lane) {
     const PacketSource* s = special[static_cast<std::size_t>(lane)];
     if (s == nullptr) continue;
+    behind &= ~(1U << lane);
     if (s->zone.valid()) {
-      transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane],
-                            sample_cosine_power(x.u[2][lane], x.u[3][lane], s->exponent + 1), rays, lane);
+      const Vec3f local = sample_cosine_power(x.u[2][lane], x.u[3][lane], s->exponent + 1);
+      if (transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane], local, rays, lane)) behind |= 1U << lane;
       continue;
     }
     const LightRay start = start_light_ray(transport_.emitters()[s->light], x.u[0][lane], x.u[1][lane],
                                            x.u[2][lane], x.u[3][lane]);
     rays.set(lane, start.origin, start.direction);
   }
+  return std::popcount(behind);
 }
 
 }  // namespace reemit

@@ -65,9 +65,10 @@ class FlightCursor {
                const ArrivalPoints* arrivals = nullptr);
 
   /// Starts packets first .. first+count-1 (first is a multiple of 16, count <= 16).
-  /// quanta[lane * channels + channel] becomes the power of each.
-  void start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
-               std::int64_t* quanta);
+  /// quanta[lane * channels + channel] becomes the power of each. Returns how many of the rays start behind
+  /// the face that they leave (RayTracer::starts_behind).
+  int start16(std::uint32_t first, int count, const FlightNumbers& numbers, Ray16& rays,
+              std::int64_t* quanta);
 
  private:
   void enter_source(std::size_t source);

@@ -9,10 +9,13 @@
 
 namespace reemit {
 
-/// Counts one of what is rare enough for all threads to count in one place.
-inline void count_event(std::uint64_t& events) {
-  std::atomic_ref<std::uint64_t>(events).fetch_add(1, std::memory_order_relaxed);
+/// Counts what is rare enough for all threads to count in one place.
+inline void count_event(std::uint64_t& events, std::uint64_t times = 1) {
+  std::atomic_ref<std::uint64_t>(events).fetch_add(times, std::memory_order_relaxed);
 }
+
+/// Roulette keeps the mean of what it makes larger; beyond this factor it is a RareEvents::roulette_jumps.
+inline constexpr double kUsualRoulette = 2;
 
 /// Accounts of one task for ends of packets that many packets share, so that threads do not contend for them.
 /// They reach the books when the object goes.

@@ -23,31 +23,37 @@ PacketRoom::PacketRoom(const Room& room, Channels channels)
   }
 }
 
-void PacketRoom::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const {
+bool PacketRoom::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const {
   const SideCell cell = mesh_->pick_cell(z, u0);
   const auto [a, b] = sample_triangle(u0, u1);
   const SidePoint x = cell_point(cell, a, b);
-  start_at(x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v), x.front, local, rays, lane);
+  return start_at(x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v), x.front, local, rays,
+                  lane);
 }
 
-void PacketRoom::start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays,
+bool PacketRoom::start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays,
                           int lane) const {
   const Vec3f origin = rays_->ray_origin(t, u, v, front);
   const Vec3f normal = rays_->normal(t, u, v);
   const Vec3f direction = Frame(front ? normal : Vec3f(-normal)).to_world(local);
   rays.set(lane, origin, direction);
+  return rays_->starts_behind(t, front, origin);
 }
 
-void PacketRoom::start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
+std::uint32_t PacketRoom::start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers,
+                                           Ray16& rays) const {
+  std::uint32_t behind = 0;
   for (int lane = 0; lane < 16; ++lane) {
     if ((lanes.one_by_one >> lane & 1U) == 0) continue;
     const Vec3f local = sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]);
-    if ((lanes.points >> lane & 1U) != 0)
-      start_at(TriangleId(lanes.zone[lane]), lanes.corner[0][lane], lanes.corner[1][lane],
-               lanes.corner[2][lane] > 0, local, rays, lane);
-    else
-      start_from(ZoneId(lanes.zone[lane]), numbers.u[0][lane], numbers.u[1][lane], local, rays, lane);
+    const bool is_behind =
+        (lanes.points >> lane & 1U) != 0
+            ? start_at(TriangleId(lanes.zone[lane]), lanes.corner[0][lane], lanes.corner[1][lane],
+                       lanes.corner[2][lane] > 0, local, rays, lane)
+            : start_from(ZoneId(lanes.zone[lane]), numbers.u[0][lane], numbers.u[1][lane], local, rays, lane);
+    behind |= (is_behind ? 1U : 0U) << lane;
   }
+  return behind;
 }
 
 void PacketRoom::start_at_feet(const ZoneLanes& lanes, Ray16& rays) const {

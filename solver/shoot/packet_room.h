@@ -100,14 +100,16 @@ class PacketRoom {
     put_point(triangle, u, v, lanes, lane);
   }
 
-  /// start_rays for zones that may be curved or groups.
-  void start(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
-    start_rays(lanes, numbers, rays);
-    if (lanes.one_by_one != 0) start_one_by_one(lanes, numbers, rays);
+  /// start_rays for zones that may be curved or groups; also returns the lanes that start behind.
+  std::uint32_t start(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
+    std::uint32_t behind = start_rays(lanes, numbers, rays);
+    if (lanes.one_by_one != 0) behind = (behind & ~lanes.one_by_one) | start_one_by_one(lanes, numbers, rays);
     if (lanes.feet != 0) start_at_feet(lanes, rays);
+    return behind;
   }
   /// Starts one ray from a uniform point of a zone with a direction given in the frame of its normal (z up).
-  void start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const;
+  /// True if it starts behind (RayTracer::starts_behind).
+  bool start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const;
 
   /// Zone that a hit belongs to; not valid when it is the back of a one-sided face.
   ZoneId zone_of(std::uint32_t triangle, float u, float v, bool front) const {
@@ -136,8 +138,8 @@ class PacketRoom {
     }
   }
 
-  void start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays, int lane) const;
-  void start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
+  bool start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays, int lane) const;
+  std::uint32_t start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
   void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;
 
   /// A base triangle with the edges of one of its cells (normalised space).

@@ -4,14 +4,28 @@
 #include <numbers>
 
 namespace reemit {
+namespace {
+
+/// Of the start of a ray over the plane of its triangle, on the side that it leaves; 0 where a lane has no
+/// geometry.
+inline float height_of(const ZoneLanes& zones, const Ray16& rays, int i) {
+  return (rays.ox[i] - zones.middle[0][i]) * zones.normal[0][i] +
+         (rays.oy[i] - zones.middle[1][i]) * zones.normal[1][i] +
+         (rays.oz[i] - zones.middle[2][i]) * zones.normal[2][i];
+}
+
+}  // namespace
 
 // Compiled for several instruction sets and chosen when the program starts. Every operation is correctly
 // rounded and none is contracted, so all versions return the same bits.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-void start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restrict numbers, Ray16& __restrict rays) {
+std::uint32_t
+start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restrict numbers,
+           Ray16& __restrict rays) {
   constexpr float kQuarter = std::numbers::pi_v<float> / 4;
+  std::uint32_t any_behind = 0;
   for (int i = 0; i < 16; ++i) {
     const float s = std::sqrt(numbers.u[0][i]);
     const float a = s * (1 - numbers.u[1][i]);
@@ -28,6 +42,7 @@ void start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restric
     rays.ox[i] = px + RayTracer::kLift * zones.normal[0][i] + inset * mx;
     rays.oy[i] = py + RayTracer::kLift * zones.normal[1][i] + inset * my;
     rays.oz[i] = pz + RayTracer::kLift * zones.normal[2][i] + inset * mz;
+    any_behind |= height_of(zones, rays, i) < 0 ? 1U : 0U;
 
     // Concentric map [SC97]: the angle stays within a quarter of pi, where short polynomials give sine and
     // cosine to the last bits of a float.
@@ -48,6 +63,9 @@ void start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restric
     rays.dy[i] = x * zones.tangent[1][i] + y * zones.bitangent[1][i] + z * zones.normal[1][i];
     rays.dz[i] = x * zones.tangent[2][i] + y * zones.bitangent[2][i] + z * zones.normal[2][i];
   }
+  std::uint32_t behind = 0;
+  for (int i = 0; any_behind != 0 && i < 16; ++i) behind |= (height_of(zones, rays, i) < 0 ? 1U : 0U) << i;
+  return behind;
 }
 
 }  // namespace reemit

@@ -25,7 +25,9 @@ struct alignas(64) UniformLanes {
 };
 
 /// Makes 16 rays from uniform points of the zones (u[0], u[1]) in cosine-distributed directions (u[2], u[3]).
-/// Lane by lane the same as sample_triangle, RayTracer::lifted and sample_cosine_hemisphere.
-void start_rays(const ZoneLanes& zones, const UniformLanes& numbers, Ray16& rays);
+/// Returns, as bits, the lanes whose rays start on the other side of the triangle than that which they leave,
+/// because rounding took more than the lift. Lane by lane the same as sample_triangle, RayTracer::lifted and
+/// sample_cosine_hemisphere.
+std::uint32_t start_rays(const ZoneLanes& zones, const UniformLanes& numbers, Ray16& rays);
 
 }  // namespace reemit

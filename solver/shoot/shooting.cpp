@@ -207,7 +207,8 @@ bool trace_flight(const BatchTask& batch, const Flight& flight, std::uint32_t nu
       FlightCursor cursor(transport, flight, begin, points);
       for (std::uint32_t first = begin; first < end; first += 16) {
         block.count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-        cursor.start16(first, block.count, numbers, block.rays, block.power.data());
+        const int behind = cursor.start16(first, block.count, numbers, block.rays, block.power.data());
+        if (behind > 0) count_event(books.events.starts_behind, static_cast<std::uint64_t>(behind));
         std::iota(block.id, block.id + 16, first);
         if (batch.ray_observer != nullptr) (*batch.ray_observer)({block.rays, block.count, block.id, number});
         tracer.trace(block);

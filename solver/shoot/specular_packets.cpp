@@ -85,19 +85,24 @@ void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
   const std::size_t values = channels_.count();
   const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * values];
   const std::size_t surface = mesh_.triangle(t).surface.index();
+  bool jumps = false;
   const bool ends = block.way[lane].steps + 1 == kMostSteps;
   channels_.for_each([&](std::size_t c, std::size_t band) {
     power_[c] =
         share_of(power[c], static_cast<double>(way_.share()[band]) / static_cast<double>(way_.chance));
     if (power_[c] == 0) return;
+    jumps = jumps || static_cast<double>(power_[c]) > kUsualRoulette * static_cast<double>(power[c]);
     book(books_.absorbed[surface * values + c], -power_[c]);
     if (ends) book(books_.unshot[c], power_[c]);
   });
-  if (!ends)
-    next.add(rays_.ray_origin(t, x.u, x.v, way_.front), way_.direction, block.id[lane],
-             {block.way[lane].steps + 1, std::max(block.way[lane].part, part_of(way_)),
-              surfaces_.body_beyond(t, way_.front, block.way[lane].body)},
-             power_.data());
+  if (jumps) count_event(books_.events.roulette_jumps);
+  if (ends) return;
+  const Vec3f origin = rays_.ray_origin(t, x.u, x.v, way_.front);
+  if (rays_.starts_behind(t, way_.front, origin)) count_event(books_.events.starts_behind);
+  next.add(origin, way_.direction, block.id[lane],
+           {block.way[lane].steps + 1, std::max(block.way[lane].part, part_of(way_)),
+            surfaces_.body_beyond(t, way_.front, block.way[lane].body)},
+           power_.data());
 }
 
 }  // namespace reemit

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <numeric>
 #include <utility>
 
@@ -106,7 +107,8 @@ class WalkTask {
     FlightCursor cursor(transport_, flight, begin);
     for (std::uint32_t first = begin; first < end; first += 16) {
       block_.count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
-      cursor.start16(first, block_.count, numbers, block_.rays, block_.power.data());
+      const int behind = cursor.start16(first, block_.count, numbers, block_.rays, block_.power.data());
+      if (behind > 0) count_event(books_.events.starts_behind, static_cast<std::uint64_t>(behind));
       std::iota(block_.id, block_.id + block_.count, first);
       trace(0);
     }
@@ -129,7 +131,10 @@ class WalkTask {
           transport_.put_zone(transport_.zone_of(p.triangle, p.at_u, p.at_v, p.front), lanes_, lane,
                               lane + 1);
       }
-      transport_.start(lanes_, numbers, block_.rays);
+      const std::uint32_t behind =
+          transport_.start(lanes_, numbers, block_.rays) & ((1U << block_.count) - 1);
+      if (behind != 0)
+        count_event(books_.events.starts_behind, static_cast<std::uint64_t>(std::popcount(behind)));
       std::copy_n(&leaving_.quanta[first * values_], static_cast<std::size_t>(block_.count) * values_,
                   block_.power.begin());
       trace(bounce);
@@ -225,7 +230,11 @@ class WalkTask {
     std::int64_t* absorbed = &absorbed_[surface.index() * values_];
     const float u = low_bytes_to_unit(bits, k);
     const double on = specular_.any() ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;
-    if (survival + on > 1) survival /= survival + on;
+    if (survival + on > 1) {
+      // Powers that survive grow by as much as the odds of all ways are too large.
+      if (survival + on > kUsualRoulette) count_event(books_.events.roulette_jumps);
+      survival /= survival + on;
+    }
     if (!(u < survival)) {
       for (std::size_t c = 0; c < values_; ++c) absorbed[c] += quanta[c];
       if (on > 0)

@@ -1,17 +1,18 @@
 #include "solver/solution/energy_audit.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace reemit {
 
-std::int64_t BandAudit::total_absorbed() const {
-  return std::accumulate(absorbed.begin(), absorbed.end(), std::int64_t{0}) +
-         std::accumulate(absorbed_on_backs.begin(), absorbed_on_backs.end(), std::int64_t{0});
+RunQuanta BandAudit::total_absorbed() const {
+  return std::accumulate(absorbed.begin(), absorbed.end(), RunQuanta{0}) +
+         std::accumulate(absorbed_on_backs.begin(), absorbed_on_backs.end(), RunQuanta{0});
 }
 
-std::int64_t BandAudit::total_escaped() const {
-  return std::accumulate(escaped.begin(), escaped.end(), std::int64_t{0});
+RunQuanta BandAudit::total_escaped() const {
+  return std::accumulate(escaped.begin(), escaped.end(), RunQuanta{0});
 }
 
 double BandAudit::unshot_share() const {
@@ -19,7 +20,9 @@ double BandAudit::unshot_share() const {
 }
 
 std::int64_t BandAudit::balance() const {
-  return emitted + roulette_net - total_absorbed() - total_escaped() - unshot;
+  using Limits = std::numeric_limits<std::int64_t>;
+  const RunQuanta rest = emitted + roulette_net - total_absorbed() - total_escaped() - unshot;
+  return static_cast<std::int64_t>(std::clamp<RunQuanta>(rest, Limits::min(), Limits::max()));
 }
 
 bool EnergyAudit::balanced() const {

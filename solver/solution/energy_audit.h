@@ -6,29 +6,35 @@
 
 namespace reemit {
 
-/// Where every quantum of power went, summed over all batches by their weights. Integers: emitted +
-/// roulette_net = absorbed + absorbed_on_backs + escaped + unshot holds exactly for each band at any moment.
+/// A sum of quanta over a run. A batch has 2^42 for each channel, times its weight: after 2^21 of the
+/// smallest batches, some 10^11 packets, 63 bits would be full.
+__extension__ using RunQuanta = __int128;
+
+/// Where every quantum of power in one channel went, summed over all batches by their weights. Integers:
+/// emitted + roulette_net = absorbed + absorbed_on_backs + escaped + unshot holds exactly for each channel at
+/// any moment.
 struct BandAudit {
-  std::string band;
+  std::string band;              ///< Its name.
   double watts_per_quantum = 0;  ///< Of one batch; power [W] = quanta * watts_per_quantum / weight.
-  std::int64_t emitted = 0;
-  std::vector<std::int64_t> absorbed;           ///< By SurfaceId, by surfaces that reflect the rest.
-  std::vector<std::int64_t> absorbed_on_backs;  ///< By SurfaceId, on the backs of one-sided faces.
+  RunQuanta emitted = 0;
+  std::vector<RunQuanta> absorbed;           ///< By SurfaceId, by surfaces that reflect the rest.
+  std::vector<RunQuanta> absorbed_on_backs;  ///< By SurfaceId, on the backs of one-sided faces.
   /// Left the room; by the axis nearest to the direction: +x, -x, +y, -y, +z, -z.
-  std::array<std::int64_t, 6> escaped{};
+  std::array<RunQuanta, 6> escaped{};
   /// Reflected but not sent on when a batch ended, or not sent out at all by one that was cut off; what
   /// rounding and sampling leave, of either sign (matrix).
-  std::int64_t unshot = 0;
-  std::int64_t roulette_net = 0;  ///< Gain less loss; 0, for what changes hands cancels.
-  /// Power that changed hands [quanta], every time anew: in bright rooms many times what was emitted, more
-  /// than 63 bits hold in long runs. For information, so a floating-point number will do.
+  RunQuanta unshot = 0;
+  RunQuanta roulette_net = 0;  ///< Gain less loss; 0, for what changes hands cancels.
+  /// Power that changed hands [quanta], every time anew: in bright rooms many times what was emitted. For
+  /// information, so a floating-point number will do.
   double roulette_gain = 0;
 
-  std::int64_t total_absorbed() const;  ///< Fronts and backs of all surfaces.
-  std::int64_t total_escaped() const;
+  RunQuanta total_absorbed() const;  ///< Fronts and backs of all surfaces.
+  RunQuanta total_escaped() const;
   /// unshot over emitted; 0 if nothing was emitted.
   double unshot_share() const;
-  /// emitted - absorbed - escaped - unshot + roulette; 0 unless the program is wrong.
+  /// emitted - absorbed - escaped - unshot + roulette; 0 unless the program is wrong; what 64 bits do not
+  /// hold is cut off at their ends.
   std::int64_t balance() const;
 };
 
@@ -38,17 +44,26 @@ struct RareEvents {
   std::uint64_t second_looks = 0;  ///< Rays that met an edge, a back or nothing, and were traced once more.
   std::uint64_t back_hits = 0;     ///< Packets that ended on the back of a one-sided face.
   std::uint64_t escapes = 0;       ///< Packets that left the room.
+  /// Rays whose start, lifted off a flat face, lay on the other side of it than that which they left:
+  /// rounding took more than the lift. Starts on curved shapes are not looked at.
+  std::uint64_t starts_behind = 0;
+  /// Packets that came out of roulette with more than twice the usual power in some channel, that is of a
+  /// packet of their sweep (shooting) or of what arrived (walks, mirrors and glass): few packets that carry
+  /// much are noise.
+  std::uint64_t roulette_jumps = 0;
 
   RareEvents& operator+=(const RareEvents& more) {
     second_looks += more.second_looks;
     back_hits += more.back_hits;
     escapes += more.escapes;
+    starts_behind += more.starts_behind;
+    roulette_jumps += more.roulette_jumps;
     return *this;
   }
 };
 
 struct EnergyAudit {
-  std::vector<BandAudit> bands;
+  std::vector<BandAudit> bands;  ///< By channel (Channels).
   std::int64_t batches = 0;
   std::int64_t weight = 0;  ///< Of all batches together (ZoneSums).
   RareEvents events;        ///< None are counted by the matrix method.
@@ -57,7 +72,7 @@ struct EnergyAudit {
   double unshot_share() const;  ///< Of all bands together, each band counting alike.
   double worst_unshot_share() const;
   /// Power [W] of a number of quanta of this band.
-  double watts(const BandAudit& band, std::int64_t quanta) const {
+  double watts(const BandAudit& band, RunQuanta quanta) const {
     return watts(band, static_cast<double>(quanta));
   }
   double watts(const BandAudit& band, double quanta) const {

@@ -1,6 +1,8 @@
 #include "solver/solution/hdf5_group.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <limits>
 
 namespace reemit {
@@ -78,18 +80,54 @@ Hdf5Id timeless_properties(hid_t kind) {
   return properties;
 }
 
+std::uint64_t row_bytes(const Hdf5Shape& shape, std::size_t value_size) {
+  return value_count(shape) / shape[0] * value_size;
+}
+
+std::uint64_t rows_of_chunk(const Hdf5Shape& shape, std::size_t value_size) {
+  return std::clamp<std::uint64_t>(kChunkBytes / row_bytes(shape, value_size), 1, shape[0]);
+}
+
 Hdf5Id dataset_properties(const Hdf5Shape& shape, std::size_t value_size) {
   Hdf5Id properties = timeless_properties(H5P_DATASET_CREATE);
   if (value_count(shape) == 0) return properties;  // nothing to cut into chunks
   std::vector<hsize_t> chunk(shape.begin(), shape.end());
-  const std::uint64_t row_bytes = value_count(shape) / shape[0] * value_size;
-  chunk[0] = std::clamp<std::uint64_t>(kChunkBytes / row_bytes, 1, shape[0]);
+  chunk[0] = rows_of_chunk(shape, value_size);
   const char* what = "cannot set dataset properties";
   check_hdf5(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), what);
   check_hdf5(H5Pset_shuffle(properties.get()), what);
   check_hdf5(H5Pset_deflate(properties.get(), kDeflateLevel), what);
   check_hdf5(H5Pset_fletcher32(properties.get()), what);
   return properties;
+}
+
+// Writes a dataset chunk by chunk, those for which `packs` is false without filters.
+template <class Packs>
+void write_chunks(hid_t dataset, hid_t type, std::span<const std::byte> bytes, const Hdf5Shape& shape,
+                  std::size_t value_size, const Packs& packs, const std::string& what) {
+  constexpr std::uint32_t kNoFilters = 0xffffffff;
+  const std::size_t of_row = row_bytes(shape, value_size);
+  const std::uint64_t rows = rows_of_chunk(shape, value_size);
+  const Hdf5Id space(H5Dget_space(dataset), H5Sclose, what);
+  std::vector<hsize_t> first(shape.size(), 0);
+  std::vector<hsize_t> count(shape.begin(), shape.end());
+  for (; first[0] < shape[0]; first[0] += rows) {
+    count[0] = std::min<std::uint64_t>(rows, shape[0] - first[0]);
+    const auto chunk = bytes.subspan(first[0] * of_row, count[0] * of_row);
+    if (packs()) {
+      check_hdf5(
+          H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr),
+          what);
+      const Hdf5Id memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose,
+                          what);
+      check_hdf5(H5Dwrite(dataset, type, memory.get(), space.get(), H5P_DEFAULT, chunk.data()), what);
+      continue;
+    }
+    std::vector<std::byte> whole(rows * of_row);  // the last one may be larger than what is left
+    std::copy(chunk.begin(), chunk.end(), whole.begin());
+    check_hdf5(H5Dwrite_chunk(dataset, H5P_DEFAULT, kNoFilters, first.data(), whole.size(), whole.data()),
+               what);
+  }
 }
 
 // Deflate packs at most 1032 bytes into one, so a larger claim comes from a damaged file.
@@ -156,7 +194,7 @@ Hdf5Group Hdf5Group::create_group(const std::string& name) const {
   const Hdf5Id properties = timeless_properties(H5P_GROUP_CREATE);
   return {Hdf5Id(H5Gcreate2(id_.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Gclose,
                  "cannot create the group " + full),
-          full};
+          full, packing_};
 }
 
 Hdf5Group Hdf5Group::open_group(const std::string& name) const {
@@ -244,8 +282,11 @@ void Hdf5Group::write(const std::string& name, std::span<const T> values, const 
     throw std::invalid_argument(full_name(name) + ": the number of values does not fit the shape");
   Hdf5Id dataset = create_dataset(name, hdf5_type<T>(), sizeof(T), shape, unit, description);
   const std::string what = "cannot write the dataset " + full_name(name);
+  static_assert(std::endian::native == std::endian::little, "chunks are stored as they are");
   if (!values.empty())
-    check_hdf5(H5Dwrite(dataset.get(), hdf5_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+    write_chunks(
+        dataset.get(), hdf5_type<T>(), std::as_bytes(values), shape, sizeof(T), [&] { return packs(); },
+        what);
   dataset.close(what);
 }
 
@@ -263,7 +304,9 @@ void Hdf5Group::write(const std::string& name, std::span<const std::string> text
   Hdf5Id dataset = create_dataset(name, type.get(), length, {texts.size()}, "", description);
   const std::string what = "cannot write the dataset " + full_name(name);
   if (!texts.empty())
-    check_hdf5(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), what);
+    write_chunks(
+        dataset.get(), type.get(), std::as_bytes(std::span(padded)), {texts.size()}, length,
+        [&] { return packs(); }, what);
   dataset.close(what);
 }
 

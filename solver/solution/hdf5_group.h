@@ -10,6 +10,8 @@
 
 #include <hdf5.h>
 
+#include "solver/solution/packing.h"
+
 namespace reemit {
 
 /// A failed HDF5 call, with the reason HDF5 gives. Callers turn it into an error about their file.
@@ -65,12 +67,15 @@ hid_t hdf5_type();
 
 using Hdf5Shape = std::vector<std::uint64_t>;
 
-/// A group of an HDF5 file. Every dataset is compressed and carries a checksum, a unit and a description.
-/// Strings are stored as fixed-length UTF-8, padded with zeros.
+/// A group of an HDF5 file. Every dataset is compressed and carries a checksum, but for chunks that are
+/// written after packing has ended; a unit and a description. Strings are stored as fixed-length UTF-8,
+/// padded with zeros.
 class Hdf5Group {
  public:
   /// `path` for messages, as in "/mesh".
-  Hdf5Group(Hdf5Id id, std::string path) : id_(std::move(id)), path_(std::move(path)) {}
+  /// `packing` (may be null: always) holds for groups that are created in this one, and must outlive them.
+  Hdf5Group(Hdf5Id id, std::string path, const Packing* packing = nullptr)
+      : id_(std::move(id)), path_(std::move(path)), packing_(packing) {}
 
   Hdf5Group create_group(const std::string& name) const;
   Hdf5Group open_group(const std::string& name) const;
@@ -100,6 +105,7 @@ class Hdf5Group {
   std::vector<std::string> read_texts(const std::string& name) const;
 
  private:
+  bool packs() const { return packing_ == nullptr || packing_->goes_on(); }
   Hdf5Id create_dataset(const std::string& name, hid_t type, std::size_t value_size, const Hdf5Shape& shape,
                         const std::string& unit, const std::string& description) const;
   Hdf5Id open_dataset(const std::string& name) const;
@@ -109,6 +115,7 @@ class Hdf5Group {
 
   Hdf5Id id_;
   std::string path_;
+  const Packing* packing_;
 };
 
 }  // namespace reemit

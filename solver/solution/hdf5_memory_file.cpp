@@ -55,8 +55,8 @@ Hdf5MemoryFile::Hdf5MemoryFile() : image_(std::make_unique<Image>()) {
 
 Hdf5MemoryFile::~Hdf5MemoryFile() = default;
 
-Hdf5Group Hdf5MemoryFile::root() const {
-  return {Hdf5Id(H5Gopen2(file_->get(), "/", H5P_DEFAULT), H5Gclose, "cannot open the root"), "/"};
+Hdf5Group Hdf5MemoryFile::root(const Packing* packing) const {
+  return {Hdf5Id(H5Gopen2(file_->get(), "/", H5P_DEFAULT), H5Gclose, "cannot open the root"), "/", packing};
 }
 
 std::string_view Hdf5MemoryFile::close() {

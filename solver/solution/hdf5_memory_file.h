@@ -17,7 +17,8 @@ class Hdf5MemoryFile {
   Hdf5MemoryFile(const Hdf5MemoryFile&) = delete;
   Hdf5MemoryFile& operator=(const Hdf5MemoryFile&) = delete;
 
-  Hdf5Group root() const;
+  /// `packing` as Hdf5Group has it.
+  Hdf5Group root(const Packing* packing = nullptr) const;
   /// Finishes the file; its bytes live as long as this object. Throws Hdf5Error.
   std::string_view close();
 

@@ -2,19 +2,22 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "solver/solution/packing.h"
 #include "solver/solution/solution.h"
 
 namespace reemit {
 
 /// What the root attributes `format` and `format_version` of a solution file say.
 inline constexpr const char* kSolutionFormat = "reemit solution";
-inline constexpr std::uint32_t kSolutionFormatVersion = 9;
+inline constexpr std::uint32_t kSolutionFormatVersion = 10;
 
 /// Writes a solution as HDF5, all of it that load_solution needs to go on solving, and zone values for other
 /// programs; docs/solution_file.md specifies every dataset. The file appears whole or not at all: until then
 /// the previous one stays. Throws ResourceError when it cannot be written, std::invalid_argument for a
-/// solution whose parts do not fit together. Not for several threads at once: HDF5 is not.
-void save_solution(const Solution& solution, const std::filesystem::path& file);
+/// solution whose parts do not fit together. Not for several threads at once: HDF5 is not. `packing`: when
+/// what is left is stored without compression.
+void save_solution(const Solution& solution, const std::filesystem::path& file,
+                   const Packing& packing = Packing(nullptr));
 
 /// Reads a solution file back: sums and audit are exactly those that were saved. Throws InputError with
 /// advice when the file is missing, no solution file, of another format version, truncated or damaged.

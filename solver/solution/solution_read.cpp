@@ -5,6 +5,8 @@
 
 #include "scenes/io/common/text_file.h"
 #include "scenes/model/error.h"
+#include "solver/solution/audit_group.h"
+#include "solver/solution/file_damage.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/shape_rows.h"
@@ -14,20 +16,11 @@
 namespace reemit {
 namespace {
 
-// Something in the file that cannot be; becomes an InputError that names the file.
-class Damage : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-void require(bool condition, const std::string& problem) {
-  if (!condition) throw Damage(problem);
-}
-
 template <class Enum>
 Enum enum_from(const std::string& text, std::span<const Enum> values) {
   for (const Enum value : values)
     if (to_string(value) == text) return value;
-  throw Damage("unknown word '" + text + "'");
+  throw FileDamage("unknown word '" + text + "'");
 }
 
 // The reading side of solution_layout.h.
@@ -92,7 +85,7 @@ BandSet read_bands(const Hdf5Group& root) {
       break;
   }
   const Hdf5Shape shape = group.shape("centre");
-  require(shape.size() == 1, "bad list of wavelengths");
+  require_intact(shape.size() == 1, "bad list of wavelengths");
   return BandSet::spectral(group.read<double>("centre", shape));
 }
 
@@ -124,12 +117,16 @@ void read_materials(const Hdf5Group& root, Solution& solution) {
   const auto in_range = [](double low, double high) {
     return [low, high](double x) { return x >= low && x <= high; };
   };
-  require(std::all_of(reflectance.begin(), reflectance.end(), in_range(0, 1)), "reflectance outside [0,1]");
-  require(std::all_of(back.begin(), back.end(), in_range(0, 1)), "reflectance of a back outside [0,1]");
-  require(std::all_of(through.begin(), through.end(), in_range(0, 1)), "diffuse transmittance outside [0,1]");
-  require(std::all_of(emitted.begin(), emitted.end(), in_range(0, std::numeric_limits<double>::max())),
-          "negative or infinite emission");
-  require(std::all_of(exponent.begin(), exponent.end(), in_range(0, 1e4)), "emission exponent out of range");
+  require_intact(std::all_of(reflectance.begin(), reflectance.end(), in_range(0, 1)),
+                 "reflectance outside [0,1]");
+  require_intact(std::all_of(back.begin(), back.end(), in_range(0, 1)),
+                 "reflectance of a back outside [0,1]");
+  require_intact(std::all_of(through.begin(), through.end(), in_range(0, 1)),
+                 "diffuse transmittance outside [0,1]");
+  require_intact(std::all_of(emitted.begin(), emitted.end(), in_range(0, std::numeric_limits<double>::max())),
+                 "negative or infinite emission");
+  require_intact(std::all_of(exponent.begin(), exponent.end(), in_range(0, 1e4)),
+                 "emission exponent out of range");
   const auto size = static_cast<Eigen::Index>(bands);
   for (std::size_t m = 0; m < count; ++m) {
     Material material;
@@ -152,7 +149,7 @@ void read_surfaces(const Hdf5Group& root, Solution& solution) {
   solution.surface_names = group.read_texts("name");
   const std::uint64_t count = solution.surface_names.size();
   for (const std::uint32_t material : group.read<std::uint32_t>("material", {count})) {
-    require(material < solution.materials.size(), "surface with a material out of range");
+    require_intact(material < solution.materials.size(), "surface with a material out of range");
     solution.surface_materials.emplace_back(material);
   }
   const auto input = group.read<double>("area_input", {count});
@@ -165,7 +162,7 @@ void read_surfaces(const Hdf5Group& root, Solution& solution) {
 std::vector<Vec3> read_vectors(const Hdf5Group& group, const char* name) {
   const std::uint64_t count = rows_of(group, name);
   const auto flat = group.read<double>(name, {count, 3});
-  require(all_finite(flat), std::string(name) + " that are not finite");
+  require_intact(all_finite(flat), std::string(name) + " that are not finite");
   std::vector<Vec3> vectors;
   vectors.reserve(count);
   for (std::size_t i = 0; i < flat.size(); i += 3) vectors.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
@@ -175,11 +172,11 @@ std::vector<Vec3> read_vectors(const Hdf5Group& group, const char* name) {
 ZoneGroups read_groups(const Hdf5Group& mesh, std::uint64_t triangles) {
   ZoneGroups groups;
   const std::uint64_t rows = rows_of(mesh, "side_group");
-  require(rows == 0 || rows == 2 * triangles, "groups of another number of sides");
+  require_intact(rows == 0 || rows == 2 * triangles, "groups of another number of sides");
   groups.of_side = mesh.read<std::uint32_t>("side_group", {rows});
   for (const std::uint32_t g : groups.of_side) {
     if (g == ZoneGroups::kOwn) continue;
-    require(g < rows, "side with a group out of range");
+    require_intact(g < rows, "side with a group out of range");
     groups.count = std::max(groups.count, g + 1);
   }
   groups.sealed = mesh.read_attribute<std::uint32_t>("sealed_groups");
@@ -192,7 +189,7 @@ CellSplits read_splits(const Hdf5Group& mesh) {
     splits.sides.emplace_back(s);
   splits.is_split = mesh.read<std::uint8_t>("split_cells", {rows_of(mesh, "split_cells")});
   for (std::size_t i = 1; i < splits.sides.size(); ++i)
-    require(splits.sides[i - 1] < splits.sides[i], "sides with split cells out of order");
+    require_intact(splits.sides[i - 1] < splits.sides[i], "sides with split cells out of order");
   return splits;
 }
 
@@ -213,7 +210,7 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   const auto shape = group.read<std::uint32_t>("triangle_shape", {count});
   const std::uint64_t shapes = rows_of(group, "shapes");
   const auto rows = group.read<double>("shapes", {shapes, kShapeRow});
-  require(all_finite(rows), "shapes that are not finite");
+  require_intact(all_finite(rows), "shapes that are not finite");
   for (std::size_t s = 0; s < shapes; ++s) base.shapes.push_back(shape_of(&rows[s * kShapeRow]));
   ZoneGroups groups = read_groups(group, count);
   CellSplits splits = read_splits(group);
@@ -224,13 +221,13 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   std::uint64_t zones = groups.count + static_cast<std::uint64_t>(
                                            std::count(splits.is_split.begin(), splits.is_split.end(), 0));
   for (std::size_t t = 0; t < count; ++t) {
-    require(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
-    require(divisions[t] > 0 && divisions[t] < 65536, "triangle with an impossible number of zones");
+    require_intact(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
+    require_intact(divisions[t] > 0 && divisions[t] < 65536, "triangle with an impossible number of zones");
     const bool front_counts = counts_cells(side_of(TriangleId(t), true));
     const bool back_counts = two_sided[t] != 0 && counts_cells(side_of(TriangleId(t), false));
     zones +=
         std::uint64_t{divisions[t]} * divisions[t] * ((front_counts ? 1U : 0U) + (back_counts ? 1U : 0U));
-    require(zones <= zone_count, "more zones in the mesh than in the sums");
+    require_intact(zones <= zone_count, "more zones in the mesh than in the sums");
     BaseTriangle triangle;
     std::copy_n(vertex.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, triangle.vertex.begin());
     std::copy_n(normal.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, triangle.normal.begin());
@@ -243,7 +240,7 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
       triangle.patch = base.triangles.back().patch + 1;
     base.triangles.push_back(triangle);
   }
-  require(zones == zone_count, "fewer zones in the mesh than in the sums");
+  require_intact(zones == zone_count, "fewer zones in the mesh than in the sums");
   AttributeReader counts{group};
   transfer_mesh_counts(counts, solution.mesh_report);
   solution.mesh_report.warnings = group.read_texts("warnings");
@@ -258,17 +255,18 @@ ZoneSums read_sums(const Hdf5Group& root, const Channels& channels) {
   ZoneSums sums;
   sums.channels = channels;
   sums.batches = group.read_attribute<std::int64_t>("batches");
-  require(sums.batches >= 0, "a negative number of batches");
+  require_intact(sums.batches >= 0, "a negative number of batches");
   sums.weight_squared = group.read_attribute<double>("weight_squared");
   const auto weights = group.read<std::int64_t>("group_weight", {ZoneSums::kGroups});
   std::copy(weights.begin(), weights.end(), sums.group_weight.begin());
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
-    require(weights[g] > 0 ? static_cast<std::int64_t>(g) < sums.batches && weights[g] <= kMostGroupWeight
-                           : weights[g] == 0 && static_cast<std::int64_t>(g) >= sums.batches,
-            "weights of batch groups that do not go with the number of batches");
+    require_intact(weights[g] > 0
+                       ? static_cast<std::int64_t>(g) < sums.batches && weights[g] <= kMostGroupWeight
+                       : weights[g] == 0 && static_cast<std::int64_t>(g) >= sums.batches,
+                   "weights of batch groups that do not go with the number of batches");
   const auto weight = static_cast<double>(sums.weight());
-  require(sums.weight_squared >= weight && (sums.batches < 2 || sums.weight_squared < weight * weight),
-          "squares of weights that do not go with the weights");
+  require_intact(sums.weight_squared >= weight && (sums.batches < 2 || sums.weight_squared < weight * weight),
+                 "squares of weights that do not go with the weights");
   const Hdf5Shape shape{rows_of(group, "direct"), channels.count()};
   std::vector<std::pair<const char*, std::vector<double>*>> columns{
       {"direct", &sums.direct},
@@ -284,10 +282,10 @@ ZoneSums read_sums(const Hdf5Group& root, const Channels& channels) {
                                    {"caustic_squared", &sums.caustic_squared}});
   for (const auto& [name, values] : columns) {
     *values = group.read<double>(name, shape);
-    require(all_finite(*values), std::string("/sums/") + name + " holds a number that is not finite");
+    require_intact(all_finite(*values), std::string("/sums/") + name + " holds a number that is not finite");
   }
   sums.group_total = group.read<float>("group_total", {ZoneSums::kGroups, shape[0], channels.count()});
-  require(all_finite(sums.group_total), "/sums/group_total holds a number that is not finite");
+  require_intact(all_finite(sums.group_total), "/sums/group_total holds a number that is not finite");
   return sums;
 }
 
@@ -297,77 +295,16 @@ GatheredZones read_gathered(const Hdf5Group& root, const Solution& solution) {
   const std::uint64_t count = rows_of(group, "zone");
   GatheredZones gathered;
   gathered.rays = group.read_attribute<std::uint64_t>("rays");
-  require(gathered.rays <= solution.record.rays, "more gathered rays than rays");
+  require_intact(gathered.rays <= solution.record.rays, "more gathered rays than rays");
   for (const std::uint32_t zone : group.read<std::uint32_t>("zone", {count})) {
-    require(zone < solution.mesh.zone_count(), "gathered zones out of range");
+    require_intact(zone < solution.mesh.zone_count(), "gathered zones out of range");
     gathered.zones.emplace_back(zone);
   }
   gathered.sums = group.read<double>("sums", {count, channels, solution.sums.columns().size()});
   gathered.group_total = group.read<float>("group_total", {ZoneSums::kGroups, count, channels});
-  require(all_finite(gathered.sums) && all_finite(gathered.group_total),
-          "/gathered holds a number that is not finite");
+  require_intact(all_finite(gathered.sums) && all_finite(gathered.group_total),
+                 "/gathered holds a number that is not finite");
   return gathered;
-}
-
-/// Whether no sum of what the books of a band hold overflows, in whatever order it is taken.
-bool can_be_added(const BandAudit& band) {
-  double in = 0, out = 0;
-  const auto add = [&](std::int64_t quanta, double sign) {
-    const double signed_quanta = sign * static_cast<double>(quanta);
-    (signed_quanta > 0 ? in : out) += std::abs(signed_quanta);
-  };
-  for (const std::int64_t quanta : {band.emitted, band.roulette_net}) add(quanta, 1);
-  for (const std::int64_t quanta : band.absorbed) add(quanta, -1);
-  for (const std::int64_t quanta : band.absorbed_on_backs) add(quanta, -1);
-  for (const std::int64_t quanta : band.escaped) add(quanta, -1);
-  add(band.unshot, -1);
-  constexpr double kMost = 0x1.fffp62;
-  return in < kMost && out < kMost;
-}
-
-EnergyAudit read_audit(const Hdf5Group& root, const Solution& solution) {
-  const Hdf5Group group = root.open_group("audit");
-  const std::uint64_t channels = solution.sums.channels.count();
-  const std::uint64_t surfaces = solution.surface_names.size();
-  EnergyAudit audit;
-  audit.batches = group.read_attribute<std::int64_t>("batches");
-  audit.weight = group.read_attribute<std::int64_t>("weight");
-  audit.events.second_looks = group.read_attribute<std::uint64_t>("second_looks");
-  audit.events.back_hits = group.read_attribute<std::uint64_t>("back_hits");
-  audit.events.escapes = group.read_attribute<std::uint64_t>("escapes");
-  require(audit.batches >= 0 && audit.weight >= audit.batches, "a negative number of batches");
-  const std::vector<std::string> names = group.read_texts("band");
-  require(names.size() == channels, "an audit of another number of bands");
-  const auto watts = group.read<double>("watts_per_quantum", {channels});
-  const auto gain = group.read<double>("roulette_gain", {channels});
-  require(all_finite(watts) && all_finite(gain), "power that is not finite");
-  const auto escaped = group.read<std::int64_t>("escaped", {channels, 6});
-  const auto absorbed = group.read<std::int64_t>("absorbed", {channels, surfaces});
-  const auto on_backs = group.read<std::int64_t>("absorbed_on_backs", {channels, surfaces});
-  audit.bands.resize(channels);
-  const auto row = [](const std::vector<std::int64_t>& values, std::size_t b, std::uint64_t columns) {
-    return values.begin() + static_cast<std::ptrdiff_t>(b * columns);
-  };
-  for (std::size_t b = 0; b < channels; ++b) {
-    BandAudit& band = audit.bands[b];
-    band.band = names[b];
-    band.watts_per_quantum = watts[b];
-    band.roulette_gain = gain[b];
-    std::copy_n(row(escaped, b, 6), 6, band.escaped.begin());
-    band.absorbed.assign(row(absorbed, b, surfaces), row(absorbed, b + 1, surfaces));
-    band.absorbed_on_backs.assign(row(on_backs, b, surfaces), row(on_backs, b + 1, surfaces));
-  }
-  const std::pair<const char*, std::int64_t BandAudit::*> columns[] = {
-      {"emitted", &BandAudit::emitted},
-      {"unshot", &BandAudit::unshot},
-      {"roulette_net", &BandAudit::roulette_net}};
-  for (const auto& [name, member] : columns) {
-    const auto values = group.read<std::int64_t>(name, {channels});
-    for (std::size_t b = 0; b < channels; ++b) audit.bands[b].*member = values[b];
-  }
-  require(std::all_of(audit.bands.begin(), audit.bands.end(), can_be_added),
-          "more quanta in the books than can be added");
-  return audit;
 }
 
 Solution read_all(const Hdf5Group& root) {
@@ -385,8 +322,7 @@ Solution read_all(const Hdf5Group& root) {
   solution.sums = read_sums(root, channels);
   solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / channels.count());
   solution.gathered = read_gathered(root, solution);
-  solution.audit = read_audit(root, solution);
-  solution.light_warnings = root.open_group("audit").read_texts("warnings");
+  read_audit(root, solution);
   return solution;
 }
 
@@ -441,7 +377,7 @@ Solution load_solution(const std::filesystem::path& file) {
     return read_all(root);
   } catch (const Hdf5Error& error) {
     throw InputError(name, std::string("is damaged or incomplete: ") + error.what(), damaged);
-  } catch (const Damage& error) {
+  } catch (const FileDamage& error) {
     throw InputError(name, std::string("is damaged: ") + error.what(), damaged);
   } catch (const std::invalid_argument& error) {  // from the checks of the mesh and the bands
     throw InputError(name, std::string("is damaged: ") + error.what(), damaged);

@@ -5,6 +5,7 @@
 
 #include "scenes/io/common/output_file.h"
 #include "scenes/model/error.h"
+#include "solver/solution/audit_group.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/hdf5_memory_file.h"
@@ -347,36 +348,6 @@ void write_gathered(const Hdf5Group& root, const Solution& solution) {
                      "the same of group_total");
 }
 
-void write_audit(const Hdf5Group& root, const Solution& solution) {
-  const Hdf5Group group = root.create_group("audit");
-  const auto& bands = solution.audit.bands;
-  const std::size_t surfaces = solution.surface_names.size();
-  group.write_attribute("batches", solution.audit.batches);
-  group.write_attribute("weight", solution.audit.weight);
-  group.write_attribute("second_looks", solution.audit.events.second_looks);
-  group.write_attribute("back_hits", solution.audit.events.back_hits);
-  group.write_attribute("escapes", solution.audit.events.escapes);
-  group.write("band", column<std::string>(bands, std::mem_fn(&BandAudit::band)), "name of each band");
-  put(group, "watts_per_quantum", column<double>(bands, std::mem_fn(&BandAudit::watts_per_quantum)), 1, "W",
-      "power [W] = quanta * watts_per_quantum / weight");
-  const auto put_column = [&](const char* name, std::int64_t BandAudit::*member, const char* description) {
-    put(group, name, column<std::int64_t>(bands, std::mem_fn(member)), 1, "quanta", description);
-  };
-  put_column("emitted", &BandAudit::emitted, "sent out by luminaires");
-  put_column("unshot", &BandAudit::unshot, "not sent on when a batch ended");
-  put_column("roulette_net", &BandAudit::roulette_net, "created less destroyed by Russian roulette");
-  put(group, "roulette_gain", column<double>(bands, std::mem_fn(&BandAudit::roulette_gain)), 1, "quanta",
-      "created by Russian roulette");
-  group.write<std::int64_t>("absorbed", flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::absorbed)),
-                            {bands.size(), surfaces}, "quanta", "absorbed by each surface");
-  group.write<std::int64_t>("absorbed_on_backs",
-                            flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::absorbed_on_backs)),
-                            {bands.size(), surfaces}, "quanta", "absorbed on the backs of one-sided faces");
-  put(group, "escaped", flattened<std::int64_t>(bands, std::mem_fn(&BandAudit::escaped)), 6, "quanta",
-      "left the room towards +x -x +y -y +z -z");
-  group.write("warnings", solution.light_warnings, "what was found about light that is lost");
-}
-
 void write_all(const Hdf5Group& root, const Solution& solution) {
   root.write_attribute("format", std::string(kSolutionFormat));
   root.write_attribute("format_version", kSolutionFormatVersion);
@@ -401,13 +372,13 @@ void write_all(const Hdf5Group& root, const Solution& solution) {
 
 }  // namespace
 
-void save_solution(const Solution& solution, const std::filesystem::path& file) {
+void save_solution(const Solution& solution, const std::filesystem::path& file, const Packing& packing) {
   check_consistent(solution);
   const Hdf5Quiet quiet;
   OutputFile output(file);
   try {
     Hdf5MemoryFile memory;
-    write_all(memory.root(), solution);
+    write_all(memory.root(&packing), solution);
     const std::string_view bytes = memory.close();
     output.write(bytes);
     output.write(seal_of(bytes));

@@ -11,8 +11,8 @@
 
 namespace reemit {
 
-/// Quanta that each emitting channel sends out in one batch. 2^42 leaves a packet of a 10^8-packet batch 4 x
-/// 10^4 quanta, and 2^20 batches still fit into 63 bits.
+/// Quanta that each emitting channel sends out in one batch. 2^42 leaves a packet of a 10^8-packet batch
+/// 4 x 10^4 quanta; sums over a run are RunQuanta.
 inline constexpr std::int64_t kBatchQuanta = std::int64_t{1} << 42;
 
 /// Adds to a number that other threads add to as well. Integer addition is associative, so the sum does not

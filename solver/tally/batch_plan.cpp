@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/solution/solution.h"
 
@@ -22,8 +23,15 @@ constexpr std::uint64_t kPacketsPerZone = 16;
 /// ratio estimate, biased by about (variance of colours)/packets; its noise is sqrt(variance/packets). With
 /// as many packets for each of n batches the bias of the mean is an eighth of its noise at most.
 constexpr double kPacketsPerBatch = 64;
-/// Total weight whose books, of kBatchQuanta = 2^42 each, fit into 63 bits.
-constexpr std::int64_t kMostWeight = (std::int64_t{1} << 21) - 1;
+/// Batches after which they grow in any case, such that each is at most so small a part of what is done. The
+/// sums of batch groups are of single precision: what is added must not drown in their rounding. So a run of
+/// 10^12 packets in a small room has 10^5 batches instead of 10^7, none of which costs much if cut off.
+constexpr std::int64_t kManyBatches = 1 << 14;
+/// Up to this size, at which a batch takes no more memory than those of large rooms do: it keeps points and
+/// packets that wait. 2^42 quanta leave each packet 2^18, whose rounding at a hit is no bias to speak of.
+constexpr std::uint64_t kMostGrownPackets = std::uint64_t{1} << 24;
+/// The number of a batch has 32 bits.
+constexpr std::int64_t kMostBatches = std::numeric_limits<std::uint32_t>::max();
 constexpr std::int64_t kRound = static_cast<std::int64_t>(ZoneSums::kGroups);
 
 }  // namespace
@@ -32,6 +40,7 @@ BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones, std::uin
   std::uint64_t unit = default_unit(zones);
   if (settings.batch_packets > 0) {
     unit = settings.batch_packets;
+    goes_on_growing_ = false;
     if (settings.packets > 0)
       weight_of_packets_ = static_cast<std::int64_t>(std::max<std::uint64_t>(1, settings.packets / unit));
   } else {
@@ -42,16 +51,14 @@ BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones, std::uin
           std::min<double>(std::max(2, settings.smallest_batch_count), std::max(2.0, unbiased));
       const std::uint64_t units =
           std::max(static_cast<std::uint64_t>(least), (settings.packets + unit - 1) / unit);
-      weight_of_packets_ = static_cast<std::int64_t>(
-          std::min({units, settings.packets, static_cast<std::uint64_t>(kMostWeight)}));
+      weight_of_packets_ = static_cast<std::int64_t>(std::min(units, settings.packets));
       unit = settings.packets / static_cast<std::uint64_t>(weight_of_packets_);
     }
   }
   if (unit_packets > 0 && unit_packets != unit) {
     unit = unit_packets;
     if (settings.packets > 0)
-      weight_of_packets_ = static_cast<std::int64_t>(
-          std::clamp<std::uint64_t>(settings.packets / unit, 1, static_cast<std::uint64_t>(kMostWeight)));
+      weight_of_packets_ = static_cast<std::int64_t>(std::max<std::uint64_t>(settings.packets / unit, 1));
   }
   unit_packets_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(unit, 1, std::uint64_t{1} << 31));
   const std::int64_t most =
@@ -60,14 +67,24 @@ BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones, std::uin
 }
 
 std::int64_t BatchPlan::next_weight(std::int64_t batches, std::int64_t done) const {
+  if (batches >= kMostBatches) return 0;
+  const std::int64_t most_grown =
+      goes_on_growing_ ? static_cast<std::int64_t>(kMostGrownPackets / unit_packets_) : 0;
+  const std::int64_t most = std::max(largest_weight_, most_grown);
   std::int64_t weight = 1;
   std::int64_t before = 0;  // weight of all rounds before the one that this batch is in
-  for (std::int64_t round = batches / kRound; round > 0 && weight < largest_weight_; --round) {
-    before += kRound * weight;
-    weight = std::clamp<std::int64_t>(before / kRound, 1, largest_weight_);
+  for (std::int64_t rounds = batches / kRound; rounds > 0 && weight < most;) {
+    std::int64_t alike = 1;  // rounds of this weight
+    if (weight >= largest_weight_) {
+      const std::int64_t until = (weight + 1) * kManyBatches - before;
+      alike = std::clamp<std::int64_t>((until - 1) / (kRound * weight) + 1, 1, rounds);
+    }
+    rounds -= alike;
+    before += alike * kRound * weight;
+    const std::int64_t as_planned = std::clamp<std::int64_t>(before / kRound, 1, largest_weight_);
+    weight = std::max(as_planned, std::min(before / kManyBatches, most_grown));
   }
-  const std::int64_t limit = weight_of_packets_ > 0 ? std::min(weight_of_packets_, kMostWeight) : kMostWeight;
-  return std::clamp<std::int64_t>(limit - done, 0, weight);
+  return weight_of_packets_ > 0 ? std::clamp<std::int64_t>(weight_of_packets_ - done, 0, weight) : weight;
 }
 
 }  // namespace reemit

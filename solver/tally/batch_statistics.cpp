@@ -56,18 +56,19 @@ void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit)
   audit.weight += weight;
   audit.events += books.events;
   const std::size_t channels = books.channels.count();
+  const RunQuanta w = weight;
   for (std::size_t c = 0; c < channels; ++c) {
     BandAudit& a = audit.bands[c];
-    a.emitted += weight * books.emitted[c];
-    a.unshot += weight * books.unshot[c];
-    a.roulette_net += weight * (books.roulette_gain[c] - books.roulette_loss[c]);
+    a.emitted += w * books.emitted[c];
+    a.unshot += w * books.unshot[c];
+    a.roulette_net += w * (books.roulette_gain[c] - books.roulette_loss[c]);
     a.roulette_gain += static_cast<double>(weight) * static_cast<double>(books.roulette_gain[c]);
     for (std::size_t s = 0; s < a.absorbed.size(); ++s) {
-      a.absorbed[s] += weight * books.absorbed[s * channels + c];
-      a.absorbed_on_backs[s] += weight * books.absorbed_on_backs[s * channels + c];
+      a.absorbed[s] += w * books.absorbed[s * channels + c];
+      a.absorbed_on_backs[s] += w * books.absorbed_on_backs[s * channels + c];
     }
     for (std::size_t axis = 0; axis < a.escaped.size(); ++axis)
-      a.escaped[axis] += weight * books.escaped[axis * channels + c];
+      a.escaped[axis] += w * books.escaped[axis * channels + c];
     if (a.balance() != 0)
       throw std::logic_error("the energy books of band " + a.band + " are off by " +
                              std::to_string(a.balance()) + " quanta after batch " +

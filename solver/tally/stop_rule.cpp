@@ -34,7 +34,9 @@ std::optional<StopReason> StopRule::stop(const RunState& state) const {
       state.error <= settings_.error_target)
     return state.unshot_share <= settings_.error_target ? StopReason::kErrorTarget : StopReason::kBounceLimit;
   if (plan_.next_weight(state.batches, state.weight) == 0)
-    return plan_.weight_of_packets() > 0 ? StopReason::kPacketCount : StopReason::kBatchLimit;
+    return plan_.weight_of_packets() > 0 && state.weight >= plan_.weight_of_packets()
+               ? StopReason::kPacketCount
+               : StopReason::kBatchLimit;
   if (next_weight(state) == 0) return StopReason::kTimeLimit;
   return std::nullopt;
 }

@@ -78,7 +78,6 @@ class RayTracer {
     return is_curved(t) ? curved_normal(t, u, v) : normals_[t.index()];
   }
   bool is_curved(TriangleId t) const { return t.index() >= flat_count_; }
-  bool has_shapes() const { return !shapes_.empty(); }
   Vec3f point(TriangleId t, float u, float v) const {
     if (is_curved(t)) return curved_point(t, u, v).cast<float>();
     return (1 - u - v) * corner(t, 0) + u * corner(t, 1) + v * corner(t, 2);
@@ -97,6 +96,13 @@ class RayTracer {
   bool is_foot(TriangleId t) const { return feet_.is_foot_at(t.index()); }
   Vec3f clear_of_shapes(TriangleId t, const Vec3f& start) const {
     return feet_.clear_of_shapes(t.index(), start);
+  }
+  /// True if a ray that leaves a side of a flat triangle there starts on the other side, because rounding
+  /// took more than the lift. Never of curved patches.
+  bool starts_behind(TriangleId t, bool front, const Vec3f& start) const {
+    if (is_curved(t)) return false;
+    const float height = normal(t).dot(start - corner(t, 0));
+    return (front ? height : -height) < 0;
   }
   /// Start of a ray that leaves the given side at (u,v).
   Vec3f ray_origin(TriangleId t, float u, float v, bool front) const;

@@ -26,6 +26,8 @@ inline void expect_same_light(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.audit.events.second_looks, b.audit.events.second_looks);
   EXPECT_EQ(a.audit.events.back_hits, b.audit.events.back_hits);
   EXPECT_EQ(a.audit.events.escapes, b.audit.events.escapes);
+  EXPECT_EQ(a.audit.events.starts_behind, b.audit.events.starts_behind);
+  EXPECT_EQ(a.audit.events.roulette_jumps, b.audit.events.roulette_jumps);
   ASSERT_EQ(a.audit.bands.size(), b.audit.bands.size());
   for (std::size_t i = 0; i < a.audit.bands.size(); ++i) {
     const BandAudit& x = a.audit.bands[i];

@@ -15,7 +15,7 @@ namespace reemit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using SurfaceQuanta = std::vector<std::int64_t> BandAudit::*;
+using SurfaceQuanta = std::vector<RunQuanta> BandAudit::*;
 
 constexpr std::array<const char*, 6> kDirections{"+x", "-x", "+y", "-y", "+z", "-z"};
 
@@ -81,8 +81,8 @@ class AuditTable {
   double emitted_ = 0;
 };
 
-std::int64_t sum(const std::vector<std::int64_t>& quanta) {
-  return std::accumulate(quanta.begin(), quanta.end(), std::int64_t{0});
+RunQuanta sum(const std::vector<RunQuanta>& quanta) {
+  return std::accumulate(quanta.begin(), quanta.end(), RunQuanta{0});
 }
 
 double roulette_loss(const BandAudit& band) {
@@ -144,9 +144,11 @@ std::string audit_text(const EnergyAudit& audit, const std::vector<std::string>&
                      audit.batches, audit.batches == 1 ? "" : "es") +
          fmt::format(
              "Rays traced twice because they met an edge, a back or nothing: {}; packets that ended on "
-             "backs: {}, "
-             "outside: {}\n",
-             audit.events.second_looks, audit.events.back_hits, audit.events.escapes);
+             "backs: {}, outside: {}\n"
+             "Rays that started behind their face: {}; packets that roulette made more than twice the "
+             "usual: {}\n",
+             audit.events.second_looks, audit.events.back_hits, audit.events.escapes,
+             audit.events.starts_behind, audit.events.roulette_jumps);
 }
 
 Json audit_json(const EnergyAudit& audit, const std::vector<std::string>& surface_names) {
@@ -162,7 +164,9 @@ Json audit_json(const EnergyAudit& audit, const std::vector<std::string>& surfac
           {"events",
            {{"second_looks", audit.events.second_looks},
             {"back_hits", audit.events.back_hits},
-            {"escapes", audit.events.escapes}}},
+            {"escapes", audit.events.escapes},
+            {"starts_behind", audit.events.starts_behind},
+            {"roulette_jumps", audit.events.roulette_jumps}}},
           {"surfaces", surfaces}};
 }
 

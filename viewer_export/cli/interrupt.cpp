@@ -16,6 +16,7 @@ std::atomic<bool> stops_by_asking{false};
 std::atomic<bool> stop_requested{false};
 std::atomic<int> quit_signal{0};
 std::atomic<bool> writing{false};
+std::atomic<bool> any_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 /// Calls nothing that a handler may not.
@@ -27,6 +28,7 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 }
 
 extern "C" void handle_signal(int signal) {
+  any_signal = true;
   if (stops_by_asking && !stop_requested.exchange(true)) return;
   if (writing) {
     quit_signal = signal;
@@ -63,6 +65,10 @@ FinishWriting::FinishWriting() {
 FinishWriting::~FinishWriting() {
   writing = false;
   if (const int signal = quit_signal) quit(signal);
+}
+
+const std::atomic<bool>& signal_arrived() {
+  return any_signal;
 }
 
 }  // namespace reemit::cli

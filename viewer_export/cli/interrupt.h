@@ -35,4 +35,7 @@ class FinishWriting {
   FinishWriting& operator=(const FinishWriting&) = delete;
 };
 
+/// Becomes true at the first of these signals, whatever it does: somebody waits for the end.
+const std::atomic<bool>& signal_arrived();
+
 }  // namespace reemit::cli

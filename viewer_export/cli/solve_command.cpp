@@ -179,7 +179,7 @@ void save(const Solution& solution, const SolveOptions& options) {
   const StepNote note("saving " + options.output.filename().string(), options.style);
   const WaitingLine saving("saving " + options.output.filename().string(),
                            progress_style(options.style.quiet, options.style.verbose));
-  write_output([&] { save_solution(solution, options.output); });
+  write_output([&] { save_solution(solution, options.output, Packing(&signal_arrived())); });
 }
 
 void report(const Scene& scene, const Solution& solution, const SolveOptions& options) {
@@ -251,7 +251,7 @@ ExitCode run_solve(const SolveOptions& options) {
     watch.checkpoint_s = options.checkpoint_s;
     watch.checkpoint = [&](const Solution& solution) {
       progress.begin_step(0, "saving a checkpoint");
-      write_output([&] { save_solution(solution, options.output); });
+      write_output([&] { save_solution(solution, options.output, Packing(&signal_arrived())); });
     };
   }
   const std::string step = fmt::format("solving {} zones", start.solution.mesh.zone_count());

@@ -14,6 +14,7 @@
 
 #include "scenes/model/error.h"
 #include "scenes/model/stop_token.h"
+#include "viewer_export/output/refinement.h"
 #include "viewer_export/still/tile_renderer.h"
 
 namespace reemit {
@@ -26,19 +27,9 @@ constexpr int kLargestBlock = 8;
 /// Camera rays per pixel before an error is believed.
 constexpr int kFewestToStop = 16;
 
-/// Blocks are left alone a little below the target: they stop when their estimate happens to be low, so the
-/// true error is a few per cent above it.
-constexpr double kTargetMargin = 0.95;
-/// Doubling the samples halves the variance, unless what is left is the noise of the zone solution. A tile
-/// whose variance stays above this share of the one before, twice in a row, is given up.
-constexpr double kStalledShare = 0.8;
-constexpr int kMostStalls = 2;
-
 struct TileState {
   Tile tile;
-  bool active = true;
-  double error2_before = std::numeric_limits<double>::infinity();  ///< At half the samples.
-  int stalls = 0;
+  RefinedPart part;
 };
 
 void check(const StillSettings& s) {
@@ -115,7 +106,8 @@ class Rendering {
       samples += block;
       progress_now_.samples = samples * static_cast<int>(film_.replicates());
       measure();
-      if (std::none_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.active; })) break;
+      if (std::none_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.part.is_active(); }))
+        break;
     }
     if (film_.has_gaps()) fill_what_is_missing();
   }
@@ -126,15 +118,14 @@ class Rendering {
   double error() const { return progress_now_.error; }
   bool limited_by_zones() const {
     return to_target_ && progress_now_.error > settings_.error_target &&
-           std::any_of(tiles_.begin(), tiles_.end(),
-                       [](const TileState& t) { return t.stalls >= kMostStalls; });
+           std::any_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.part.is_stalled(); });
   }
 
  private:
   void render_block(const SampleBlock& block) {
     std::vector<TileState*> active;
     for (TileState& t : tiles_)
-      if (t.active) active.push_back(&t);
+      if (t.part.is_active()) active.push_back(&t);
     std::size_t done = 0;
     tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t i) {
       if (interrupt_) return;
@@ -177,13 +168,12 @@ class Rendering {
     progress_(progress_now_);
   }
 
-  /// Error of the picture; tiles below the target are done. A tile decides by all its pixels together, which
-  /// keeps the choice from favouring pixels that happen to look quiet.
+  /// Error of the picture; tiles below the target are done.
   void measure() {
     if (film_.replicates() < 2) return;
     const std::size_t pixels = film_.image().pixel_count();
     const std::size_t bands = film_.image().bands.count();
-    const double target2 = std::pow(kTargetMargin * settings_.error_target, 2);
+    const double target2 = std::pow(RefinedPart::aim(settings_.error_target), 2);
     const bool may_stop = to_target_ && progress_now_.samples >= kFewestToStop;
     std::vector<double> worst(tiles_.size(), 0.0);
     double error2 = 0;
@@ -202,15 +192,10 @@ class Rendering {
       error2 = std::max(error2, sum / static_cast<double>(pixels));
     }
     progress_now_.error = std::sqrt(error2);
+    const bool has_doubled = std::has_single_bit(static_cast<unsigned>(progress_now_.samples));
     if (may_stop)
-      for (std::size_t i = 0; i < tiles_.size(); ++i) {
-        TileState& t = tiles_[i];
-        if (t.active && std::has_single_bit(static_cast<unsigned>(progress_now_.samples))) {
-          t.stalls = worst[i] > kStalledShare * t.error2_before ? t.stalls + 1 : 0;
-          t.error2_before = worst[i];
-        }
-        t.active = t.active && error2 > target2 && worst[i] > target2 && t.stalls < kMostStalls;
-      }
+      for (std::size_t i = 0; i < tiles_.size(); ++i)
+        tiles_[i].part.look(worst[i] / target2, error2 / target2, has_doubled);
     report(0);
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <tbb/parallel_for.h>
 
@@ -12,12 +13,6 @@ namespace {
 constexpr std::size_t kChunk = 64;
 constexpr int kFirstPoints = 2;
 constexpr int kMostPoints = 1 << 14;
-/// Chunks stop when their estimate happens to be low, so the true error is a few per cent above it.
-constexpr double kTargetMargin = 0.95;
-/// Doubling the samples halves the variance, unless what is left is the noise of the zone solution. A chunk
-/// whose variance stays above this share of the one before, twice in a row, is given up.
-constexpr double kStalledShare = 0.8;
-constexpr int kMostStalls = 2;
 
 /// Sums over vertices for one band.
 struct BandSums {
@@ -95,25 +90,24 @@ void VertexRefinement::run_once() {
 
 void VertexRefinement::run_to_target() {
   std::vector<float> means(rings_.size() * gatherer_.values_per_vertex(), 0.0F);
-  std::vector<Chunk> states(chunks_);
+  std::vector<RefinedPart> parts(chunks_);
   int points = 0;
   while (points < kMostPoints && !interrupt_) {
     const PointBlock block{points, std::max(kFirstPoints, points)};
     for_chunks([&](std::size_t c) {
-      if (states[c].active)
+      if (parts[c].is_active())
         gatherer_.gather(first(c), last(c), block, &means[first(c) * gatherer_.values_per_vertex()], data_);
     });
     points += block.count;
-    if (interrupt_ || !choose_active(states)) break;
+    if (interrupt_ || !choose_active(parts)) break;
   }
-  data_.limited_by_zones =
-      !interrupt_ && relative_error(gatherer_, rings_, data_) > settings_.error_target &&
-      std::any_of(states.begin(), states.end(), [](const Chunk& c) { return c.stalls >= kMostStalls; });
+  data_.limited_by_zones = !interrupt_ && relative_error(gatherer_, rings_, data_) > settings_.error_target &&
+                           std::any_of(parts.begin(), parts.end(), std::mem_fn(&RefinedPart::is_stalled));
 }
 
 // False if none is active any more.
-bool VertexRefinement::choose_active(std::vector<Chunk>& states) {
-  const double target2 = std::pow(kTargetMargin * settings_.error_target, 2);
+bool VertexRefinement::choose_active(std::vector<RefinedPart>& parts) {
+  const double target2 = std::pow(RefinedPart::aim(settings_.error_target), 2);
   const std::vector<BandSums> all = band_sums(gatherer_, rings_, data_, 0, rings_.size());
   const double total_area = area_of(rings_, 0, rings_.size());
   double worst = 0;
@@ -121,8 +115,8 @@ bool VertexRefinement::choose_active(std::vector<Chunk>& states) {
     if (band.values > 0) worst = std::max(worst, band.errors / (target2 * band.values));
   bool any = false;
   for (std::size_t c = 0; c < chunks_; ++c) {
-    Chunk& state = states[c];
-    if (!state.active) continue;
+    RefinedPart& part = parts[c];
+    if (!part.is_active()) continue;
     const double area_share = area_of(rings_, first(c), last(c)) / total_area;
     const std::vector<BandSums> own = band_sums(gatherer_, rings_, data_, first(c), last(c));
     // Squared error over the part of the allowed one that goes with this part of the area.
@@ -130,10 +124,8 @@ bool VertexRefinement::choose_active(std::vector<Chunk>& states) {
     for (std::size_t b = 0; b < own.size(); ++b)
       if (all[b].values > 0)
         excess = std::max(excess, own[b].errors / (target2 * all[b].values * area_share));
-    state.stalls = excess > kStalledShare * state.excess_before ? state.stalls + 1 : 0;
-    state.excess_before = excess;
-    state.active = worst > 1 && excess > 1 && state.stalls < kMostStalls;
-    any = any || state.active;
+    part.look(excess, worst, true);  // every pass doubles the samples
+    any = any || part.is_active();
   }
   share_done_ = worst > 1 ? 1 / worst : 1;
   return any;

@@ -1,10 +1,10 @@
 #pragma once
 #include <atomic>
 #include <cstddef>
-#include <limits>
 #include <mutex>
 #include <vector>
 
+#include "viewer_export/output/refinement.h"
 #include "viewer_export/vertex/vertex_data.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_radiance.h"
@@ -30,15 +30,9 @@ class VertexRefinement {
   void run();
 
  private:
-  struct Chunk {
-    bool active = true;
-    int stalls = 0;
-    double excess_before = std::numeric_limits<double>::infinity();
-  };
-
   void run_once();
   void run_to_target();
-  bool choose_active(std::vector<Chunk>& states);
+  bool choose_active(std::vector<RefinedPart>& parts);
   template <class Function>
   void for_chunks(Function&& function);
 

@@ -1,8 +1,10 @@
 #include "solver/emit/intensity_sampler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -68,11 +70,41 @@ TEST(IntensitySampler, density_integrates_to_one_and_is_the_intensity) {
       for (int j = 0; j < kSteps; ++j) {
         const double theta = pi * (i + 0.5) / kSteps;
         const double phi = table->azimuth().front() + 2 * pi * (j + 0.5) / kSteps;
-        sum += intensity_pdf_per_sr(*table, table->direction(theta, phi)) * std::sin(theta) * 2 * pi * pi /
-               (kSteps * kSteps);
+        sum += table->intensity(table->direction(theta, phi)) / table->total_flux() * std::sin(theta) * 2 *
+               pi * pi / (kSteps * kSteps);
       }
     EXPECT_NEAR(sum, 1, 2e-4);
   }
+}
+
+/// The uniform numbers of a direction that has intensity, from the integrals of the table.
+std::array<double, 2> invert_intensity(const IntensityTable& table, const Vec3& direction) {
+  double theta = 0;
+  double phi = 0;
+  table.angles(direction, theta, phi);
+  const std::vector<double>& polar = table.polar();
+  const std::vector<double>& azimuth = table.azimuth();
+  const auto cell_of = [](const std::vector<double>& lines, double x) {
+    return static_cast<std::size_t>(std::upper_bound(lines.begin() + 1, lines.end() - 1, x) - lines.begin()) -
+           1;
+  };
+  const std::size_t i = cell_of(polar, theta);
+  const std::size_t last = azimuth.size() - 1;
+  const double fa = table.azimuth_integral(last, i);
+  const double share = std::clamp((theta - polar[i]) / (polar[i + 1] - polar[i]), 0.0, 1.0);
+  const auto upto = [&](std::size_t k) {
+    return (1 - share) * table.azimuth_integral(k, i) + share * table.azimuth_integral(k, i + 1);
+  };
+  const auto candela = [&](std::size_t k) {
+    return (1 - share) * table.candela(k, i) + share * table.candela(k, i + 1);
+  };
+  const double flux = table.flux_below(i) + integral_of_linear_times_sine(polar[i], theta, fa, upto(last));
+  const std::size_t j = cell_of(azimuth, phi);
+  const double t = std::clamp((phi - azimuth[j]) / (azimuth[j + 1] - azimuth[j]), 0.0, 1.0);
+  const double f0 = candela(j);
+  const double f1 = candela(j + 1);
+  const double below = upto(j) + (azimuth[j + 1] - azimuth[j]) * t * (f0 + 0.5 * t * (f1 - f0));
+  return {flux / table.total_flux(), below / upto(last)};
 }
 
 TEST(IntensitySampler, inverse_gives_the_numbers_back) {

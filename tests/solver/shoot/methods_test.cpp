@@ -396,6 +396,7 @@ TEST(Methods, PacketsThatEndWhereTheyShouldNotAreCounted) {
     EXPECT_GT(events.escapes, 1000U);
     EXPECT_GE(events.second_looks, events.back_hits + events.escapes) << "each had a second look";
     EXPECT_LT(events.second_looks, 1.05 * static_cast<double>(events.back_hits + events.escapes));
+    EXPECT_EQ(events.starts_behind, 0U);
     settings.threads = 1;
     EXPECT_EQ(run(room, settings).audit.events.second_looks, events.second_looks);
   }

@@ -1,5 +1,7 @@
 #include "solver/shoot/ray_lanes.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "solver/sampling/counter_rng.h"
@@ -35,7 +37,7 @@ TEST(RayLanes, EqualTheScalarMappings) {
         numbers.u[d][i] = block < 2 ? 0.5F * static_cast<float>(block) : u[d];
     }
     Ray16 rays;
-    start_rays(zones, numbers, rays);
+    EXPECT_EQ(start_rays(zones, numbers, rays), 0U);
     for (int i = 0; i < 16; ++i) {
       const auto [a, b] = sample_triangle(numbers.u[0][i], numbers.u[1][i]);
       const Vec3f origin = RayTracer::lifted(corner + a * edge1 + b * edge2, frame.normal, middle);
@@ -45,6 +47,43 @@ TEST(RayLanes, EqualTheScalarMappings) {
       EXPECT_LT((rays.direction(i) - direction).norm(), 1e-6F / std::max(1e-3F, direction.dot(frame.normal)));
     }
   }
+}
+
+// Far out of the space in which rays live, where coordinates are rounded by more than the lift.
+TEST(RayLanes, StartsThatRoundingLeftBehindAreKnown) {
+  const CounterRng rng(5, RngPurpose::kProbe);
+  const Vec3f edge1(0.5F, -0.5F, 0);
+  const Vec3f edge2(0, 0.5F, -0.5F);
+  const Vec3f normal = edge1.cross(edge2).normalized();
+  const Vec3f middle = Vec3f::Constant(700) + (edge1 + edge2) / 3.0F;
+  ZoneLanes zones{};
+  for (int i = 0; i < 15; ++i)  // the last lane has no geometry
+    for (int k = 0; k < 3; ++k) {
+      zones.corner[k][i] = 700;
+      zones.edge1[k][i] = edge1[k];
+      zones.edge2[k][i] = edge2[k];
+      zones.middle[k][i] = middle[k];
+      zones.normal[k][i] = normal[k];
+    }
+  int behind = 0;
+  int before = 0;
+  for (std::uint32_t block = 0; block < 100; ++block) {
+    UniformLanes numbers;
+    for (std::uint32_t i = 0; i < 16; ++i)
+      for (std::size_t d = 0; d < 4; ++d) numbers.u[d][i] = rng.uniform4(block, 0, i)[d];
+    Ray16 rays;
+    const std::uint32_t bits = start_rays(zones, numbers, rays);
+    EXPECT_EQ(bits >> 15, 0U);
+    for (int i = 0; i < 15; ++i) {
+      const Vec3 way = rays.origin(i).cast<double>() - middle.cast<double>();
+      const double height = way.dot(normal.cast<double>());
+      if (std::fabs(height) < 1e-6) continue;
+      EXPECT_EQ((bits >> i & 1U) != 0, height < 0);
+      ++(height < 0 ? behind : before);
+    }
+  }
+  EXPECT_GT(behind, 50);
+  EXPECT_GT(before, 50);
 }
 
 TEST(RayLanes, SixteenRandomNumbersEqualSingleOnes) {

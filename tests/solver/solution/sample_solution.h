@@ -105,7 +105,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.light_warnings = {"light 'spot': 40 % of its light is lost", "", "5 % leaves the room"};
   s.audit.batches = 4;
   s.audit.weight = 7;
-  s.audit.events = {101, 102, 103};
+  s.audit.events = {101, 102, 103, 104, 105};
   for (std::size_t b = 0; b < bands.count(); ++b) {
     const auto n = static_cast<std::int64_t>(b);
     BandAudit audit;

@@ -1,6 +1,8 @@
 #include "solver/solution/solution_file.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -145,6 +147,44 @@ TEST_F(SolutionFile, KeepsUnsetZoneAreaEmptyRoomAndUnknownError) {
   EXPECT_FALSE(loaded.mesh_settings.zone_area.has_value());
   EXPECT_EQ(loaded.mesh.zone_count(), 0U);
   EXPECT_EQ(loaded.record.error, saved.record.error);
+}
+
+TEST_F(SolutionFile, WhoIsInAHurryGetsTheSameUnpacked) {
+  Solution saved = sample_solution(BandSet::rgb());
+  saved.light_warnings.assign(20'000, std::string(20, 'x'));  // texts are written last
+  std::atomic<bool> hurry = false;
+  const Packing packing(&hurry, std::chrono::seconds(0));
+  save_solution(saved, file_, packing);
+  const auto packed = std::filesystem::file_size(file_);
+  save_solution(saved, file_);
+  EXPECT_EQ(std::filesystem::file_size(file_), packed);
+  hurry = true;
+  save_solution(saved, file_, packing);
+  EXPECT_GT(std::filesystem::file_size(file_), packed);
+  const Solution loaded = load_solution(file_);
+  expect_same_settings(saved, loaded);
+  expect_same_room(saved, loaded);
+  expect_same_light(saved, loaded);
+}
+
+// Books of ordinary runs fit into 63 bits and are stored as one number each.
+TEST_F(SolutionFile, KeepsBooksOfVeryLongRuns) {
+  Solution saved = sample_solution(BandSet::rgb());
+  const auto has_high = [&](const char* name) {
+    const Hdf5Id file(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "cannot open it");
+    const Hdf5Group root(Hdf5Id(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose, "no root group"), "/");
+    return root.open_group("audit").has_dataset(name);
+  };
+  save_solution(saved, file_);
+  EXPECT_FALSE(has_high("emitted_high"));
+  BandAudit& band = saved.audit.bands[1];
+  band.emitted = (RunQuanta{5} << 80) + 3;
+  band.unshot = -(RunQuanta{1} << 70) - 9;
+  band.absorbed[0] = (RunQuanta{1} << 63) - 1;  // the largest that fits
+  save_solution(saved, file_);
+  EXPECT_TRUE(has_high("emitted_high"));
+  EXPECT_FALSE(has_high("absorbed_high"));
+  expect_same_light(saved, load_solution(file_));
 }
 
 TEST_F(SolutionFile, KeepsDiffuseTransmittance) {

@@ -85,11 +85,46 @@ TEST(BatchPlan, BatchesOfAGivenSizeAreLeftAlone) {
   EXPECT_EQ(plan.next_weight(100, 100), 0);
 }
 
-TEST(BatchPlan, StopsWhereTheBooksAreFull) {
-  const BatchPlan plan({}, 1'000'000);
-  const std::int64_t most = std::int64_t{1} << 21;  // times 2^42 quanta is 2^63
-  EXPECT_EQ(plan.next_weight(20'000, most - 1), 0);
-  EXPECT_EQ(plan.next_weight(20'000, most - 4), 3);
+// What an error of 0.01 % takes: some 10^8 packets for every zone.
+TEST(BatchPlan, RunsOfAnyLengthGoOnInFewBatches) {
+  for (const std::size_t zones : {100U, 10'000U, 100'000U, 10'000'000U}) {
+    const BatchPlan plan({}, zones);
+    const double unit = plan.unit_packets();
+    std::int64_t done = 0;
+    std::int64_t batches = 0;
+    std::int64_t last = 0;
+    for (; static_cast<double>(done) * unit < 1e13; batches += kRound) {
+      const std::int64_t weight = plan.next_weight(batches, done);
+      ASSERT_GE(weight, std::max<std::int64_t>(last, 1));
+      if (batches >= 50'000 && weight < (1 << 24) / static_cast<std::int64_t>(plan.unit_packets())) {
+        EXPECT_GE(static_cast<double>(weight), static_cast<double>(done) / (1 << 14) - 1)
+            << "too small beside the sums";
+      }
+      const std::int64_t planned = std::max<std::int64_t>(done / kRound, 1);
+      EXPECT_LE(weight, planned) << "a cut-off batch would cost too much";
+      EXPECT_LE(static_cast<double>(weight) * unit,
+                std::max(16.0 * static_cast<double>(zones) + unit, 0x1p24));
+      EXPECT_EQ(plan.next_weight(batches + kRound - 1, done), weight) << "groups would differ";
+      if (static_cast<double>(done) * unit < 1e12 &&
+          static_cast<double>(done + kRound * weight) * unit >= 1e12) {
+        EXPECT_LE(batches, 250'000) << zones;
+      }
+      last = weight;
+      done += kRound * weight;
+    }
+  }
+}
+
+TEST(BatchPlan, ManyPacketsAreAUnitThatBatchesShare) {
+  SolverSettings s;
+  s.packets = 1'000'000'000'000;
+  const BatchPlan plan(s, 4096);
+  EXPECT_NEAR(plan.unit_packets(), 65'536, 1) << "batches grow, the first are small";
+}
+
+TEST(BatchPlan, NumbersOfBatchesAreNeverUsedTwice) {
+  EXPECT_GT(BatchPlan({}, 100).next_weight((std::int64_t{1} << 32) - 2, 1), 0);
+  EXPECT_EQ(BatchPlan({}, 100).next_weight((std::int64_t{1} << 32) - 1, 1), 0);
 }
 
 }  // namespace

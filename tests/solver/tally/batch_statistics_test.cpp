@@ -173,9 +173,9 @@ TEST(ZoneError, true_errors_stay_below_the_bound) {
   EXPECT_GT(above_rms, 10);
 }
 
-TEST(EnergyAudit, roulette_does_not_overflow_before_the_emitted_power_does) {
-  // A batch of a bright room in which power changes hands 10,000 times over, as often as the books can hold.
-  constexpr std::int64_t kMost = (std::int64_t{1} << 21) - 1;
+TEST(EnergyAudit, books_hold_more_than_any_run_sends) {
+  // Batches of a bright room in which power changes hands 10,000 times over; 63 bits hold 2^21 of them.
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;
   BatchBooks books(1, 1, Channels(1));
   books.emitted[0] = books.absorbed[0] = kBatchQuanta;
   books.roulette_gain[0] = books.roulette_loss[0] = 10'000 * kBatchQuanta;
@@ -186,6 +186,7 @@ TEST(EnergyAudit, roulette_does_not_overflow_before_the_emitted_power_does) {
   band.absorbed_on_backs.assign(1, 0);
   for (int k = 0; k < 2; ++k) add_batch(books, kMost / 2, audit);
   EXPECT_TRUE(audit.balanced());
+  EXPECT_EQ(band.emitted, RunQuanta{kMost} * kBatchQuanta);
   EXPECT_NEAR(audit.watts(band, band.emitted), 1, 1e-12);
   EXPECT_NEAR(audit.watts(band, band.roulette_gain), 10'000, 1e-6);
 }

@@ -7,6 +7,7 @@
 namespace reemit::cli {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -52,10 +53,15 @@ TEST(AuditReport, JsonHoldsPowersThatAddUp) {
 
 TEST(AuditReport, RareEventsAreCounted) {
   EnergyAudit audit = balanced_audit();
-  audit.events = {1234, 5, 67};
-  EXPECT_THAT(audit_text(audit, {"floor", "wall"}),
-              HasSubstr("an edge, a back or nothing: 1234; packets that ended on backs: 5, outside: 67"));
-  EXPECT_EQ(audit_json(audit, {"floor", "wall"})["events"]["second_looks"], 1234);
+  audit.events = {1234, 5, 67, 8, 9};
+  EXPECT_THAT(
+      audit_text(audit, {"floor", "wall"}),
+      AllOf(HasSubstr("an edge, a back or nothing: 1234; packets that ended on backs: 5, outside: 67"),
+            HasSubstr("behind their face: 8; packets that roulette made more than twice the usual: 9\n")));
+  const auto events = audit_json(audit, {"floor", "wall"})["events"];
+  EXPECT_EQ(events["second_looks"], 1234);
+  EXPECT_EQ(events["starts_behind"], 8);
+  EXPECT_EQ(events["roulette_jumps"], 9);
 }
 
 TEST(AuditReport, SurfacesComeByFallingPower) {
