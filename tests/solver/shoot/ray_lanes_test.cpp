@@ -52,8 +52,8 @@ TEST(RayLanes, EqualTheScalarMappings) {
 // Far out of the space in which rays live, where coordinates are rounded by more than the lift.
 TEST(RayLanes, StartsThatRoundingLeftBehindAreKnown) {
   const CounterRng rng(5, RngPurpose::kProbe);
-  const Vec3f edge1(0.5F, -0.5F, 0);
-  const Vec3f edge2(0, 0.5F, -0.5F);
+  const Vec3f edge1(0.5F, -0.3F, 0.1F);
+  const Vec3f edge2(0.1F, 0.4F, -0.6F);
   const Vec3f normal = edge1.cross(edge2).normalized();
   const Vec3f middle = Vec3f::Constant(700) + (edge1 + edge2) / 3.0F;
   ZoneLanes zones{};

@@ -13,6 +13,7 @@
 
 #include "scenes/model/error.h"
 #include "solver/solution/file_seal.h"
+#include "solver/solution/hdf5_group.h"
 #include "tests/solver/solution/sample_solution.h"
 #include "tests/support/same_light.h"
 #include "tests/support/small_disk.h"
@@ -283,7 +284,10 @@ TEST_F(SolutionFile, RefusesOtherVersions) {
 }
 
 TEST_F(SolutionFile, RefusesIndicesOutOfRangeAndAbsurdCounts) {
-  const Solution solution = sample_solution(BandSet::grey());
+  Solution solution = sample_solution(BandSet::grey());
+  // Of a run so long that its books have high parts.
+  BandAudit& books = solution.audit.bands[0];
+  books.emitted = books.absorbed[0] = books.absorbed_on_backs[0] = books.escaped[0] = RunQuanta{1} << 70;
   const std::uint32_t bad_index[] = {77, 77, 77, 77, 77, 77};
   const std::uint32_t bad_divisions[] = {50000, 50000};
   const std::uint32_t zero_divisions[] = {0, 3};
@@ -304,10 +308,10 @@ TEST_F(SolutionFile, RefusesIndicesOutOfRangeAndAbsurdCounts) {
                {"/materials/reflectance", H5T_NATIVE_DOUBLE, not_a_number},
                {"/sums/direct", H5T_NATIVE_DOUBLE, not_a_number},
                {"/audit/watts_per_quantum", H5T_NATIVE_DOUBLE, not_a_number},
-               {"/audit/emitted", H5T_NATIVE_INT64, most_quanta},
-               {"/audit/absorbed", H5T_NATIVE_INT64, most_quanta},
-               {"/audit/absorbed_on_backs", H5T_NATIVE_INT64, most_quanta},
-               {"/audit/escaped", H5T_NATIVE_INT64, most_quanta}};
+               {"/audit/emitted_high", H5T_NATIVE_INT64, most_quanta},
+               {"/audit/absorbed_high", H5T_NATIVE_INT64, most_quanta},
+               {"/audit/absorbed_on_backs_high", H5T_NATIVE_INT64, most_quanta},
+               {"/audit/escaped_high", H5T_NATIVE_INT64, most_quanta}};
   for (const auto& c : cases) {
     save_solution(solution, file_);
     edit([&](hid_t id) { overwrite(id, c.dataset, c.type, c.values); });
