@@ -311,7 +311,7 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   books.packets += flight.packets();
   const double quantum = emitted / flight.packets();
 
-  Allocation allocation(transport.zones(), bands);
+  Allocation allocation(transport.zones(), bands, transport.needs());
   std::optional<ArrivalPoints> arrivals;
   if (task.settings.reemission == Reemission::kFromHits)
     arrivals.emplace(transport.zones(), flight.packets());
