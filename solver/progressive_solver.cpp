@@ -101,6 +101,9 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
     throw InputError(scene.source,
                      "the room has mirrors or glass, and the matrix method is that of Lambertian surfaces",
                      "Solve it with --method shooting or walk.");
+  if (scene.sky)
+    throw InputError(scene.source, "the room has a sky, and the matrix method has none",
+                     "Solve it with --method shooting or walk.");
   if (room.is_dark()) return solution;
   tbb::task_arena arena(thread_count(solution.settings));
   arena.execute([&] {

@@ -66,6 +66,7 @@ HitPathTracer::HitPathTracer(const Scene& scene, const Camera& camera, int width
                              const std::filesystem::path& photometry)
     : scene_(&scene),
       room_(scene),
+      sky_(scene),
       clearance_(kClearance * bounds(scene).size().maxCoeff()),
       eye_(camera.eye) {
   std::map<const IntensityTable*, std::shared_ptr<const Photometry>> tables;
@@ -122,6 +123,8 @@ void HitPathTracer::add_lights(const RoomHit& hit, const Vec3& direction, const 
   };
   for (const PunctualLight& light : scene_->lights)
     add(std::visit(Arrive{hit.point, 10 * room_.diagonal()}, light), 0);
+  if (sky_.has_sun())
+    add({hit.point + 10 * room_.diagonal() * sky_.towards_sun(random), sky_.sun_irradiance()}, 0);
   for (const Measured& m : lines_) {
     const Vec3 from = m.opening.random_point(random);
     add({from, m.opening.irradiance(from, hit.point) * *m.per_candela}, clearance_);
@@ -159,7 +162,10 @@ void HitPathTracer::add_path(int x, int y, Random& random, double* sum) const {
     if (scattered)
       add_openings(start, direction, hit ? hit->distance : std::numeric_limits<double>::infinity(), weight,
                    sum);
-    if (!hit) return;
+    if (!hit) {
+      sky_.add_radiance(direction, weight, sum);
+      return;
+    }
     const bool comes_from_inside = !hit->front && is_body(*hit->material);
     if (body == nullptr && comes_from_inside) body = hit->material;
     if (body != nullptr) weight *= left_inside(*body, hit->distance);

@@ -5,6 +5,7 @@
 #include "bench/hit_paths/opening_hit.h"
 #include "bench/hit_paths/path_random.h"
 #include "bench/hit_paths/polygon_room.h"
+#include "bench/hit_paths/sky_dome.h"
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
 
@@ -13,10 +14,10 @@ namespace reemit::hit_paths {
 /// Radiance of pixels by paths that go on by chance, spread or over mirrors and through glass, until they
 /// leave or are absorbed, and count emission where they hit it: no luminaire is ever sampled. Openings of
 /// measured luminaires, which are not seen, count where a path crosses them that was spread before. Only
-/// lights that no path can hit (points, lines, spots, parallel light) are asked for with one shadow ray each,
-/// which panes and clear sheets let through; their light over mirrors, and where rough bodies of glass
-/// refract it, is missing. Radiance inside glass is
-/// that outside of it (over n^2). Slow, and without anything in common with what it checks.
+/// lights that no path can hit (points, lines, spots, parallel light, the sun) are asked for with one shadow
+/// ray each, which panes and clear sheets let through; their light over mirrors, and where rough bodies of
+/// glass refract it, is missing. A sky is seen where paths leave the room. Radiance inside glass is that
+/// outside of it (over n^2). Slow, and without anything in common with what it checks.
 class HitPathTracer {
  public:
   using Random = PathRandom;
@@ -47,6 +48,7 @@ class HitPathTracer {
 
   const Scene* scene_;
   PolygonRoom room_;
+  SkyDome sky_;
   double clearance_;                  // of light off openings [m]
   std::vector<Measured> openings_;    // those that paths can hit
   std::vector<Measured> lines_;       // points and lines

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -100,12 +101,38 @@ ValidationRow occluded(const ReferenceCase& c, const Effort& effort) {
   return lit_point(c, c.values.front(), room, point, to_vec3(p.at("receiver").at("normal")), effort);
 }
 
-ValidationRow sky(const ReferenceCase& c, const Effort& effort) {
+ValidationRow sky(const ReferenceCase& c, const ReferenceValue& v, const Effort& effort) {
   const json& p = c.parameters;
   const Vec3 point(p.at("point")[0], p.at("point")[1], 0);
   CodeRoom room;
   room.add("opening", room.paint(0, 1), turned_towards(level(p.at("opening"), p.at("h")), point));
-  return lit_point(c, c.values.front(), room, point, Vec3::UnitZ(), effort);
+  return lit_point(c, v, room, point, Vec3::UnitZ(), effort);
+}
+
+/// The opening as a hole in the roof of a black room of 4 x 4 m under an overcast sky that sends 1 W/m2 onto
+/// a horizontal plane.
+ValidationRow overcast(const ReferenceCase& c, const ReferenceValue& v, const Effort& effort) {
+  const json& p = c.parameters;
+  const double h = p.at("h");
+  const json& hole = p.at("opening");
+  CodeRoom room;
+  const MaterialId black = room.paint(0);
+  for (const auto& [x0, x1, y0, y1] : {std::array<double, 4>{0, 4, 0, hole[2]},
+                                       {0, 4, hole[3], 4},
+                                       {0, hole[0], hole[2], hole[3]},
+                                       {hole[1], 4, hole[2], hole[3]}})
+    room.add("roof", black, axis_rectangle(2, h, x0, x1, y0, y1, false));
+  for (const int face : {0, 1, 2, 3, 4}) room.add(kBoxFaces[face], black, box_face(face, {4, 4, h}));
+  Sky sky;
+  sky.kind = SkyKind::kOvercast;
+  sky.irradiance = Spectrum::Ones(1);
+  sky.ground_reflectance = Spectrum::Zero(1);
+  place_sky(sky, Vec3::UnitZ());
+  room.scene().sky = sky;
+  const MeshResult mesh = room.exact_zones();
+  const Room walls(room.scene(), mesh.mesh);
+  const SurfacePoint x = point_on(walls.rays(), Vec3(p.at("point")[0], p.at("point")[1], 0), Vec3::UnitZ());
+  return make_row(c, v, "direct light", estimate(walls, x, v.id, effort), kPointBound);
 }
 
 void add_point_source(const ReferenceCase& c, const Effort& effort, std::vector<ValidationRow>& rows) {
@@ -155,7 +182,8 @@ std::vector<ValidationRow> evaluate_direct_light(const std::vector<ReferenceCase
     if (c.kind == "irr_rect_occluded")
       rows.push_back(occluded(c, effort));
     else if (c.kind == "sky_opening")
-      rows.push_back(sky(c, effort));
+      for (const ReferenceValue& v : c.values)
+        rows.push_back(v.id.ends_with("overcast") ? overcast(c, v, effort) : sky(c, v, effort));
     else if (c.kind == "point_source")
       add_point_source(c, effort, rows);
     else

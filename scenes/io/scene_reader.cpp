@@ -1,15 +1,19 @@
 #include "scenes/io/scene_reader.h"
 
 #include <array>
+#include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "scenes/io/common/glass_bodies.h"
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/common/text_parse.h"
+#include "scenes/io/common/up_direction.h"
 #include "scenes/io/gltf/gltf_reader.h"
 #include "scenes/io/mgf/mgf_reader.h"
 #include "scenes/io/native/native_reader.h"
+#include "scenes/io/native/sky_option.h"
 #include "scenes/io/obj/obj_reader.h"
 #include "scenes/model/error.h"
 
@@ -49,6 +53,23 @@ void check_joins(const std::filesystem::path& first, const std::filesystem::path
           "Put OBJ, PLY and glTF files together in a JSON room, each as an object with a \"file\".");
 }
 
+/// Says which way is up for the sky, if the room does not.
+void settle_sky(Scene& scene) {
+  Sky& sky = *scene.sky;
+  const bool is_given = !sky.up.isZero();
+  place_sky(sky, up_direction(scene));
+  const auto text = [](const Vec3& v) {
+    return fmt::format("({:.3g}, {:.3g}, {:.3g})", v.x(), v.y(), v.z());
+  };
+  std::string note = fmt::format("sky: {}; up is {}{}, north {}", sky.description, text(sky.up),
+                                 is_given ? "" : " by the format or the cameras", text(sky.north));
+  constexpr double kDegree = std::numbers::pi / 180;
+  if (sky.sun)
+    note += fmt::format("; the sun stands {:.2f} degrees high, {:.2f} from north towards east",
+                        sky.sun->altitude / kDegree, sky.sun->azimuth / kDegree);
+  scene.notes.push_back(std::move(note));
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
@@ -63,7 +84,9 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   if (options.force_two_sided)
     for (Material& material : scene.materials) material.two_sided = true;
   settle_glass_bodies(scene);
+  if (!options.sky.empty() || !options.sun.empty()) add_sky(options.sky, options.sun, scene);
   finish_scene(scene);
+  if (scene.sky) settle_sky(scene);
   return scene;
 }
 

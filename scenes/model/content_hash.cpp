@@ -110,6 +110,23 @@ void add_surface(Hasher& hash, const Surface& surface) {
   for (const CurvedShape& shape : surface.shapes) add_shape(hash, shape);
 }
 
+void add_sky(Hasher& hash, const Sky& sky) {
+  hash.add(static_cast<std::uint64_t>(sky.kind));
+  hash.add(sky.up);
+  hash.add(sky.north);
+  hash.add(sky.irradiance);
+  const SkyGradation& g = sky.gradation;
+  for (const double x : {g.a, g.b, g.c, g.d, g.e}) hash.add(x);
+  hash.add(sky.ground_reflectance);
+  if (sky.image) {
+    hash.add(std::uint64_t{sky.image->columns});
+    for (const float x : sky.image->radiance) hash.add(static_cast<double>(x));
+  }
+  if (!sky.sun) return;
+  for (const double x : {sky.sun->altitude, sky.sun->azimuth, sky.sun->half_angle}) hash.add(x);
+  hash.add(sky.sun->irradiance);
+}
+
 }  // namespace
 
 std::string content_hash(const Scene& scene) {
@@ -127,6 +144,7 @@ std::string content_hash(const Scene& scene) {
     hash.add(std::uint64_t{light.index()});
     std::visit([&hash](const auto& l) { l.for_each_value([&hash](const auto& x) { hash.add(x); }); }, light);
   }
+  if (scene.sky) add_sky(hash, *scene.sky);
   return fmt::format("{:016x}", hash.state());
 }
 

@@ -1,7 +1,9 @@
 #include "scenes/model/scene.h"
 
 #include <algorithm>
+#include <memory>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,6 +50,34 @@ void reduce(Spectrum& s, const BandSet& bands) {
   if (s.size() > 0) s = Spectrum::Constant(1, is_grey(s) ? s[0] : luminous_mean(s, bands));
 }
 
+/// Visits the spectra of a sky; its image has others.
+template <class SkyType, class Visit>
+void for_each_spectrum(SkyType& sky, Visit&& visit) {
+  visit(sky.irradiance);
+  visit(sky.ground_reflectance);
+  if (sky.sun) visit(sky.sun->irradiance);
+}
+
+bool is_grey(const Sky& sky) {
+  bool grey = true;
+  for_each_spectrum(sky, [&](const Spectrum& s) { grey = grey && (s.size() == 0 || is_grey(s)); });
+  if (!sky.image) return grey;
+  const std::vector<float>& rgb = sky.image->radiance;
+  for (std::size_t i = 0; i + 2 < rgb.size() && grey; i += 3)
+    grey = rgb[i] == rgb[i + 1] && rgb[i] == rgb[i + 2];
+  return grey;
+}
+
+void reduce(Sky& sky, const BandSet& bands) {
+  for_each_spectrum(sky, [&](Spectrum& s) { reduce(s, bands); });
+  if (!sky.image) return;
+  auto image = std::make_shared<SkyImage>(*sky.image);
+  const std::size_t pixels = image->rows * image->columns;
+  for (std::size_t i = 0; i < pixels; ++i) image->radiance[i] = image->radiance[3 * i];
+  image->radiance.resize(pixels);
+  sky.image = std::move(image);
+}
+
 void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
   if (scene.bands.kind() != BandKind::kRgb) return;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -61,6 +91,7 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
   }
   for (const PunctualLight& light : scene.lights)
     if (!is_grey(power_of(light))) return;
+  if (scene.sky && !is_grey(*scene.sky)) return;
 
   for (Material& m : scene.materials) {
     NonDiffusePart& rest = m.non_diffuse;
@@ -70,6 +101,7 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
       reduce(*s, scene.bands);
   }
   for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);
+  if (scene.sky) reduce(*scene.sky, scene.bands);
   scene.bands = BandSet::grey();
   scene.notes.push_back("No surface or light has a colour: one grey band is transported.");
 }
@@ -95,9 +127,10 @@ void warn_of_light_over_mirrors(Scene& scene, const std::vector<bool>& used) {
 void warn_if_dark(Scene& scene, const std::vector<bool>& used) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (used[i] && scene.materials[i].emits()) return;
-  if (!scene.lights.empty()) return;
+  if (!scene.lights.empty() || scene.sky) return;
   scene.warnings.push_back(
-      "The room has no luminaire: no surface and no light emits, so everything stays black.");
+      "The room has no luminaire: no surface and no light emits, so everything stays black. A room that "
+      "daylight is to come into needs a sky: --sky overcast:10000lx.");
 }
 
 void warn_of_units(Scene& scene) {
@@ -125,6 +158,7 @@ void finish_scene(Scene& scene) {
   check_geometry(scene);
   check_luminous_surfaces(scene);
   check_lights(scene);
+  check_sky(scene);
   check_cameras(scene);
   const std::vector<bool> used = used_materials(scene);
   reduce_to_grey_if_colourless(scene, used);

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "scenes/model/camera.h"
 #include "scenes/model/luminaire.h"
 #include "scenes/model/material.h"
+#include "scenes/model/sky.h"
 #include "scenes/model/surface.h"
 
 namespace reemit {
@@ -25,6 +27,7 @@ struct Scene {
   std::vector<Material> materials;  ///< Every Spectrum has bands.count() entries.
   std::vector<Surface> surfaces;
   std::vector<PunctualLight> lights;
+  std::optional<Sky> sky;             ///< What stands around the room; none: nothing, black.
   std::vector<Camera> cameras;        ///< Names are unique.
   std::vector<std::string> warnings;  ///< What the user should know: ignored parts, assumptions, repairs.
   std::vector<std::string> notes;     ///< Conversions and assumptions that were applied (units, efficacy).

@@ -347,6 +347,30 @@ void check_lights(Scene& scene) {
   }
 }
 
+void check_sky(Scene& scene) {
+  if (!scene.sky) return;
+  Sky& sky = *scene.sky;
+  const std::string where = in_file(scene, "sky");
+  if (sky.kind != SkyKind::kImage && sky.kind != SkyKind::kNone)
+    check_strength(sky.irradiance, scene, where, "irradiance");
+  if (sky.kind == SkyKind::kImage &&
+      (!sky.image ||
+       sky.image->radiance.size() != sky.image->rows * sky.image->columns * scene.bands.count()))
+    throw InputError(where, "its image does not have one value per pixel and band", "Read it again.");
+  if (sky.ground_reflectance.size() > 0) {
+    check_size(sky.ground_reflectance, scene, where, "reflectance of the ground");
+    check_fraction(sky.ground_reflectance, where, "reflectance of the ground");
+  }
+  if (!sky.sun) return;
+  if (sky.sun->irradiance.size() > 0) {
+    check_size(sky.sun->irradiance, scene, where, "irradiance of the sun");
+    check_power(sky.sun->irradiance, where, "irradiance of the sun");
+  }
+  if (!(sky.sun->altitude > 0 && sky.sun->altitude <= std::numbers::pi / 2) ||
+      !std::isfinite(sky.sun->azimuth) || !(sky.sun->half_angle > 0 && sky.sun->half_angle < 0.2))
+    throw InputError(where, "the sun is not above the horizon", "Give an altitude between 0 and 90 degrees.");
+}
+
 void check_cameras(Scene& scene) {
   const Box room = bounds(scene);
   std::set<std::string> names;

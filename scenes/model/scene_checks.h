@@ -19,6 +19,9 @@ void check_luminous_surfaces(const Scene& scene);
 /// Intensities finite, >= 0 and not 0 in all bands, cone angles in order; directions become unit vectors.
 void check_lights(Scene& scene);
 
+/// Strengths finite, >= 0 and not 0 in all bands, the sun above the horizon.
+void check_sky(Scene& scene);
+
 /// Checks views and makes camera names unique by a suffix.
 void check_cameras(Scene& scene);
 

@@ -9,9 +9,11 @@
 
 namespace reemit {
 
-LuminaireTable::LuminaireTable(const Room& room) : rays_(&room.rays()), bands_(room.band_count()) {
+LuminaireTable::LuminaireTable(const Room& room)
+    : rays_(&room.rays()), sky_light_(room.sky()), bands_(room.band_count()) {
   add_surfaces(room);
   add_lights(room.scene());
+  add_sky(room);
   build_tree();
 }
 
@@ -60,6 +62,20 @@ void LuminaireTable::add_lights(const Scene& scene) {
   }
 }
 
+void LuminaireTable::add_sky(const Room& room) {
+  const SkyLight* sky = room.sky();
+  if (sky == nullptr) return;
+  sky->prepare();
+  if (sky->has_sky()) {
+    sky_ = size();
+    add_strength(sky->sky_strength());
+  }
+  if (sky->has_sun()) {
+    sun_ = size();
+    add_strength(sky->sun_strength());
+  }
+}
+
 void LuminaireTable::build_tree() {
   const double metres = rays_->metres_per_unit();
   std::vector<LuminaireBounds> bounds;
@@ -76,12 +92,16 @@ void LuminaireTable::build_tree() {
     else
       add(bounds_of_light(punctual_[i], brightness_[entry]), entry);
   }
+  for (const std::size_t entry : {sky_, sun_})
+    if (entry != kNoEntry) at_infinity_.push_back(static_cast<std::uint32_t>(entry));
   tree_ = LightTree(bounds);
 }
 
 float LuminaireTable::unoccluded(std::size_t entry, const Vec3f& x, const Vec3f& n) const {
   if (entry < areas_.size())
     return static_cast<float>(areas_[entry].expected_irradiance(x.cast<double>(), n.cast<double>()));
+  if (entry == sky_) return sky_light_->expected_from_sky(x, n);
+  if (entry == sun_) return sky_light_->expected_from_sun(n);
   return expected_irradiance(punctual_[entry - areas_.size()], x, n);
 }
 
@@ -97,6 +117,12 @@ bool LuminaireTable::sample(std::size_t entry, const Vec3f& x, const Vec3f& n, f
     result.target = (point.point + static_cast<double>(RayTracer::kLift) * point.normal).cast<float>();
     result.pdf_per_sr = static_cast<float>(point.pdf_per_sr);
     return true;
+  }
+  if (entry == sky_ || entry == sun_) {
+    const SkyLight::Sample towards =
+        entry == sky_ ? sky_light_->sample_sky(x, n, u0, u1) : sky_light_->sample_sun(n, u0, u1);
+    result = {towards.factor, true, towards.towards};
+    return result.factor > 0;
   }
   result = sample_light(punctual_[entry - areas_.size()], x, n, u0, u1);
   return result.factor > 0;

@@ -12,8 +12,8 @@
 namespace reemit {
 
 /// Everything that emits, as seen by direct light: one entry per emitting side of a convex polygon, of a
-/// curved shape, or of a base triangle of any other face; then the lights that rays do not see. Entries of
-/// zero power are left out.
+/// curved shape, or of a base triangle of any other face; then the lights that rays do not see; then sky and
+/// sun. Entries of zero power are left out.
 class LuminaireTable {
  public:
   /// The room must outlive it.
@@ -24,7 +24,7 @@ class LuminaireTable {
   std::size_t band_count() const { return bands_; }
 
   /// Per band: radiance along the normal [W/(m2 sr)] of an area, intensity [W/sr], irradiance across the beam
-  /// [W/m2], or intensity per candela.
+  /// [W/m2], intensity per candela, or SkyLight::sky_strength.
   const float* strength(std::size_t entry) const { return &strength_[entry * bands_]; }
   /// Surface that an entry belongs to; not valid for lights that rays do not see.
   SurfaceId surface_of(std::size_t entry) const {
@@ -32,6 +32,8 @@ class LuminaireTable {
   }
   /// Area of the emitting sides of a surface [normalised].
   float emitting_area(SurfaceId s) const { return area_of_surface_[s.index()]; }
+  bool is_sky(std::size_t entry) const { return entry == sky_; }
+  bool is_sun(std::size_t entry) const { return entry == sun_; }
   /// Sum of strength over bands.
   float brightness(std::size_t entry) const { return brightness_[entry]; }
 
@@ -50,11 +52,16 @@ class LuminaireTable {
  private:
   void add_surfaces(const Room& room);
   void add_lights(const Scene& scene);
+  void add_sky(const Room& room);
   void build_tree();
   void add_strength(const Spectrum& strength);
 
+  static constexpr std::size_t kNoEntry = static_cast<std::size_t>(-1);
+
   const RayTracer* rays_;
+  const SkyLight* sky_light_;
   std::size_t bands_;
+  std::size_t sky_ = kNoEntry, sun_ = kNoEntry;  // entries
   std::vector<AreaLuminaire> areas_;
   std::vector<SurfaceId> surface_of_area_;
   std::vector<float> area_of_surface_;

@@ -82,6 +82,7 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
             std::upper_bound(flight.first_packet.begin(), flight.first_packet.end(), id) -
             flight.first_packet.begin() - 1);
         const ZoneId zone = flight.sources[source].zone;
+        if (!zone.valid() && transport_.is_found_by_rays(flight.sources[source].light)) continue;
         const SurfaceId luminaire = zone.valid() ? transport_.mesh().zone_surface(zone) : SurfaceId();
         const std::int64_t* own = &quanta[static_cast<std::size_t>(lane) * channels.count()];
         std::fill(power.begin(), power.end(), 0.0F);

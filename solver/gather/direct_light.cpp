@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace reemit {
 namespace {
@@ -19,6 +20,7 @@ float share_of_lobe(float area, float way, float pdf_per_sr) {
 DirectLight::DirectLight(const Room& room, const DirectLightSettings& settings)
     : rays_(&room.rays()),
       surfaces_(&room.surfaces()),
+      sky_(room.sky()),
       table_(room),
       selection_(settings.selection.value_or(LuminaireChoice::default_for(table_.size()))) {}
 
@@ -42,6 +44,12 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
   if (!(towards.dot(side_normal(*rays_, x)) > 0)) return {};
   Arrival light{table_.strength(entry), sample.factor * inverse_probability, entry, towards, {}};
   if (!passes(origin, sample, light.panes)) return {};
+  if (sky_ != nullptr && table_.is_sky(entry) && sky_->is_coloured()) {
+    std::vector<float> colour;
+    sky_->colour(towards, colour);
+    for (std::size_t b = 0; b < band_count(); ++b) colour[b] *= light.pane(b);
+    light.panes = std::move(colour);
+  }
   return light;
 }
 
@@ -115,12 +123,21 @@ void DirectLight::add_lobe_of(const SurfacePoint& x, SpecularWayOn way, const Su
   if (light.strength == nullptr) return;
   SpecularStep step(band_count());
   if (!surfaces_->specular(x.triangle).value(x, way, light.towards.normalized(), step)) return;
+  const float share = left_by_lobe(light, step, counted);
+  for (std::size_t b = 0; b < band_count(); ++b)
+    sum[b] += weight[b] * share * step.share()[b] * light.factor * light.strength[b] * light.pane(b);
+}
+
+float DirectLight::left_by_lobe(const Arrival& light, const SpecularStep& step,
+                                const CausticShare& counted) const {
+  if (table_.is_sky(light.entry)) return 1 - sky_->sky_found_by_lobe(light.towards, step.pdf_per_sr);
   const SurfaceId luminaire = table_.surface_of(light.entry);
   float share = step.is_wide ? 1 : counted.of(luminaire);
   if (luminaire.valid())
     share *= 1 - share_of_lobe(table_.emitting_area(luminaire), light.towards.norm(), step.pdf_per_sr);
-  for (std::size_t b = 0; b < band_count(); ++b)
-    sum[b] += weight[b] * share * step.share()[b] * light.factor * light.strength[b] * light.pane(b);
+  else if (table_.is_sun(light.entry))
+    share *= 1 - sky_->sun_found_by_lobe(step.pdf_per_sr);
+  return share;
 }
 
 float DirectLight::found_by_lobe(TriangleId luminaire, float way, float pdf_per_sr) const {

@@ -75,7 +75,8 @@ class DirectLight {
     float factor = 0;
     std::size_t entry = 0;   ///< Of the table.
     Vec3f towards{0, 0, 0};  ///< The luminaire; of any length.
-    /// By band, what panes on the way leave of it; empty where there are none.
+    /// By band, what panes on the way leave of it, and the colour of the sky there; empty where there are
+    /// neither.
     std::vector<float> panes;
 
     float pane(std::size_t b) const { return panes.empty() ? 1.0F : panes[b]; }
@@ -86,10 +87,14 @@ class DirectLight {
                    float* sum) const;
   /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival.
   bool passes(const Vec3f& origin, const LuminaireSample& sample, std::vector<float>& panes) const;
+  /// The share of the light of an entry that comes from `towards` which shadow rays count at a lobe with this
+  /// density.
+  float left_by_lobe(const Arrival& light, const SpecularStep& step, const CausticShare& counted) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
 
   const RayTracer* rays_;
   const SurfaceModel* surfaces_;
+  const SkyLight* sky_;
   LuminaireTable table_;
   Selection selection_;
 };

@@ -75,7 +75,10 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
         along = path.direction();
-        if (!rays.closest(path.origin(), along, hit)) return;
+        if (!rays.closest(path.origin(), along, hit)) {
+          path.leave(along, weight, path.is_scattered() ? sum : caustic);
+          return;
+        }
         continue;
       }
     }

@@ -24,8 +24,11 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
   SpecularPath path(*room_, specular_, key);
   for (std::uint32_t bounce = 0;;) {
     Hit hit;
-    if (!rays.closest(origin, direction, hit)) return;
     float* over_mirrors = caustic == nullptr || path.is_scattered() ? sum : caustic;
+    if (!rays.closest(origin, direction, hit)) {
+      path.leave(direction, weight, over_mirrors);
+      return;
+    }
     path.arrive(*direct_, hit, direction, weight, over_mirrors);
     const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
     const float largest = *std::max_element(reflectance, reflectance + bands);

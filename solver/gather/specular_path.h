@@ -69,6 +69,21 @@ class SpecularPath {
     const float* there = of_light_there(weight);
     for (std::size_t b = 0; b < surfaces.band_count(); ++b) sum[b] += there[b] * shape * emitted[b];
   }
+  /// Leaves the room: adds weight[b] times what of sky and sun it meets to sum[b], as far as shadow rays from
+  /// where light was scattered last did not find it.
+  void leave(const Vec3f& along, const float* weight, float* sum) {
+    const SkyLight* sky = room_->sky();
+    if (sky == nullptr || !(is_bent_ || pdf_per_sr_ > 0)) return;
+    const float* there = of_light_there(weight);
+    const float found = is_bent_ ? 1 : sky->sky_found_by_lobe(along, pdf_per_sr_);
+    const float* radiance = sky->radiance(along);
+    for (std::size_t b = 0; b < room_->band_count(); ++b) sum[b] += there[b] * found * radiance[b];
+    const float* sun = sky->sun_radiance(along);
+    if (sun == nullptr) return;
+    const float found_of_sun =
+        (is_bent_ ? 1 : sky->sun_found_by_lobe(pdf_per_sr_)) * counted().of(SurfaceId());
+    for (std::size_t b = 0; b < room_->band_count(); ++b) sum[b] += there[b] * found_of_sun * sun[b];
+  }
   /// weight[b] for light that starts at the last hit, whose radiance is less where that is inside of glass
   /// (SurfaceModel::radiance_outside). To be used until the next call.
   const float* of_light_there(const float* weight) {

@@ -36,13 +36,13 @@ struct ProbeSet {
   std::vector<double> watts;  // of one probe of a source
 };
 
-/// As luminaires send out their light, directional ones excepted: theirs comes from outside.
+/// As luminaires send out their light, sky and directional ones excepted: theirs comes from outside.
 ProbeSet emitted_probes(const PacketRoom& transport, const PacketSources& emission) {
   ProbeSet probes;
   probes.flight = plan_first_flight(emission, kProbes, 0.5);
   for (std::size_t s = 0; s < emission.sources.size(); ++s) {
     const PacketSource& source = emission.sources[s];
-    const bool outside = !source.zone.valid() && is_at_infinity(transport.scene().lights[source.light]);
+    const bool outside = !source.zone.valid() && transport.is_from_outside(source.light);
     const double power = outside ? 0 : emission.watts_of(s);
     probes.watts.push_back(power / (probes.flight.first_packet[s + 1] - probes.flight.first_packet[s]));
   }
@@ -173,7 +173,8 @@ double room_diagonal(const Scene& scene) {
   return bounds(scene).size().norm();
 }
 
-bool has_directional(const Scene& scene) {
+bool is_lit_from_outside(const Scene& scene) {
+  if (scene.sky) return true;
   return std::any_of(scene.lights.begin(), scene.lights.end(),
                      [](const PunctualLight& l) { return is_at_infinity(l); });
 }
@@ -187,8 +188,8 @@ void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission,
   if (!(share > kLeastShare)) return;
   const EscapedLight found = find_escapes(transport, emission, solution, stop);
   const bool by_gaps = 2 * found.through_gaps > share && found.through_openings < kMostlyClosedShare;
-  const bool closed =
-      found.through_openings < kClosedShare && share < kOutdoorShare && !has_directional(transport.scene());
+  const bool closed = found.through_openings < kClosedShare && share < kOutdoorShare &&
+                      !is_lit_from_outside(transport.scene());
   if (!by_gaps && !closed) return;
   std::string text =
       fmt::format("{} of the light leaves the room, although its faces close", share_text(share));
@@ -208,7 +209,7 @@ void warn_of_backs(const PacketRoom& transport, const PacketSources& emission, c
     for (std::size_t s = 0; s < watts.size(); ++s) watts[s] += audit.watts(band, band.absorbed_on_backs[s]);
   const double emitted = emitted_watts(audit);
   const double lost = std::accumulate(watts.begin(), watts.end(), 0.0);
-  if (!(lost > kLeastShare * emitted) || has_directional(scene)) return;
+  if (!(lost > kLeastShare * emitted) || is_lit_from_outside(scene)) return;
   std::vector<std::size_t> order(watts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

@@ -1,7 +1,10 @@
 #pragma once
+#include <memory>
+
 #include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 #include "solver/reflect/surface_model.h"
+#include "solver/sky/sky_light.h"
 #include "solver/trace/ray_tracer.h"
 
 namespace reemit {
@@ -12,7 +15,11 @@ class Room {
  public:
   /// Builds the tree for rays. Scene and mesh must outlive the room.
   Room(const Scene& scene, const ZoneMesh& mesh)
-      : scene_(&scene), mesh_(&mesh), rays_(mesh), surfaces_(scene, mesh, rays_.metres_per_unit()) {}
+      : scene_(&scene),
+        mesh_(&mesh),
+        rays_(mesh),
+        surfaces_(scene, mesh, rays_.metres_per_unit()),
+        sky_(make_sky_light(scene, mesh, rays_, surfaces_)) {}
   Room(const Scene&&, const ZoneMesh&) = delete;
   Room(const Scene&, const ZoneMesh&&) = delete;
   Room(const Room&) = delete;
@@ -22,6 +29,8 @@ class Room {
   const ZoneMesh& mesh() const { return *mesh_; }
   const RayTracer& rays() const { return rays_; }
   const SurfaceModel& surfaces() const { return surfaces_; }
+  /// What stands around the room; null if nothing does.
+  const SkyLight* sky() const { return sky_.get(); }
   std::size_t band_count() const { return scene_->bands.count(); }
   /// Diffuse reflectance of a zone, one number per band [0,1].
   const float* zone_reflectance(ZoneId z) const {
@@ -33,6 +42,7 @@ class Room {
   const ZoneMesh* mesh_;
   RayTracer rays_;
   SurfaceModel surfaces_;
+  std::shared_ptr<const SkyLight> sky_;
 };
 
 }  // namespace reemit

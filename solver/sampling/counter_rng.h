@@ -33,6 +33,7 @@ enum class RngPurpose : std::uint32_t {
   kSpreadCamera,
   kCaustic,
   kSeenLight,
+  kSkySurvey,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

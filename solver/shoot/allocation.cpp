@@ -11,8 +11,9 @@
 
 namespace reemit {
 
-Allocation::Allocation(std::size_t zones, Channels channels)
+Allocation::Allocation(std::size_t zones, Channels channels, const std::vector<std::uint8_t>& needs)
     : values_(channels.count()),
+      needs_(needs),
       chunks_((zones + kChunkBlocks * SweepAccounts::kBlockZones - 1) /
               (kChunkBlocks * SweepAccounts::kBlockZones)) {}
 
@@ -28,6 +29,12 @@ std::int64_t Allocation::measure(const SweepAccounts& accounts) {
     std::int64_t power = 0;
     for_live_blocks(c, accounts, [&](std::size_t block) {
       const std::int64_t* unshot = accounts.unshot.data();
+      if (!needs_.empty()) {
+        for (std::size_t z = accounts.block_begin(block); z < accounts.block_end(block); ++z)
+          power +=
+              need(z) * std::accumulate(unshot + z * values_, unshot + (z + 1) * values_, std::int64_t{0});
+        return;
+      }
       power = std::accumulate(unshot + accounts.block_begin(block) * values_,
                               unshot + accounts.block_end(block) * values_, power);
     });
@@ -69,12 +76,13 @@ void Allocation::choose(std::size_t chunk_index, const SweepAccounts& accounts, 
       const std::int64_t* own = &accounts.unshot[z * values_];
       const std::int64_t power = std::accumulate(own, own + values_, std::int64_t{0});
       if (power == 0) continue;
-      running += power;
+      running += need(z) * power;
+      const double own_quantum = quantum / static_cast<double>(need(z));
       const double upto = std::floor(static_cast<double>(running) / quantum + offset);
       const auto packets = static_cast<std::uint32_t>(upto - before);
       before = upto;
-      const bool small = static_cast<double>(power) < quantum || packets == 0;
-      const double growth = small ? quantum * packets / static_cast<double>(power) : 0.0;
+      const bool small = static_cast<double>(power) < own_quantum || packets == 0;
+      const double growth = small ? own_quantum * packets / static_cast<double>(power) : 0.0;
       if (small)
         for (std::size_t c = 0; c < values_; ++c) {
           chunk.small_total[c] += own[c];

@@ -15,7 +15,9 @@ namespace reemit {
 /// number of threads.
 class Allocation {
  public:
-  Allocation(std::size_t zones, Channels channels);
+  /// `needs`: by zone, how many packets its power is to have over that of others (PacketRoom::needs), which
+  /// the sums below count it by; empty: all alike.
+  Allocation(std::size_t zones, Channels channels, const std::vector<std::uint8_t>& needs = {});
 
   /// Sum of the unshot power, to be called before each plan().
   std::int64_t measure(const SweepAccounts& accounts);
@@ -46,7 +48,10 @@ class Allocation {
                  BatchBooks& books) const;
   void drop_passed_over(SweepAccounts& accounts, const std::vector<bool>& exchanged, BatchBooks& books) const;
 
+  std::int64_t need(std::size_t zone) const { return needs_.empty() ? 1 : needs_[zone]; }
+
   std::size_t values_;  // of each zone
+  std::vector<std::uint8_t> needs_;
   std::vector<Chunk> chunks_;
 };
 

@@ -109,6 +109,7 @@ class WayOut {
 std::string name_of(const PacketSource& source, const PacketRoom& transport) {
   const Scene& scene = transport.scene();
   if (source.zone.valid()) return scene.surfaces[transport.mesh().zone_surface(source.zone).index()].name;
+  if (source.light >= scene.lights.size()) return "sky";
   return std::visit([](const auto& light) { return light.name; }, scene.lights[source.light]);
 }
 

@@ -15,11 +15,26 @@ std::uint64_t scramble_seed(std::uint64_t seed, std::uint32_t batch, std::uint32
   return (std::uint64_t{bits[0]} << 32) | bits[1];
 }
 
+void add_by_share(const PacketSources& emission, std::uint32_t packets, double offset, Flight& flight) {
+  double running = 0;
+  double before = 0;
+  for (std::size_t s = 0; s < emission.sources.size(); ++s) {
+    running += emission.packet_share[s];
+    const double upto = std::floor(running * packets + offset);
+    flight.add(emission.sources[s], static_cast<std::uint32_t>(std::max(1.0, upto - before)));
+    before = upto;
+  }
+}
+
 }  // namespace
 
 Flight plan_first_flight(const PacketSources& emission, std::uint32_t packets, double offset) {
   Flight flight;
   flight.quanta = emission.quanta;
+  if (!emission.packet_share.empty()) {
+    add_by_share(emission, packets, offset, flight);
+    return flight;
+  }
   double total = 0;
   for (const std::int64_t q : emission.quanta) total += static_cast<double>(q);
   double running = 0;
@@ -167,8 +182,8 @@ int FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& n
       if (transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane], local, rays, lane)) behind |= 1U << lane;
       continue;
     }
-    const LightRay start = start_light_ray(transport_.emitters()[s->light], x.u[0][lane], x.u[1][lane],
-                                           x.u[2][lane], x.u[3][lane]);
+    const LightRay start =
+        transport_.start_light(s->light, x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane]);
     rays.set(lane, start.origin, start.direction);
   }
   return std::popcount(behind);

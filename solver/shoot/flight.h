@@ -31,8 +31,9 @@ struct Flight {
   }
 };
 
-/// The first flight of a batch: `packets` packets over the luminaires in proportion to power, at least one
-/// each. Sources keep exactly their own power; only how many packets carry it depends on `offset` in [0,1).
+/// The first flight of a batch: `packets` packets over the luminaires in proportion to power, or by
+/// PacketSources::packet_share, at least one each. Sources keep exactly their own power; only how many
+/// packets carry it depends on `offset` in [0,1).
 Flight plan_first_flight(const PacketSources& emission, std::uint32_t packets, double offset);
 
 /// Books the power of packets begin .. end-1, which stay where they are, as unshot. Any thread may call it.

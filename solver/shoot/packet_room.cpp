@@ -1,6 +1,7 @@
 #include "solver/shoot/packet_room.h"
 
 #include "solver/emit/light_places.h"
+#include "solver/trace/surface_point.h"
 
 namespace reemit {
 
@@ -21,6 +22,22 @@ PacketRoom::PacketRoom(const Room& room, Channels channels)
     patches_.push_back({p0, scale * e1, scale * e2, p0 + (e1 + e2) / 3.0F, Frame(rays.normal(t)), n,
                         rays.edge_share(t), rays.is_foot(t)});
   }
+  needs_ = needs_of_zones();
+}
+
+std::vector<std::uint8_t> PacketRoom::needs_of_zones() const {
+  std::vector<std::uint8_t> needs;
+  const SkyLight* sky = room_->sky();
+  if (sky == nullptr) return needs;
+  for (std::size_t z = 0; z < mesh_->zone_count(); ++z) {
+    float pick = 0.5F;
+    const SidePoint x = cell_point(mesh_->pick_cell(ZoneId(z), pick), 1.0F / 3, 1.0F / 3);
+    const auto u = static_cast<float>(x.at.u);
+    const auto v = static_cast<float>(x.at.v);
+    needs.push_back(
+        sky->need(rays_->point(x.triangle, u, v), side_normal(*rays_, x.triangle, u, v, x.front)));
+  }
+  return needs;
 }
 
 bool PacketRoom::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const {

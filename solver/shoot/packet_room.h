@@ -26,6 +26,23 @@ class PacketRoom {
   const Scene& scene() const { return room_->scene(); }
   /// The lights of the scene as packets start at them (lights_before_faces).
   const std::vector<PunctualEmitter>& emitters() const { return emitters_; }
+  /// Start of a packet of a source that is not a surface (PacketSource::light).
+  LightRay start_light(std::uint32_t light, float u0, float u1, float u2, float u3) const {
+    if (light < emitters_.size()) return start_light_ray(emitters_[light], u0, u1, u2, u3);
+    const SkyRay ray = room_->sky()->start(light - emitters_.size(), u0, u1, u2, u3);
+    return {ray.origin, ray.direction};
+  }
+  /// Whether the light of such a source comes from outside the room.
+  bool is_from_outside(std::uint32_t light) const {
+    return light >= emitters_.size() || is_at_infinity(emitters_[light]);
+  }
+  /// Whether such a source is a part of the sky whose light gather rays find, the sun not being one.
+  bool is_found_by_rays(std::uint32_t light) const {
+    return light >= emitters_.size() && !room_->sky()->is_sun(light - emitters_.size());
+  }
+  /// By zone, how many packets its light is to be carried on by, over that of a zone that sees much of the
+  /// sky (SkyLight::need); empty without one.
+  const std::vector<std::uint8_t>& needs() const { return needs_; }
   const ZoneMesh& mesh() const { return *mesh_; }
   const RayTracer& rays() const { return *rays_; }
   const SurfaceModel& surface_model() const { return room_->surfaces(); }
@@ -138,6 +155,7 @@ class PacketRoom {
     }
   }
 
+  std::vector<std::uint8_t> needs_of_zones() const;
   bool start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays, int lane) const;
   std::uint32_t start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
   void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;
@@ -156,6 +174,7 @@ class PacketRoom {
   const RayTracer* rays_;
   Channels channels_;
   std::vector<PunctualEmitter> emitters_;
+  std::vector<std::uint8_t> needs_;
   std::vector<TrianglePatch> patches_;
 };
 

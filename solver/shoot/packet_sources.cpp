@@ -1,11 +1,41 @@
 #include "solver/shoot/packet_sources.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "solver/emit/punctual_emitter.h"
 
 namespace reemit {
+namespace {
+
+/// Shares of the packets [1]: lamps, the first `lamps` sources, together and sky each have what their light
+/// is worth (SkyLight::worth), neither less than kLeast; within them by power, and as the sky wants it.
+std::vector<double> shares_with_sky(const PacketSources& emission, const std::vector<double>& watts,
+                                    std::size_t lamps, std::size_t lights, const SkyLight& sky) {
+  constexpr double kLeast = 0.1;
+  const std::size_t bands = watts.size() / emission.sources.size();
+  std::vector<double> shares;
+  double of_lamps = 0;
+  for (std::size_t s = 0; s < emission.sources.size(); ++s) {
+    if (s < lamps) {
+      shares.push_back(std::accumulate(&watts[s * bands], &watts[s * bands] + bands, 0.0));
+      of_lamps += shares.back();
+    } else {
+      shares.push_back(sky.packet_share(emission.sources[s].light - lights));
+    }
+  }
+  double to_lamps = 0;
+  if (of_lamps > 0) {
+    const double worth = of_lamps * sky.mean_need();
+    to_lamps = std::clamp(worth / (worth + sky.worth()), kLeast, 1 - kLeast);
+  }
+  for (std::size_t s = 0; s < shares.size(); ++s) shares[s] *= s < lamps ? to_lamps / of_lamps : 1 - to_lamps;
+  return shares;
+}
+
+}  // namespace
 
 double PacketSources::watts_of(std::size_t source) const {
   double sum = 0;
@@ -69,7 +99,15 @@ PacketSources collect_packet_sources(const PacketRoom& transport) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     add({ZoneId(), static_cast<std::uint32_t>(l), 0},
         light_power(scene.lights[l], transport.rays().metres_per_unit()));
-  return make_packet_sources(std::move(sources), watts, transport.channels());
+  const std::size_t lamps = sources.size();
+  const SkyLight* sky = transport.room().sky();
+  if (sky != nullptr)
+    for (std::size_t c = 0; c < sky->cell_count(); ++c)
+      add({ZoneId(), static_cast<std::uint32_t>(scene.lights.size() + c), 0}, sky->power(c));
+  PacketSources emission = make_packet_sources(std::move(sources), watts, transport.channels());
+  if (sky != nullptr && emission.sources.size() > lamps)
+    emission.packet_share = shares_with_sky(emission, watts, lamps, scene.lights.size(), *sky);
+  return emission;
 }
 
 }  // namespace reemit

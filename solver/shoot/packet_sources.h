@@ -11,7 +11,7 @@ namespace reemit {
 /// A luminaire, or the part of one that lies in a zone, as packets see it.
 struct PacketSource {
   ZoneId zone;              ///< Valid for surfaces that emit.
-  std::uint32_t light = 0;  ///< Else index into Scene::lights.
+  std::uint32_t light = 0;  ///< Else index into Scene::lights, or beyond these a cell of the sky.
   float exponent = 0;       ///< Of a surface: Material::emission_exponent.
   std::uint32_t group = 0;  ///< Light group (Channels): its packets have power in the channels of that alone.
 };
@@ -22,7 +22,10 @@ struct PacketSources {
 
   Channels channels;
   std::vector<PacketSource> sources;
-  std::vector<std::int64_t> quanta;       ///< [source * channels + channel]
+  std::vector<std::int64_t> quanta;  ///< [source * channels + channel]
+  /// By source, its share of the packets; empty: in proportion to power. A sky sends most of its power past
+  /// what anyone wants to know.
+  std::vector<double> packet_share;
   std::vector<double> watts_per_quantum;  ///< Per channel [W]; 0 for one in which nothing emits.
 
   std::span<const std::int64_t> quanta_of(std::size_t source) const {

@@ -314,7 +314,7 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   books.packets += flight.packets();
   const double quantum = emitted / flight.packets();
 
-  Allocation allocation(transport.zones(), channels);
+  Allocation allocation(transport.zones(), channels, transport.needs());
   std::optional<ArrivalPoints> arrivals;
   if (task.settings.reemission == Reemission::kFromHits)
     arrivals.emplace(transport.zones(), flight.packets());

@@ -21,6 +21,8 @@ void transfer_read_options(Archive& archive, Options& options) {
   archive.attribute("gltf_emissive_units", options.gltf_emissive_units);
   archive.attribute("gltf_light_efficacy_lm_per_W", options.gltf_light_efficacy);
   archive.attribute("force_two_sided", options.force_two_sided);
+  archive.attribute("sky", options.sky);
+  archive.attribute("sun", options.sun);
 }
 
 template <class Archive, class Settings>

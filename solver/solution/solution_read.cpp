@@ -36,6 +36,10 @@ struct AttributeReader {
   void attribute(const char* name, std::optional<double>& value) {
     if (group.has_attribute(name)) value = group.read_attribute<double>(name);
   }
+  /// Empty where there is none.
+  void attribute(const char* name, std::string& value) {
+    if (group.has_attribute(name)) value = group.read_text_attribute(name);
+  }
   void attribute(const char* name, std::optional<ZoneBias>& value) {
     if (group.has_attribute(name))
       value = ZoneBias{group.read_attribute<double>(name),

@@ -29,6 +29,9 @@ struct AttributeWriter {
   void attribute(const char* name, const std::optional<double>& value) {
     if (value) group.write_attribute(name, *value);
   }
+  void attribute(const char* name, const std::string& value) {
+    if (!value.empty()) group.write_attribute(name, value);
+  }
   void attribute(const char* name, const std::optional<ZoneBias>& value) {
     if (!value) return;
     group.write_attribute(name, value->rms);

@@ -52,8 +52,9 @@ double open_area(const ZoneMesh& mesh, const std::vector<SideUse>& uses) {
 
 /// A room without light that anything could be told from.
 bool has_no_light(const Scene& scene) {
-  return scene.lights.empty() && std::none_of(scene.materials.begin(), scene.materials.end(),
-                                              [](const Material& m) { return m.emits(); });
+  return scene.lights.empty() && !scene.sky &&
+         std::none_of(scene.materials.begin(), scene.materials.end(),
+                      [](const Material& m) { return m.emits(); });
 }
 
 /// Triangles of which no side with zones gets light. Those of round shapes keep their patches, whose zones

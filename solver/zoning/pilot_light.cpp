@@ -47,6 +47,17 @@ Solution solve_pilot(const Scene& scene, MeshResult mesh, const WorkWatch& watch
   return solver.finish({}, Examination::kNone);
 }
 
+/// What light on a cell counts for: under a sky that on outsides, which is much brighter, less than that
+/// inside (SkyLight::need), or outsides would have nearly all of the zones.
+double need_of(const Room& room, const SideCell& cell) {
+  if (room.sky() == nullptr) return 1;
+  const SidePoint at = cell_point(cell, 1.0F / 3, 1.0F / 3);
+  const auto u = static_cast<float>(at.at.u);
+  const auto v = static_cast<float>(at.at.v);
+  return room.sky()->need(room.rays().point(at.triangle, u, v),
+                          side_normal(room.rays(), at.triangle, u, v, at.front));
+}
+
 /// By band, the reflected radiance averaged over all area that is not sealed [W/(m2 sr)].
 std::vector<double> mean_radiances(const RadianceField& field) {
   const ZoneMesh& mesh = field.room().mesh();
@@ -56,9 +67,11 @@ std::vector<double> mean_radiances(const RadianceField& field) {
     const ZoneId z(i);
     if (mesh.is_sealed(z)) continue;
     area += mesh.zone_area(z);
+    float pick = 0.5F;
+    const double need = need_of(field.room(), mesh.pick_cell(z, pick));
     for (std::size_t part = 0; part < field.parts(); ++part)
       for (std::size_t b = 0; b < field.band_count(); ++b)
-        mean[b] += mesh.zone_area(z) * static_cast<double>(field.reflected(z, part)[b]);
+        mean[b] += need * mesh.zone_area(z) * static_cast<double>(field.reflected(z, part)[b]);
   }
   for (double& m : mean) m = area > 0 ? m / (area * static_cast<double>(field.parts())) : 0;
   return mean;
@@ -128,12 +141,13 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& eff
   }
   batch_.flush();
   LightSpread light;
+  const double need = need_of(room, cell);
   const float* value = found_.data();
   for (int i = 0; i < effort.points; ++i) {
     std::array<double, kHalves> sum{};
     for (double& of_half : sum)
       for (std::size_t b = 0; b < bands; ++b) of_half += static_cast<double>(*value++);
-    light.add(sum[0], sum[1]);
+    light.add(need * sum[0], need * sum[1]);
   }
   return light;
 }

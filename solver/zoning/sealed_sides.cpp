@@ -46,6 +46,7 @@ class Reach {
         sets_.join(s, side_of(t, false).index());
     }
     join_lights(room.scene());
+    if (room.sky() != nullptr) is_outside_lit_ = true;
   }
 
   void join_neighbours(const WorkWatch& watch) {

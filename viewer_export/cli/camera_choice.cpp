@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scenes/io/common/up_direction.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
-#include "viewer_export/output/up_direction.h"
 #include "viewer_export/still/default_cameras.h"
 
 namespace reemit::cli {

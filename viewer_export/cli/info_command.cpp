@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,13 +35,22 @@ struct InfoOptions {
 struct RoomOfSolution {
   std::string status = "unchanged";  ///< Or why it cannot be read or is not the one that was solved.
   std::vector<LuminaireRow> luminaires;
+  std::optional<LightOutside> outside;  ///< Under a sky.
 };
+
+std::optional<LightOutside> light_outside(const Scene& scene) {
+  if (!scene.sky) return std::nullopt;
+  return LightOutside{lumens(horizontal_sky_irradiance(*scene.sky, scene.bands), scene.bands),
+                      lumens(horizontal_sun_irradiance(*scene.sky, scene.bands), scene.bands)};
+}
 
 RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& file,
                          const OutputStyle& style) {
   RoomOfSolution room;
   try {
-    room.luminaires = list_luminaires(load_room_of(solution, file, {}, style), solution.mesh_report);
+    const Scene scene = load_room_of(solution, file, {}, style);
+    room.luminaires = list_luminaires(scene, solution.mesh_report);
+    room.outside = light_outside(scene);
   } catch (const InputError& problem) {
     const std::string message = problem.what();
     room.status = message.substr(0, message.find('\n'));
@@ -55,11 +65,12 @@ ExitCode show_solution(const InfoOptions& options) {
   const RoomOfSolution room = find_room(solution, file, options.style);
   if (options.style.json) {
     nlohmann::ordered_json json = solution_json(solution, file, room.status);
-    add_light(json, solution, room.luminaires);
+    add_light(json, solution, room.luminaires, room.outside);
     print_json(json);
     return ExitCode::kDone;
   }
-  print_result(solution_text(solution, file, room.status) + '\n' + light_text(solution, room.luminaires));
+  print_result(solution_text(solution, file, room.status) + '\n' +
+               light_text(solution, room.luminaires, room.outside));
   std::fflush(stdout);
   print_warnings(solution.mesh_report.warnings);
   print_warnings(solution.light_warnings);
@@ -130,6 +141,7 @@ void add_info_command(CLI::App& program, Action& action) {
           "them, sides that no light reaches, zones by size; and print the first faces of each kind")
       ->type_name("FILE");
   add_gltf_unit_options(info, options->read);
+  add_sky_options(info, options->read);
   add_json_option(info, options->style);
   info.callback([options, &action] { action = [options] { return show(*options); }; });
 }

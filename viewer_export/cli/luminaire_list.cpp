@@ -33,6 +33,13 @@ void add_surface(const std::string& name, const Material& material, const Surfac
   rows.push_back({name, "surface", area, area * exitance, exitance});
 }
 
+/// As other light from outside, with what falls on a horizontal plane there, and across the beam of the sun.
+void add_sky(const Sky& sky, const BandSet& bands, std::vector<LuminaireRow>& rows) {
+  if (sky.kind != SkyKind::kNone)
+    rows.push_back({"sky", sky.description, 0, Spectrum(), horizontal_sky_irradiance(sky, bands)});
+  if (sky.sun_shines()) rows.push_back({"sun", "sun", 0, Spectrum(), sky.sun->irradiance});
+}
+
 Spectrum total_power(const std::vector<LuminaireRow>& rows, const BandSet& bands) {
   Spectrum total = Spectrum::Zero(static_cast<Eigen::Index>(bands.count()));
   for (const LuminaireRow& luminaire : rows)
@@ -47,6 +54,7 @@ std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshReport& 
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
     add_surface(scene.surfaces[s].name, scene.material_of(scene.surfaces[s]), report.surfaces[s], rows);
   for (const PunctualLight& light : scene.lights) rows.push_back(row_of(light));
+  if (scene.sky) add_sky(*scene.sky, scene.bands, rows);
   return rows;
 }
 

@@ -13,7 +13,7 @@ namespace reemit::cli {
 /// One luminaire as `info` lists it.
 struct LuminaireRow {
   std::string name;
-  std::string kind;  ///< "surface", "point", "spot", "directional" or "ies".
+  std::string kind;  ///< "surface", "point", "spot", "directional", "ies", a kind of sky or "sun".
   double area = 0;   ///< Emitting area, both sides if both emit [m2]; 0 for those without area.
   Spectrum power;    ///< [W] per band; size 0 for directional light, whose power depends on the room.
   Spectrum power_per_area{};  ///< Exitance of a surface or irradiance across a beam [W/m2]; else size 0.

@@ -74,16 +74,28 @@ std::optional<ToneMap> write_photometric_csv(const VertexData& data, OutputFile&
     columns.push_back(&data.caustic_radiance);
     names += ",caustic_luminance";
   }
-  write_header(data, "lengths in m, luminance in cd/m2, illuminance in lx", names, file);
   const Spectrum& efficacy = data.bands.efficacy_lm_per_w();
+  const double outside = data.outside.size() > 0 ? (efficacy * data.outside).sum() : 0;
+  if (outside > 0) names += ",daylight_factor_percent";
+  write_header(data,
+               outside > 0
+                   ? fmt::format("lengths in m, luminance in cd/m2, illuminance in lx, daylight factor in "
+                                 "% of {:.6g} lx of the sky outside",
+                                 outside)
+                   : "lengths in m, luminance in cd/m2, illuminance in lx",
+               names, file);
   const auto bands = static_cast<std::size_t>(efficacy.size());
   write_rows(data, file, [&](std::size_t v, fmt::memory_buffer& row) {
+    double illuminance = 0;
     for (const auto* values : columns) {
       double sum = 0;
       for (std::size_t b = 0; b < bands; ++b)
         sum += efficacy[static_cast<Eigen::Index>(b)] * static_cast<double>((*values)[v * bands + b]);
       fmt::format_to(std::back_inserter(row), ",{}", static_cast<float>(sum));
+      if (values == &data.irradiance) illuminance = sum;
     }
+    if (outside > 0)
+      fmt::format_to(std::back_inserter(row), ",{}", static_cast<float>(100 * illuminance / outside));
   });
   return std::nullopt;
 }

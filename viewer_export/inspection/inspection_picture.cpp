@@ -7,10 +7,10 @@
 #include <variant>
 
 #include "mesh/zones/zone_lookup.h"
+#include "scenes/io/common/up_direction.h"
 #include "viewer_export/formats/vertex_export.h"
 #include "viewer_export/inspection/side_kinds.h"
 #include "viewer_export/inspection/zone_sizes.h"
-#include "viewer_export/output/up_direction.h"
 
 namespace reemit {
 namespace {

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/common/up_direction.h"
 #include "solver/sampling/sphere_lattice.h"
-#include "viewer_export/output/up_direction.h"
 #include "viewer_export/still/lit_space.h"
 #include "viewer_export/still/panorama.h"
 

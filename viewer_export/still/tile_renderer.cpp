@@ -105,6 +105,7 @@ void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film
 void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) const {
   const std::size_t bands = field_.band_count();
   std::vector<float> values(layers() * bands);
+  std::vector<float> weight(bands);
   GatherBatch batch(gather_);
   const auto pixel_at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
@@ -129,7 +130,7 @@ void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) cons
                      direct + bands,
                      direct + 2 * bands,
                      caustic,
-                     nullptr,
+                     &weight,
                      {.direct = direct,
                       .indirect = direct + bands,
                       .caustic = caustic,
@@ -145,7 +146,10 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
   const PinholeCamera::Ray ray = camera_->ray(x, y);
   Hit hit;
   const RayTracer& rays = room_->rays();
-  if (!rays.closest_for_camera(ray.origin, ray.direction, hit)) return;
+  if (!rays.closest_for_camera(ray.origin, ray.direction, hit)) {
+    add_sky(ray.direction, sums);
+    return;
+  }
   const std::size_t bands = field_.band_count();
   const SurfaceModel& surfaces = room_->surfaces();
   const SurfacePoint point = seen_point(hit, ray.direction);
@@ -158,6 +162,28 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
   add_seen(point, all_.data(), 1, sample, sums, batch);
   if (surfaces.is_specular(hit.triangle, hit.front))
     add_over_mirrors(point, hit.distance, sample, sums, batch);
+}
+
+void TileRenderer::add_sky(const Vec3f& along, PixelSums& sums) const {
+  if (room_->sky() == nullptr) return;
+  std::vector<float>& weight = *sums.weight;
+  std::fill(weight.begin(), weight.end(), sums.share);
+  room_->sky()->add_seen(along, weight.data(), sums.direct);
+}
+
+void TileRenderer::add_sky_over_mirrors(const Vec3f& along, float pdf_per_sr, const float* through,
+                                        PixelSums& sums) const {
+  const SkyLight* sky = room_->sky();
+  if (sky == nullptr) return;
+  const bool is_shared = pdf_per_sr > 0 && sums.integrator != Integrator::kZones;
+  const float found = is_shared ? sky->sky_found_by_lobe(along, pdf_per_sr) : 1;
+  const float* radiance = sky->radiance(along);
+  const float* sun = sky->sun_radiance(along);
+  const float found_of_sun = is_shared && sun != nullptr ? sky->sun_found_by_lobe(pdf_per_sr) : 1;
+  for (std::size_t b = 0; b < field_.band_count(); ++b) {
+    sums.direct[b] += sums.share * through[b] * found * radiance[b];
+    if (sun != nullptr) sums.direct[b] += sums.share * through[b] * found_of_sun * sun[b];
+  }
 }
 
 void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums,
@@ -187,8 +213,14 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
     // What a lobe about a shading normal sends into the surface is lost.
     if (!(step.direction.dot(side_normal(rays, from.x.triangle, from.x.u, from.x.v, step.front)) > 0)) return;
     Hit hit;
-    if (!rays.closest(rays.ray_origin(from.x.triangle, from.x.u, from.x.v, step.front), step.direction, hit))
+    if (!rays.closest(rays.ray_origin(from.x.triangle, from.x.u, from.x.v, step.front), step.direction,
+                      hit)) {
+      std::vector<float> through = from.through;
+      for (std::size_t b = 0; b < through.size(); ++b) through[b] *= step.share()[b] / step.chance;
+      add_sky_over_mirrors(step.direction, step.bends ? step.pdf_per_sr : from.pdf_per_sr, through.data(),
+                           sums);
       return;
+    }
     Look next{seen_point(hit, step.direction),
               from.through,
               from.steps + 1,

@@ -76,6 +76,12 @@ class TileRenderer {
                      int sample, PixelSums& sums, GatherBatch& batch) const;
   /// What is seen over x, a mirror, gloss or glass that a ray of length `way` met.
   void add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums, GatherBatch& batch) const;
+  /// What a camera sees of the sky where nothing stands before it.
+  void add_sky(const Vec3f& along, PixelSums& sums) const;
+  /// What is seen of it over mirrors, gloss or glass, of which the film gets `through` per band.
+  /// `pdf_per_sr`: of a ray from a lobe, else 0.
+  void add_sky_over_mirrors(const Vec3f& along, float pdf_per_sr, const float* through,
+                            PixelSums& sums) const;
   SurfacePoint seen_point(const Hit& hit, const Vec3f& direction) const;
 
   const Room* room_;

@@ -16,6 +16,9 @@ namespace reemit {
 /// a crease splits them, so every vertex belongs to one surface.
 struct VertexData {
   ExportInfo info;
+  /// Under a sky: irradiance of the sky, not the sun, on a horizontal plane outside [W/m2] per band; else
+  /// empty.
+  Spectrum outside{};
   /// True if an error target was missed because of the noise of the zone solution.
   bool limited_by_zones = false;
   BandSet bands = BandSet::grey();

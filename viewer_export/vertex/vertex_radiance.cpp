@@ -10,10 +10,10 @@
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include "scenes/io/common/up_direction.h"
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
 #include "solver/tally/replicates.h"
-#include "viewer_export/output/up_direction.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_refinement.h"
 #include "viewer_export/vertex/vertex_ring.h"
@@ -114,6 +114,8 @@ VertexData make_vertices(const Scene& scene, const Solution& solution, const Ver
   VertexData data;
   data.bands = scene.bands;
   data.up = up_direction(scene);
+  if (scene.sky && scene.sky->kind != SkyKind::kNone)
+    data.outside = horizontal_sky_irradiance(*scene.sky, scene.bands);
   for (const Surface& s : scene.surfaces) data.surface_names.push_back(s.name);
   for (const Material& m : scene.materials) data.material_names.push_back(m.name);
   data.positions = rings.positions();
@@ -138,6 +140,7 @@ void describe(const Scene& scene, const Solution& solution, const VertexSettings
   info.room = scene.source.empty() ? scene.name : scene.source;
   info.room_hash = solution.room_hash;
   info.seed = solution.settings.seed;
+  if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
   info.settings.emplace_back("vertex values", settings.average_zones ? "zone averages" : "final gather");
   if (settings.average_zones) return;
   info.settings.emplace_back("gather rays", static_cast<std::uint64_t>(settings.gather_rays));

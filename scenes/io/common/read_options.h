@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 
 namespace reemit {
 
@@ -14,6 +15,10 @@ struct ReadOptions {
   /// Luminous efficacy by which the cd and lx of glTF lamps become watts [lm/W], finite and above 0. Nothing:
   /// by the program that wrote the file (docs/gltf_input.md).
   std::optional<double> gltf_light_efficacy;
+  /// Sky and sun in place of those of the file, as the options --sky and --sun have them (docs/sky.md);
+  /// empty: those of the file.
+  std::string sky{};
+  std::string sun{};
 
   bool operator==(const ReadOptions&) const = default;
 };

@@ -9,6 +9,7 @@
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/native/native_materials.h"
 #include "scenes/io/native/native_objects.h"
+#include "scenes/io/native/native_sky.h"
 #include "scenes/io/native/native_view.h"
 
 namespace reemit {
@@ -33,8 +34,8 @@ BandSet read_bands(const JsonCursor& at) {
 }
 
 void read_format(const JsonCursor& room) {
-  room.expect_object(
-      {"format", "version", "name", "bands", "unit", "materials", "groups", "objects", "lights", "cameras"});
+  room.expect_object({"format", "version", "name", "bands", "unit", "materials", "groups", "objects",
+                      "lights", "cameras", "sky"});
   const auto format = room.find("format");
   if (!format || !format->is_string() || format->string() != "reemit-room") {
     room.fail("the file does not say that it is a room",
@@ -62,6 +63,7 @@ void read_room(const JsonCursor& room, const std::filesystem::path& folder, cons
   }
   materials.share_total_powers(scene);
   if (const auto lights = room.find("lights")) read_lights(*lights, unit, folder, scene);
+  if (const auto sky = room.find("sky")) read_sky(*sky, folder, scene);
   if (const auto cameras = room.find("cameras")) read_cameras(*cameras, unit, scene);
 }
 

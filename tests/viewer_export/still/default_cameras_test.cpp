@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/io/common/up_direction.h"
 #include "solver/room/room.h"
 #include "tests/support/test_rooms.h"
-#include "viewer_export/output/up_direction.h"
 
 namespace reemit::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer_export/output/up_direction.h"
+#include "scenes/io/common/up_direction.h"
 
 #include <algorithm>
 #include <string>

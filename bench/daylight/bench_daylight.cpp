@@ -1,0 +1,263 @@
+// Daylight in a room with a window: daylight factors along its depth, gathered and path traced, and the error
+// of the sky's first flight by packets and by shadow rays. docs/sky.md has the tables.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "scenes/io/scene_reader.h"
+#include "solver/gather/direct_light.h"
+#include "solver/gather/hemisphere_gather.h"
+#include "solver/gather/path_tracer.h"
+#include "solver/gather/point_sampler.h"
+#include "solver/progressive_solver.h"
+#include "solver/shoot/packet_batch.h"
+#include "solver/zoning/build_zones.h"
+
+namespace {
+
+using namespace reemit;
+
+struct Settings {
+  std::filesystem::path room;
+  ReadOptions read;
+  std::uint64_t packets = 4'000'000;
+  int zones = 4000;
+  int rays = 1 << 14;  // of a point
+  std::vector<double> from{2, 0.85, 0.25}, to{2, 0.85, 5.75}, normal{0, 1, 0};
+  int points = 12;
+};
+
+Vec3 vec(const std::vector<double>& v) {
+  return {v.at(0), v.at(1), v.at(2)};
+}
+
+MeshResult zones_of(const Scene& scene, int count) {
+  MeshSettings mesh;
+  mesh.default_zone_count = count;
+  return build_zones(scene, mesh);
+}
+
+/// Mean over 32 independent runs, with its standard error.
+struct Mean {
+  double value = 0, error = 0;
+};
+
+template <class Run>
+Mean mean_of_runs(Run&& run) {
+  constexpr int kRuns = 32;
+  std::array<double, kRuns> values;
+  tbb::parallel_for(0, kRuns, [&](int r) { values[static_cast<std::size_t>(r)] = run(r); });
+  double sum = 0;
+  double squares = 0;
+  for (const double v : values) sum += v;
+  for (const double v : values) squares += (v - sum / kRuns) * (v - sum / kRuns);
+  return {sum / kRuns, std::sqrt(squares / (kRuns * (kRuns - 1)))};
+}
+
+SurfacePoint surface_below(const Room& room, const Vec3& point, const Vec3& normal) {
+  Hit hit;
+  const Vec3f direction = (-normal).cast<float>();
+  if (!room.rays().closest(room.rays().normalised(point), direction, hit))
+    throw std::invalid_argument("nothing lies below the points: --from, --to, --normal");
+  return surface_point(room.rays(), hit, direction);
+}
+
+void daylight_factors(const Settings& settings) {
+  const Scene scene = read_scene(settings.room, settings.read);
+  if (!scene.sky) throw std::invalid_argument("the room has no sky: --sky");
+  SolverSettings solver;
+  solver.packets = settings.packets;
+  const std::atomic<bool> never{false};
+  const Solution solution = solve_zones(scene, zones_of(scene, settings.zones), solver, {}, never);
+  const Room room(scene, solution.mesh);
+  const DirectLight direct(room);
+  const RadianceField field(room, solution, 16);
+  const HemisphereGather gather(field, direct, {.caustics = true});
+  const PathTracer paths(room, direct, 7);
+  const std::size_t bands = room.band_count();
+  const Spectrum& efficacy = scene.bands.efficacy_lm_per_w();
+  const double outside = (efficacy * horizontal_sky_irradiance(*scene.sky, scene.bands)).sum();
+  fmt::print(
+      "| depth [m] | place [m] | direct [%] | gathered [%] | path traced [%] | difference [standard errors] "
+      "|\n"
+      "|---|---|---|---|---|---|\n");
+  const auto lux = [&](const std::vector<float>& values, double factor) {
+    double sum = 0;
+    for (std::size_t b = 0; b < bands; ++b)
+      sum += factor * efficacy[static_cast<Eigen::Index>(b)] * static_cast<double>(values[b]);
+    return sum;
+  };
+  for (int p = 0; p < settings.points; ++p) {
+    const double t = (p + 0.5) / settings.points;
+    const Vec3 place = vec(settings.from) + t * (vec(settings.to) - vec(settings.from));
+    const SurfacePoint x = surface_below(room, place, vec(settings.normal));
+    const auto run = [&](int r, int what) {
+      const PointSampler sampler(99, RngPurpose::kProbe, static_cast<std::uint64_t>(p), r, 20);
+      std::vector<float> arrived(bands, 0.0F);
+      const int rays = settings.rays / 32;
+      const std::vector<float> weight(bands, 1.0F / static_cast<float>(rays));
+      GatherBatch batch(gather);
+      for (int i = 0; i < rays; ++i) {
+        const std::array<float, 2> u = sampler.hemisphere(i, 0, 1);
+        const PathKey key{static_cast<std::uint64_t>(p), static_cast<std::uint32_t>(r),
+                          static_cast<std::uint32_t>(i),
+                          static_cast<std::uint32_t>(r % 16) % static_cast<std::uint32_t>(field.parts())};
+        std::vector<float> used = weight;
+        if (what == 0) direct.add_sample(x, sampler.light(i, 0, 1), weight.data(), arrived.data());
+        if (what == 1) batch.add(x, u[0], u[1], key, weight.data(), arrived.data());
+        if (what == 2) paths.add_indirect(x, u[0], u[1], key, used.data(), arrived.data());
+      }
+      batch.flush();
+      return lux(arrived, what == 0 ? 100 / outside : 100 * std::numbers::pi / outside);
+    };
+    const Mean straight = mean_of_runs([&](int r) { return run(r, 0); });
+    const Mean gathered = mean_of_runs([&](int r) { return run(r, 1); });
+    const Mean traced = mean_of_runs([&](int r) { return run(r, 2); });
+    const Vec3 at = room.rays().in_room(room.rays().point(x.triangle, x.u, x.v));
+    fmt::print(
+        "| {:.2f} | {:.2f} {:.2f} {:.2f} | {:.4g} +- {:.1g} | {:.4g} +- {:.1g} | {:.4g} +- {:.1g} | {:+.1f} "
+        "|\n",
+        (at - vec(settings.from)).norm(), at.x(), at.y(), at.z(), straight.value, straight.error,
+        straight.value + gathered.value, std::hypot(straight.error, gathered.error),
+        straight.value + traced.value, std::hypot(straight.error, traced.error),
+        (gathered.value - traced.value) / std::hypot(gathered.error, traced.error));
+  }
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// What the sky sends straight to zones, first band [W/m2].
+using ZoneLight = std::vector<double>;
+
+ZoneLight by_shadow_rays(const Room& room, const DirectLight& direct, int rays, std::uint64_t seed) {
+  const ZoneMesh& mesh = room.mesh();
+  ZoneLight light(mesh.zone_count(), 0.0);
+  tbb::parallel_for(std::size_t{0}, light.size(), [&](std::size_t z) {
+    const PointSampler sampler(seed, RngPurpose::kProbe, z, 0, 20);
+    std::vector<float> sum(room.band_count(), 0.0F);
+    const std::vector<float> weight(room.band_count(), 1.0F / static_cast<float>(rays));
+    for (int i = 0; i < rays; ++i) {
+      const std::array<float, 2> u = sampler.place(i);
+      float u0 = u[0];
+      const SideCell cell = mesh.pick_cell(ZoneId(z), u0);
+      const auto [a, b] = sample_triangle(u0, u[1]);
+      const SidePoint at = cell_point(cell, a, b);
+      direct.add_sample(surface_point(room.rays(), at.triangle, static_cast<float>(at.at.u),
+                                      static_cast<float>(at.at.v), at.front),
+                        sampler.light(i, 0, 1), weight.data(), sum.data());
+    }
+    light[z] = static_cast<double>(sum[0]);
+  });
+  return light;
+}
+
+ZoneLight by_packets(const PacketRoom& transport, const PacketSources& sources, std::uint32_t packets,
+                     std::uint32_t batch) {
+  SolverSettings settings;
+  settings.stop_share = 1e9;  // ends after the first flight
+  settings.seed = 11;
+  BatchBooks books = transport.new_books();
+  shoot_batch({transport, sources, settings, batch, packets}, books);
+  ZoneLight light(transport.zones());
+  for (std::size_t z = 0; z < light.size(); ++z)
+    light[z] = static_cast<double>(books.direct[z * transport.bands()]) * sources.watts_per_quantum[0] /
+               transport.mesh().zone_area(ZoneId(z));
+  return light;
+}
+
+void first_flight(const Settings& settings) {
+  const Scene scene = read_scene(settings.room, settings.read);
+  if (!scene.sky) throw std::invalid_argument("the room has no sky: --sky");
+  const MeshResult meshed = zones_of(scene, settings.zones);
+  const Room room(scene, meshed.mesh);
+  const PacketRoom transport(room);
+  const DirectLight direct(room);
+  const PacketSources directed = collect_packet_sources(transport);
+  PacketSources by_power = directed;
+  by_power.packet_share.clear();
+  const ZoneLight reference = by_shadow_rays(room, direct, 1 << 13, 1);
+  const auto print = [&](const char* method, double rays, double seconds, const ZoneLight& light) {
+    // Zones that see less than a quarter of the sky count as inside.
+    std::array<double, 2> squares{}, sums{};
+    std::vector<double> relative;
+    for (std::size_t z = 0; z < light.size(); ++z) {
+      const bool inside = transport.needs()[z] >= 4;
+      const double area = room.mesh().zone_area(ZoneId(z));
+      squares[inside ? 1 : 0] += area * std::pow(light[z] - reference[z], 2);
+      sums[inside ? 1 : 0] += area * std::pow(reference[z], 2);
+      if (inside && reference[z] > 0) relative.push_back(std::abs(light[z] / reference[z] - 1));
+    }
+    std::nth_element(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2),
+                     relative.end());
+    fmt::print("| {} | {:.2g} | {:.3f} | {:.2f} | {:.2f} | {:.2f} |\n", method, rays, seconds,
+               100 * std::sqrt(squares[1] / sums[1]),
+               relative.empty() ? 0 : 100 * relative[relative.size() / 2],
+               sums[0] > 0 ? 100 * std::sqrt(squares[0] / sums[0]) : 0);
+  };
+  fmt::print(
+      "{} zones\n\n| method | rays | time [s] | error inside, rms [%] | median zone inside [%] | error "
+      "outside, rms [%] |\n"
+      "|---|---|---|---|---|---|\n",
+      room.mesh().zone_count());
+  for (const int rays : {4, 16, 64, 256}) {
+    const std::uint64_t packets = static_cast<std::uint64_t>(rays) * room.mesh().zone_count();
+    auto start = std::chrono::steady_clock::now();
+    const ZoneLight gathered = by_shadow_rays(room, direct, rays, 2);
+    print("shadow rays from zones", static_cast<double>(packets), seconds_since(start), gathered);
+    for (const bool is_directed : {true, false}) {
+      start = std::chrono::steady_clock::now();
+      const ZoneLight light = by_packets(transport, is_directed ? directed : by_power,
+                                         static_cast<std::uint32_t>(packets), is_directed ? 1 : 2);
+      print(is_directed ? "packets where they are of use" : "packets by power alone",
+            static_cast<double>(packets), seconds_since(start), light);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Settings settings;
+  CLI::App program("Daylight in a room with a window");
+  program.require_subcommand(1);
+  const auto add_room = [&](CLI::App& command) {
+    command.add_option("room", settings.room)->required();
+    command.add_option("--sky", settings.read.sky);
+    command.add_option("--sun", settings.read.sun);
+    command.add_option("--zones", settings.zones);
+  };
+  CLI::App& factors = *program.add_subcommand("factors", "Daylight factors along a line");
+  add_room(factors);
+  factors.add_option("--packets", settings.packets);
+  factors.add_option("--rays", settings.rays);
+  factors.add_option("--points", settings.points);
+  factors.add_option("--from", settings.from)->expected(3);
+  factors.add_option("--to", settings.to)->expected(3);
+  factors.add_option("--normal", settings.normal, "Of the surfaces that the line looks down on")->expected(3);
+  CLI::App& flight = *program.add_subcommand("first-flight", "Error of light straight from the sky");
+  add_room(flight);
+  CLI11_PARSE(program, argc, argv);
+  if (factors.parsed())
+    daylight_factors(settings);
+  else
+    first_flight(settings);
+  return 0;
+} catch (const std::exception& problem) {
+  fmt::print(stderr, "{}\n", problem.what());
+  return 1;
+}

@@ -1,0 +1,98 @@
+#include "solver/sky/sky_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solver/sky/sky_table.h"
+
+namespace reemit {
+namespace {
+
+using std::numbers::pi;
+/// Of what a direction has learnt, each of its four neighbours gets so much: rays were few.
+constexpr float kToNeighbours = 0.05F;
+
+}  // namespace
+
+double SkyView::solid_angle() {
+  return 4 * pi / static_cast<double>(kDirections);
+}
+
+std::size_t SkyView::key_of(const Vec3f& x, const Vec3f& normal) {
+  std::size_t key = 0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const float scaled = 0.5F * (x[k] + 1) * static_cast<float>(kCells);
+    key = key * kCells + static_cast<std::size_t>(std::clamp(scaled, 0.0F, static_cast<float>(kCells) - 1));
+  }
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  return 6 * key + 2 * static_cast<std::size_t>(axis) + (normal[axis] < 0 ? 1 : 0);
+}
+
+std::size_t SkyView::direction_of(const Vec3& local) {
+  const double row = 0.5 * (1 - local.z()) * static_cast<double>(kRows);
+  const double column = (std::atan2(local.y(), local.x()) + pi) / (2 * pi) * static_cast<double>(kColumns);
+  return std::min(static_cast<std::size_t>(std::max(0.0, row)), kRows - 1) * kColumns +
+         std::min(static_cast<std::size_t>(std::max(0.0, column)), kColumns - 1);
+}
+
+std::uint32_t SkyView::add_place(const Vec3f& x, const Vec3f& normal) {
+  std::uint32_t& place = places_[key_of(x, normal)];
+  if (place == kUnknown) {
+    place = static_cast<std::uint32_t>(rays_.size());
+    rays_.push_back(0);
+    escaped_.push_back(0);
+    until_.resize(until_.size() + kDirections + 1, 0.0F);
+  }
+  return place;
+}
+
+void SkyView::add_escape(std::uint32_t place, const Vec3& local, float brightness) {
+  ++escaped_[place];
+  until_[place * (kDirections + 1) + 1 + direction_of(local)] += brightness;
+}
+
+void SkyView::finish() {
+  std::vector<float> learnt(kDirections);
+  for (std::size_t place = 0; place < rays_.size(); ++place) {
+    float* until = &until_[place * (kDirections + 1)];
+    std::copy_n(until + 1, kDirections, learnt.begin());
+    double running = 0;
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      const std::size_t row = d / kColumns;
+      const std::size_t column = d % kColumns;
+      const float beside = learnt[row * kColumns + (column + 1) % kColumns] +
+                           learnt[row * kColumns + (column + kColumns - 1) % kColumns] +
+                           (row > 0 ? learnt[d - kColumns] : learnt[d]) +
+                           (row + 1 < kRows ? learnt[d + kColumns] : learnt[d]);
+      running += static_cast<double>((1 - 4 * kToNeighbours) * learnt[d] + kToNeighbours * beside);
+      until[d + 1] = static_cast<float>(running);
+    }
+    if (!(running > 0)) {
+      escaped_[place] = 0;  // nothing but darkness was seen
+      continue;
+    }
+    for (std::size_t d = 0; d <= kDirections; ++d)
+      until[d] = static_cast<float>(static_cast<double>(until[d]) / running);
+    until[kDirections] = 1;
+  }
+}
+
+Vec3 SkyView::sample(std::uint32_t place, double u0, double u1) const {
+  double inside = 0;
+  const std::size_t d = find_interval(&until_[place * (kDirections + 1)], kDirections, u0, inside);
+  const double z = 1 - 2 * (static_cast<double>(d / kColumns) + inside) / static_cast<double>(kRows);
+  const double azimuth =
+      2 * pi * (static_cast<double>(d % kColumns) + u1) / static_cast<double>(kColumns) - pi;
+  const double r = std::sqrt(std::max(0.0, 1 - z * z));
+  return {r * std::cos(azimuth), r * std::sin(azimuth), z};
+}
+
+double SkyView::pdf_per_sr(std::uint32_t place, const Vec3& local) const {
+  const float* until = &until_[place * (kDirections + 1)];
+  const std::size_t d = direction_of(local);
+  return static_cast<double>(until[d + 1] - until[d]) / solid_angle();
+}
+
+}  // namespace reemit
