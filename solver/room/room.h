@@ -2,6 +2,7 @@
 #include "mesh/zones/zone_mesh.h"
 #include "scenes/model/scene.h"
 #include "solver/reflect/surface_model.h"
+#include "solver/texture/room_textures.h"
 #include "solver/trace/ray_tracer.h"
 
 namespace reemit {
@@ -12,7 +13,11 @@ class Room {
  public:
   /// Builds the tree for rays. Scene and mesh must outlive the room.
   Room(const Scene& scene, const ZoneMesh& mesh)
-      : scene_(&scene), mesh_(&mesh), rays_(mesh), surfaces_(scene, mesh, rays_.metres_per_unit()) {}
+      : scene_(&scene),
+        mesh_(&mesh),
+        textures_(scene, mesh),
+        rays_(mesh, textures_),
+        surfaces_(scene, mesh, textures_, rays_.metres_per_unit()) {}
   Room(const Scene&&, const ZoneMesh&) = delete;
   Room(const Scene&, const ZoneMesh&&) = delete;
   Room(const Room&) = delete;
@@ -25,12 +30,13 @@ class Room {
   std::size_t band_count() const { return scene_->bands.count(); }
   /// Diffuse reflectance of a zone, one number per band [0,1].
   const float* zone_reflectance(ZoneId z) const {
-    return surfaces_.reflectance(mesh_->zone_triangle(z), mesh_->zone_is_front(z));
+    return surfaces_.reflectance_float(z, mesh_->zone_surface(z), mesh_->zone_is_front(z));
   }
 
  private:
   const Scene* scene_;
   const ZoneMesh* mesh_;
+  RoomTextures textures_;
   RayTracer rays_;
   SurfaceModel surfaces_;
 };

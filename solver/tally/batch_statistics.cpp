@@ -152,7 +152,7 @@ std::vector<BandError> band_errors(const SurfaceModel& surfaces, const ZoneMesh&
     for (std::size_t z = chunk * kChunk; z < std::min(zones, (chunk + 1) * kChunk); ++z) {
       const double area = mesh.zone_area(ZoneId(z));
       const double* reflectance =
-          surfaces.reflectance(mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
+          surfaces.reflectance(ZoneId(z), mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
       for (std::size_t b = 0; b < bands; ++b) {
         const std::size_t i = z * bands + b;
         const double mean = sums.total(i) / w;

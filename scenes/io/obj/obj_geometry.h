@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -13,6 +14,7 @@ namespace reemit {
 struct ObjFace {
   std::vector<std::uint32_t> positions;
   std::vector<std::uint32_t> normals;  ///< One per corner, or none.
+  std::vector<std::uint32_t> texture_points;  ///< Likewise.
   std::size_t group = 0;               ///< Into ObjGeometry::groups.
   std::size_t material = 0;            ///< Into ObjMaterials::materials.
   std::uint32_t line = 0;
@@ -20,6 +22,7 @@ struct ObjFace {
 
 struct ObjGeometry {
   std::vector<Vec3> positions, normals;
+  std::vector<std::array<double, 2>> texture_points;
   std::vector<ObjFace> faces;
   std::vector<std::string> groups;  ///< Names made of `o` and `g`; may be empty.
   std::vector<std::string> warnings;
