@@ -95,10 +95,11 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
   const auto start = Clock::now();
   const PreparedRoom room(scene, solution, watch.preparing);
   if (room.room.surfaces().any_specular() || room.room.surfaces().any_cut_outs())
-    throw InputError(scene.source,
-                     "the room has mirrors, glass or cut-outs, and the matrix method is that of opaque Lambertian "
-                     "surfaces",
-                     "Solve it with --method shooting or walk.");
+    throw InputError(
+        scene.source,
+        "the room has mirrors, glass or cut-outs, and the matrix method is that of opaque Lambertian "
+        "surfaces",
+        "Solve it with --method shooting or walk.");
   if (room.is_dark()) return solution;
   tbb::task_arena arena(thread_count(solution.settings));
   arena.execute([&] {

@@ -51,8 +51,8 @@ Values values_at(const Surface& surface, const Face& face, std::uint32_t corner)
 }
 
 /// Whether a corner turns the way of the outline and no other corner lies in its triangle.
-bool is_ear(const Surface& surface, const Face& face, const Vec3& normal, const std::vector<std::uint32_t>& left,
-            const Corners& t) {
+bool is_ear(const Surface& surface, const Face& face, const Vec3& normal,
+            const std::vector<std::uint32_t>& left, const Corners& t) {
   if (!(twice_area(surface, face, t).dot(normal) > 0)) return false;
   return std::none_of(left.begin(), left.end(), [&](std::uint32_t other) {
     if (other == t[0] || other == t[1] || other == t[2]) return false;

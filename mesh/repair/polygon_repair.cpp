@@ -319,8 +319,8 @@ void PolygonRepair::add_split(const FacePiece& piece, const FaceLoops& polygon) 
 bool PolygonRepair::add_texture_split(const FacePiece& piece, const FaceLoops& polygon) {
   const Surface& surface = scene_.surfaces[piece.surface.index()];
   const Face& face = surface.faces[piece.face];
-  if (!scene_.is_textured(surface) || polygon.loops.size() > 1 || polygon.loops[0].size() != face.outer.size() ||
-      has_affine_texture(surface, face))
+  if (!scene_.is_textured(surface) || polygon.loops.size() > 1 ||
+      polygon.loops[0].size() != face.outer.size() || has_affine_texture(surface, face))
     return false;
   const std::vector<Corner>& corners = polygon.loops[0];
   for (const auto& t : texture_triangles(surface, face))

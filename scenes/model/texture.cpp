@@ -53,7 +53,8 @@ std::uint64_t hash_of(const TextureImage& image) {
   hash.add(static_cast<std::uint32_t>(image.height));
   if (!image.bytes.empty()) hash.add(std::bit_cast<std::uint32_t>(image.decoded[128]));
   for (std::size_t i = 0; i + 3 < image.bytes.size(); i += 4)
-    hash.add(static_cast<std::uint32_t>(image.bytes[i]) | static_cast<std::uint32_t>(image.bytes[i + 1]) << 8 |
+    hash.add(static_cast<std::uint32_t>(image.bytes[i]) |
+             static_cast<std::uint32_t>(image.bytes[i + 1]) << 8 |
              static_cast<std::uint32_t>(image.bytes[i + 2]) << 16 |
              static_cast<std::uint32_t>(image.bytes[i + 3]) << 24);
   for (const Texel& t : image.texels)

@@ -25,22 +25,22 @@ struct TextureLevel {
 /// An image as light meets it: linear values, with ever smaller copies down to one texel, its mean. Does not
 /// change once it is made (make_texture_image).
 struct TextureImage {
-  std::string source;         ///< Where it was read from, for messages and `info`.
-  int width = 0, height = 0;  ///< [texels]
-  int read_width = 0, read_height = 0;        ///< As in the file; larger where that is too much to keep.
-  std::vector<std::uint8_t> bytes;            ///< [4 * (y * width + x) + channel], or none:
-  std::vector<Texel> texels;                  ///< of images of floating point.
-  std::array<float, 256> decoded{};           ///< Linear value of a byte of red, green or blue.
-  std::vector<TextureLevel> levels;           ///< Each about half as wide and high as the one before.
-  Texel mean{}, largest{};                    ///< Over all texels.
+  std::string source;                   ///< Where it was read from, for messages and `info`.
+  int width = 0, height = 0;            ///< [texels]
+  int read_width = 0, read_height = 0;  ///< As in the file; larger where that is too much to keep.
+  std::vector<std::uint8_t> bytes;      ///< [4 * (y * width + x) + channel], or none:
+  std::vector<Texel> texels;            ///< of images of floating point.
+  std::array<float, 256> decoded{};     ///< Linear value of a byte of red, green or blue.
+  std::vector<TextureLevel> levels;     ///< Each about half as wide and high as the one before.
+  Texel mean{}, largest{};              ///< Over all texels.
   float smallest_opacity = 1;
-  bool is_grey = true;                        ///< Red, green and blue are equal everywhere.
-  bool has_opacity = false;                   ///< The file had such a channel.
-  std::uint64_t hash = 0;                     ///< Of its size and texels.
+  bool is_grey = true;       ///< Red, green and blue are equal everywhere.
+  bool has_opacity = false;  ///< The file had such a channel.
+  std::uint64_t hash = 0;    ///< Of its size and texels.
 
   Texel texel(int x, int y) const {
-    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                          static_cast<std::size_t>(x);
+    const std::size_t i =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     if (bytes.empty()) return texels[i];
     const std::uint8_t* b = &bytes[4 * i];
     return {decoded[b[0]], decoded[b[1]], decoded[b[2]], static_cast<float>(b[3]) / 255.0F};

@@ -32,8 +32,7 @@ void check_coordinates(const Scene& scene, const Surface& surface, std::size_t f
   constexpr double kFarthest = 1e5;
   for (const std::uint32_t index : face.texture_points) {
     if (index >= surface.texture_points.size())
-      fail(fmt::format("texture coordinate {} is out of range", index),
-           "Refer to one that the surface has.");
+      fail(fmt::format("texture coordinate {} is out of range", index), "Refer to one that the surface has.");
     for (const auto& uv : surface.texture_points[index].uv)
       for (const double x : uv)
         if (!(std::abs(x) <= kFarthest))
@@ -104,6 +103,13 @@ void check_textures(Scene& scene) {
     if (has_image && !surface.shapes.empty() && first.empty())
       first = fmt::format("{}: surface '{}'", file_of(scene, surface), surface.name);
     if (has_image) shapes += surface.shapes.size();
+    if (textures.is_cut_out() && !surface.shapes.empty()) {
+      scene.not_modelled["round_cut_outs"] += surface.shapes.size();
+      scene.warnings.push_back(fmt::format(
+          "{}: surface '{}': round shapes are opaque; give it \"segments\" to make a cut-out of it, or a "
+          "\"transmittance\"",
+          file_of(scene, surface), surface.name));
+    }
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
       if (!surface.faces[f].texture_points.empty()) {
         check_coordinates(scene, surface, f);

@@ -26,7 +26,8 @@ struct LuminaireCell {
 std::vector<LuminaireCell> luminaire_cells(const Room& room);
 
 /// The flat emitting parts of a room in pieces as large as they come: faces that are convex polygons and of
-/// which the mesh covers everything are one piece, others one for each base triangle. Without those whose emission differs from point to point.
+/// which the mesh covers everything are one piece, others one for each base triangle. Without those whose
+/// emission differs from point to point.
 std::vector<LuminaireFace> luminaire_faces(const Room& room);
 
 }  // namespace reemit

@@ -9,7 +9,8 @@
 
 namespace reemit {
 
-LuminaireTable::LuminaireTable(const Room& room) : rays_(&room.rays()), surfaces_(&room.surfaces()), bands_(room.band_count()) {
+LuminaireTable::LuminaireTable(const Room& room)
+    : rays_(&room.rays()), surfaces_(&room.surfaces()), bands_(room.band_count()) {
   add_surfaces(room);
   add_cells(room);
   add_lights(room.scene());
@@ -59,7 +60,8 @@ void LuminaireTable::add_cells(const Room& room) {
     std::vector<Vec3> corners;
     for (const Vec3& c : cell.corners) corners.push_back((c - rays_->centre()) / metres);
     const Vec3& front = room.mesh().triangle_normal(cell.triangle);
-    AreaLuminaire luminaire(corners, cell.front ? front : Vec3(-front), surfaces_->emission_exponent(surface));
+    AreaLuminaire luminaire(corners, cell.front ? front : Vec3(-front),
+                            surfaces_->emission_exponent(surface));
     area_of_surface_[surface.index()] += static_cast<float>(luminaire.area());
     surface_of_area_.push_back(surface);
     areas_.push_back(std::move(luminaire));

@@ -27,9 +27,7 @@ class LuminaireTable {
   /// [W/m2], or intensity per candela.
   const float* strength(std::size_t entry) const { return &strength_[entry * bands_]; }
   /// Whether the strength of an entry is but a mean over it, and radiance_at says more.
-  bool varies(std::size_t entry) const {
-    return entry >= first_cell_ && entry < first_cell_ + cells_.size();
-  }
+  bool varies(std::size_t entry) const { return entry >= first_cell_ && entry < first_cell_ + cells_.size(); }
   /// Radiance along the normal [W/(m2 sr)] where a sample of such an entry lies; of cut-outs, that times the
   /// share that is there.
   void radiance_at(std::size_t entry, const Vec3f& target, SurfaceModel::PointValues& radiance) const;
@@ -67,8 +65,8 @@ class LuminaireTable {
   std::vector<AreaLuminaire> areas_;
   std::vector<SurfaceId> surface_of_area_;
   std::vector<float> area_of_surface_;
-  std::size_t first_cell_ = 0;      // entry
-  std::vector<TriangleId> cells_;   // triangles of the entries from there on
+  std::size_t first_cell_ = 0;     // entry
+  std::vector<TriangleId> cells_;  // triangles of the entries from there on
   std::vector<PunctualEmitter> punctual_;
   std::vector<float> strength_;
   std::vector<float> brightness_;

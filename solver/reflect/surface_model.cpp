@@ -68,7 +68,8 @@ void SurfaceModel::add_zone_rows(const ZoneMesh& mesh) {
 
 Spectrum SurfaceModel::exitance(ZoneId z, SurfaceId s) const {
   if (zone_radiance_.empty() || !textures_->varies_emission(s)) return exitance(s);
-  const Spectrum radiance = Spectrum::Map(&zone_radiance_[z.index() * bands_], static_cast<Eigen::Index>(bands_));
+  const Spectrum radiance =
+      Spectrum::Map(&zone_radiance_[z.index() * bands_], static_cast<Eigen::Index>(bands_));
   return 2 * std::numbers::pi / (emission_exponent(s) + 2) * radiance;
 }
 

@@ -11,10 +11,10 @@ namespace {
 
 /// Zones of cut-outs are as large as what is there of them.
 void measure_cut_outs(const Scene& scene, ZoneMesh& mesh) {
-  const bool any = std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& s) {
-    return scene.material_of(s).textures.is_cut_out();
-  });
-  if (any) mesh.set_solid_shares(zone_texture_means(RoomTextures(scene, mesh), mesh, scene.bands.count()).solid);
+  const bool any = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                               [&](const Surface& s) { return scene.material_of(s).textures.is_cut_out(); });
+  if (any)
+    mesh.set_solid_shares(zone_texture_means(RoomTextures(scene, mesh), mesh, scene.bands.count()).solid);
 }
 
 /// What zones hold of textures, for all that is printed and exported without the room.

@@ -278,7 +278,8 @@ void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std:
           settle();
           surface = s;
         }
-        const double* rho = transport.surface_model().reflectance(ZoneId(z), surface, mesh.zone_is_front(ZoneId(z)));
+        const double* rho =
+            transport.surface_model().reflectance(ZoneId(z), surface, mesh.zone_is_front(ZoneId(z)));
         for (std::size_t b = 0; b < bands; ++b) {
           const std::size_t i = z * bands + b;
           std::int64_t in = 0;

@@ -59,8 +59,7 @@ void check_consistent(const Solution& solution) {
   const std::size_t means_of_textures =
       solution.zone_reflectances.empty() ? 0 : solution.mesh.zone_count() * bands;
   for (const std::vector<double>* means : {&solution.zone_reflectances, &solution.zone_exitances})
-    require(means->size() == means_of_textures,
-            "one mean of textures per zone and band expected");
+    require(means->size() == means_of_textures, "one mean of textures per zone and band expected");
   const ZoneSums& sums = solution.sums;
   for (const std::vector<double>* values : sums.columns())
     require(values->size() == solution.mesh.zone_count() * bands, "one sum per zone and band expected");

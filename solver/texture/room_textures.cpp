@@ -99,7 +99,8 @@ void RoomTextures::add_triangle(const Scene& scene, const ZoneMesh& mesh, Triang
   const Surface& surface = scene.surfaces[triangle.surface.index()];
   const OfMaterial& material = materials_[triangle.surface.index()];
   slot_[t.index()] = static_cast<std::uint32_t>(triangles_.size());
-  if (material.is_cut_out && !triangle.is_curved()) cut_outs_.push_back(static_cast<std::uint32_t>(t.index()));
+  if (material.is_cut_out && !triangle.is_curved())
+    cut_outs_.push_back(static_cast<std::uint32_t>(t.index()));
   OfTriangle& of = triangles_.emplace_back();
   of.surface = static_cast<std::uint32_t>(triangle.surface.index());
   std::optional<MappedPart> part;
@@ -116,19 +117,22 @@ void RoomTextures::add_triangle(const Scene& scene, const ZoneMesh& mesh, Triang
       Eigen::Vector3d at(0, 0, 1);
       for (std::size_t i = 0; i < 3; ++i)
         for (int c = 0; c < 2; ++c)
-          at[c] += share[static_cast<Eigen::Index>(i)] * part->point[i]->uv[texture->set][static_cast<std::size_t>(c)];
+          at[c] += share[static_cast<Eigen::Index>(i)] *
+                   part->point[i]->uv[texture->set][static_cast<std::size_t>(c)];
       uv[k] = texture->to_image * at;
     }
     const Eigen::Vector2d lowest = uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]);
     const Eigen::Vector2d shift(shift_of(lowest.x(), texture->wrap_u), shift_of(lowest.y(), texture->wrap_v));
     for (std::size_t k = 0; k < 3; ++k)
-      placement.uv[k] = {static_cast<float>(uv[k].x() - shift.x()), static_cast<float>(uv[k].y() - shift.y())};
+      placement.uv[k] = {static_cast<float>(uv[k].x() - shift.x()),
+                         static_cast<float>(uv[k].y() - shift.y())};
     const Eigen::Vector2d d1 = uv[1] - uv[0];
     const Eigen::Vector2d d2 = uv[2] - uv[0];
-    const double texels = std::abs(d1.x() * d2.y() - d1.y() * d2.x()) * texture->image->width * texture->image->height;
+    const double texels =
+        std::abs(d1.x() * d2.y() - d1.y() * d2.x()) * texture->image->width * texture->image->height;
     // An image drawn out along a line has no texels to count, and is taken as it is.
-    placement.texels_per_m = static_cast<float>(
-        std::max(std::sqrt(texels / std::max(2 * mesh.triangle_area(t), 1e-300)), 1e-20));
+    placement.texels_per_m =
+        static_cast<float>(std::max(std::sqrt(texels / std::max(2 * mesh.triangle_area(t), 1e-300)), 1e-20));
   };
   place(material.reflectance, of.reflectance);
   place(material.emission, of.emission);

@@ -70,10 +70,10 @@ class RoomTextures {
   static Texel value(const Texture& texture, const Placement& placement, float u, float v, float size);
 
   std::size_t bands_ = 0;
-  std::vector<std::uint32_t> slot_;     // by triangle
-  std::vector<OfTriangle> triangles_;   // textured ones
-  std::vector<Colours> colours_;        // as triangles_, of their corners; empty if no vertex has any
-  std::vector<OfMaterial> materials_;   // by surface
+  std::vector<std::uint32_t> slot_;    // by triangle
+  std::vector<OfTriangle> triangles_;  // textured ones
+  std::vector<Colours> colours_;       // as triangles_, of their corners; empty if no vertex has any
+  std::vector<OfMaterial> materials_;  // by surface
   std::vector<std::uint32_t> cut_outs_;
 };
 

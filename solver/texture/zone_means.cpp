@@ -23,17 +23,18 @@ struct CellMeans {
 
 CellMeans means_of(const RoomTextures& textures, const ZoneMesh& mesh, const SideCell& cell,
                    std::size_t all_bands) {
-  const std::size_t bands = std::min(all_bands, RoomTextures::kMostBands);  // more only without images in colour
+  const std::size_t bands =
+      std::min(all_bands, RoomTextures::kMostBands);  // more only without images in colour
   const SurfaceId surface = mesh.triangle(cell.triangle).surface;
   const bool varies = textures.varies_reflectance(surface) && (cell.front || textures.varies_back(surface));
   const bool glows = textures.varies_emission(surface);
-  const bool is_cut_out = textures.is_cut_out(surface);
+  const bool is_cut_out = textures.is_cut_out(surface) && !mesh.triangle(cell.triangle).is_curved();
   CellMeans means;
-  const double size = std::sqrt(mesh.triangle_area(cell.triangle)) / cell.divisions;  // about, along an edge
-  const double wanted = std::ceil(2 * std::sqrt(2.0) * size / textures.texel_size(cell.triangle));
-  const int n = static_cast<int>(std::clamp<double>(wanted, 4, kMostMeanDivisions));
-  // Over how much each point stands, where there are too few of them.
-  const double spot = wanted > kMostMeanDivisions ? std::sqrt(2.0) * size / n : 0;
+  const double edge = std::sqrt(2 * mesh.triangle_area(cell.triangle)) / cell.divisions;  // about
+  const double texel = textures.texel_size(cell.triangle);
+  const int n = static_cast<int>(std::clamp<double>(std::ceil(8 * edge / texel), 4, kMostMeanDivisions));
+  // What each point stands for, where there are too few of them.
+  const double spot = edge / n > 0.5 * texel ? edge / n : 0;
   CellMeans sum;
   sum.solid = 0;
   RoomTextures::Values values;

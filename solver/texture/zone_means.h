@@ -16,8 +16,9 @@ struct ZoneTextureMeans {
 /// A cell is cut into no more than this squared parts to take its mean.
 inline constexpr int kMostMeanDivisions = 32;
 
-/// By the midpoint rule over the parts of each cell, no larger than half a texel where kMostMeanDivisions are
-/// enough for that, else over copies of the images with larger texels.
+/// By the midpoint rule over the parts of each cell, which are an eighth of a texel across where
+/// kMostMeanDivisions are enough for that; where they are larger than half a texel, over copies of the images
+/// with larger texels.
 ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh& mesh, std::size_t bands);
 
 }  // namespace reemit

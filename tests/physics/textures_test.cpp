@@ -34,16 +34,18 @@ class TexturedRooms : public testing::Test {
   TexturedRooms() {
     std::vector<std::array<int, 3>> checks;
     for (int j = kChecks - 1; j >= 0; --j)  // rows from the top
-      for (int i = 0; i < kChecks; ++i) checks.push_back(is_white(i, j) ? Pixel{255, 255, 255} : Pixel{0, 0, 0});
+      for (int i = 0; i < kChecks; ++i)
+        checks.push_back(is_white(i, j) ? Pixel{255, 255, 255} : Pixel{0, 0, 0});
     test::write_pixmap(folder_ / "checks.ppm", kChecks, kChecks, checks);
   }
   using Pixel = std::array<int, 3>;
 
   Scene room(const std::string& materials, const std::string& objects) const {
     return read_scene(folder_.write(
-        "room.json", R"({"format": "reemit-room", "version": 1, "bands": "grey", "materials": {"wall": {"reflectance": 0.5},
+        "room.json",
+        R"({"format": "reemit-room", "version": 1, "bands": "grey", "materials": {"wall": {"reflectance": 0.5},
         "black": {"reflectance": 0}, "lamp": {"reflectance": 0, "radiance": 10}, )" +
-                         materials + R"(}, "objects": [)" + objects + "]}"));
+            materials + R"(}, "objects": [)" + objects + "]}"));
   }
 
   /// A quad of n x n checks as faces, `white` and `black` ones of these materials; "" leaves them out.
@@ -59,7 +61,8 @@ class TexturedRooms : public testing::Test {
     return objects;
   }
 
-  static Solution solve(const Scene& scene, SolveMethod method, std::uint64_t seed, std::uint64_t packets = 8192) {
+  static Solution solve(const Scene& scene, SolveMethod method, std::uint64_t seed,
+                        std::uint64_t packets = 8192) {
     SolverSettings settings;
     settings.method = method;
     settings.packets = packets;
@@ -75,7 +78,8 @@ class TexturedRooms : public testing::Test {
 
   /// Watts absorbed by the surfaces whose names start so, over independent runs, of which each must lose
   /// nothing.
-  static MeanTest absorbed_by(const Scene& scene, const std::string& name, SolveMethod method, std::uint64_t first) {
+  static MeanTest absorbed_by(const Scene& scene, const std::string& name, SolveMethod method,
+                              std::uint64_t first) {
     MeanTest watts;
     for (std::uint64_t seed = first; seed < first + 40; ++seed) {
       const Solution s = solve(scene, method, seed);
@@ -98,8 +102,9 @@ const std::string kHull =
        {"name": "lamp", "material": "lamp", "quad": {"corner": [0.5, 0.5, 2.9], "u": [0, 1, 0], "v": [1, 0, 0]}})";
 
 TEST_F(TexturedRooms, CheckeredFloorIsThatOfChecksAsFaces) {
-  const Scene textured = room(R"("floor": {"reflectance": 0.9, "texture": {"file": "checks.ppm", "filter": "nearest"}})",
-                              kHull + R"(, {"name": "check", "material": "floor",
+  const Scene textured =
+      room(R"("floor": {"reflectance": 0.9, "texture": {"file": "checks.ppm", "filter": "nearest"}})",
+           kHull + R"(, {"name": "check", "material": "floor",
                                          "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})");
   const Scene faces = room(R"("white": {"reflectance": 0.9})", kHull + checks_as_faces("white", "black"));
   for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
@@ -107,19 +112,22 @@ TEST_F(TexturedRooms, CheckeredFloorIsThatOfChecksAsFaces) {
     const MeanTest b = absorbed_by(faces, "check", method, 101);
     EXPECT_TRUE(test::agree(a, b));
     EXPECT_TRUE(a.would_notice(0.04, a.mean()));
-    EXPECT_TRUE(test::agree(absorbed_by(textured, "hull", method, 201), absorbed_by(faces, "hull", method, 301)));
+    EXPECT_TRUE(
+        test::agree(absorbed_by(textured, "hull", method, 201), absorbed_by(faces, "hull", method, 301)));
   }
 }
 
 TEST_F(TexturedRooms, ZonesHoldTheMeanOfTheImage) {
-  const Scene scene = room(R"("floor": {"reflectance": 0.9, "texture": {"file": "checks.ppm", "scale": 3.7}})",
-                           kHull + R"(, {"name": "check", "material": "floor",
+  const Scene scene =
+      room(R"("floor": {"reflectance": 0.9, "texture": {"file": "checks.ppm", "scale": 3.7}})",
+           kHull + R"(, {"name": "check", "material": "floor",
                                       "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})");
   const Solution s = solve(scene, SolveMethod::kShooting, 1, 1024);
   double sum = 0;
   double area = 0;
   for (std::size_t i = 0; i < s.mesh.zone_count(); ++i) {
-    if (s.surface_names[s.mesh.zone_surface(ZoneId(i)).index()] != "check" || !s.mesh.zone_is_front(ZoneId(i)))
+    if (s.surface_names[s.mesh.zone_surface(ZoneId(i)).index()] != "check" ||
+        !s.mesh.zone_is_front(ZoneId(i)))
       continue;
     sum += s.mesh.zone_area(ZoneId(i)) * s.zone_reflectance(ZoneId(i), 0);
     area += s.mesh.zone_area(ZoneId(i));
@@ -130,12 +138,15 @@ TEST_F(TexturedRooms, ZonesHoldTheMeanOfTheImage) {
     const double x = u * kChecks - 0.5;
     const double y = v * kChecks - 0.5;
     const auto at = [](double i, double j) {
-      const auto k = [](double n) { return static_cast<int>(std::floor(n) - kChecks * std::floor(n / kChecks)); };
+      const auto k = [](double n) {
+        return static_cast<int>(std::floor(n) - kChecks * std::floor(n / kChecks));
+      };
       return is_white(k(i), kChecks - 1 - k(j)) ? 1.0 : 0.0;
     };
     const double a = x - std::floor(x);
     const double b = y - std::floor(y);
-    return (1 - b) * ((1 - a) * at(x, y) + a * at(x + 1, y)) + b * ((1 - a) * at(x, y + 1) + a * at(x + 1, y + 1));
+    return (1 - b) * ((1 - a) * at(x, y) + a * at(x + 1, y)) +
+           b * ((1 - a) * at(x, y + 1) + a * at(x + 1, y + 1));
   };
   double truth = 0;
   constexpr int kGrid = 1000;
@@ -146,14 +157,15 @@ TEST_F(TexturedRooms, ZonesHoldTheMeanOfTheImage) {
 }
 
 /// An emissive image of 5 x 3 texels without symmetry.
-const std::vector<std::array<int, 3>> kGlow{{10, 10, 10},    {200, 200, 200}, {30, 30, 30},    {255, 255, 255},
-                                            {60, 60, 60},    {90, 90, 90},    {0, 0, 0},       {120, 120, 120},
-                                            {20, 20, 20},    {250, 250, 250}, {5, 5, 5},       {180, 180, 180},
-                                            {70, 70, 70},    {140, 140, 140}, {33, 33, 33}};
+const std::vector<std::array<int, 3>> kGlow{{10, 10, 10}, {200, 200, 200}, {30, 30, 30}, {255, 255, 255},
+                                            {60, 60, 60}, {90, 90, 90},    {0, 0, 0},    {120, 120, 120},
+                                            {20, 20, 20}, {250, 250, 250}, {5, 5, 5},    {180, 180, 180},
+                                            {70, 70, 70}, {140, 140, 140}, {33, 33, 33}};
 
 Scene glowing(const test::TempFolder& folder) {
   test::write_pixmap(folder / "glow.ppm", 5, 3, kGlow);
-  return read_scene(folder.write("glow.json", R"({"format": "reemit-room", "version": 1, "bands": "grey", "materials": {
+  return read_scene(
+      folder.write("glow.json", R"({"format": "reemit-room", "version": 1, "bands": "grey", "materials": {
     "screen": {"reflectance": 0, "radiance": 7, "emission_texture": {"file": "glow.ppm", "encoding": "linear", "wrap": "clamp"}},
     "black": {"reflectance": 0}}, "objects": [
     {"name": "screen", "material": "screen", "quad": {"corner": [0, 0, 0], "u": [2, 0, 0], "v": [0, 1, 0]}},
@@ -182,7 +194,8 @@ TEST_F(TexturedRooms, DirectLightOfAnEmissiveTextureIsItsIntegral) {
   Barycentric at{};
   for (std::uint32_t t = 0; t < meshed.mesh.triangle_count(); ++t) {
     const Barycentric b = meshed.mesh.barycentric_of(TriangleId(t), x);
-    if (std::abs(meshed.mesh.corner(TriangleId(t), 0).z() - 3) > 1e-9 || b.u < 0 || b.v < 0 || b.u + b.v > 1) continue;
+    if (std::abs(meshed.mesh.corner(TriangleId(t), 0).z() - 3) > 1e-9 || b.u < 0 || b.v < 0 || b.u + b.v > 1)
+      continue;
     if (std::abs(meshed.mesh.triangle_normal(TriangleId(t)).z()) < 0.5) continue;
     ceiling = t;
     at = b;
@@ -256,13 +269,15 @@ TEST_F(TexturedRooms, OpacityOfAHalfIsAClearSheetOfAHalf) {
     const MeanTest a = absorbed_by(thin, "far", method, 1);
     EXPECT_TRUE(test::agree(a, absorbed_by(clear, "far", method, 101)));
     EXPECT_TRUE(a.would_notice(0.05, a.mean()));
-    EXPECT_TRUE(test::agree(absorbed_by(thin, "sheet", method, 201), absorbed_by(clear, "sheet", method, 301)));
+    EXPECT_TRUE(
+        test::agree(absorbed_by(thin, "sheet", method, 201), absorbed_by(clear, "sheet", method, 301)));
   }
 }
 
 /// What an eye at `eye` sees of a screen of checks that glow; in a black room, so that there is no noise.
 StillImage look_at_checks(const test::TempFolder& folder, const std::string& objects, const Vec3& eye,
-                          const Vec3& look_at, double fov, int size, int spp, const std::string& scale = "1") {
+                          const Vec3& look_at, double fov, int size, int spp,
+                          const std::string& scale = "1") {
   const Scene scene = read_scene(folder.write(
       "seen.json", R"({"format": "reemit-room", "version": 1, "bands": "grey", "materials": {
       "screen": {"reflectance": 0, "radiance": 1, "emission_texture": {"file": "checks.ppm", "filter": "nearest", "scale": )" +
@@ -287,7 +302,8 @@ StillImage look_at_checks(const test::TempFolder& folder, const std::string& obj
   return render_still(walls, solution, camera, still, {}, interrupt);
 }
 
-const char* kScreen = R"({"name": "s", "material": "screen", "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})";
+const char* kScreen =
+    R"({"name": "s", "material": "screen", "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})";
 
 TEST_F(TexturedRooms, StillsShowTheImageWhateverTheZones) {
   // 2 atan(2/4): the screen fills the picture, 4 pixels a check.
@@ -311,14 +327,16 @@ TEST_F(TexturedRooms, StillsShowTheImageInAMirror) {
     for (int i = 0; i < kChecks; ++i) {
       const std::size_t pixel = static_cast<std::size_t>((4 * j + 1) * 16 + 4 * i + 1);
       // Seen from behind, so right is -x.
-      if (std::abs(image.radiance[pixel] - (is_white(kChecks - 1 - i, kChecks - 1 - j) ? 1 : 0)) > 1e-5) ++wrong;
+      if (std::abs(image.radiance[pixel] - (is_white(kChecks - 1 - i, kChecks - 1 - j) ? 1 : 0)) > 1e-5)
+        ++wrong;
     }
   EXPECT_EQ(wrong, 0);
 }
 
 TEST_F(TexturedRooms, FineImagesAreAveragedOverPixels) {
   // 64 checks a pixel and 16 rays: each would see black or white.
-  const StillImage image = look_at_checks(folder_, kScreen, {2, 2, 4}, {2, 2, 0}, 2 * 26.565051177, 8, 16, "16");
+  const StillImage image =
+      look_at_checks(folder_, kScreen, {2, 2, 4}, {2, 2, 0}, 2 * 26.565051177, 8, 16, "16");
   double squares = 0;
   for (const float value : image.radiance) {
     EXPECT_NEAR(value, 0.5F, 0.12F);

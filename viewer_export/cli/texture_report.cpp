@@ -49,7 +49,8 @@ std::string textures_text(const Scene& scene) {
     texels += 1.0 * image->width * image->height;
   }
   return fmt::format(
-      "{} image(s), {:.3g} million texels, {:.3g} MB; surfaces with textures of reflectance {}, of emission {}, "
+      "{} image(s), {:.3g} million texels, {:.3g} MB; surfaces with textures of reflectance {}, of emission "
+      "{}, "
       "cut-outs {}, with vertex colours {}",
       images.size(), texels * 1e-6, static_cast<double>(bytes) * 1e-6, uses.reflectance, uses.emission,
       uses.cut_outs, uses.coloured);

@@ -80,8 +80,8 @@ std::optional<ZoneBias> VertexGatherer::zone_bias(const VertexData& data, double
     area += rings_.area(v);
     area_up_to.push_back(area);
     for (std::size_t b = 0; b < bands_; ++b)
-      power[b] += rings_.area(v) *
-                  (static_cast<double>(data.radiance[v * bands_ + b]) - static_cast<double>(emitted(v, at_vertex)[b]));
+      power[b] += rings_.area(v) * (static_cast<double>(data.radiance[v * bands_ + b]) -
+                                    static_cast<double>(emitted(v, at_vertex)[b]));
   }
   if (!(area > 0)) return std::nullopt;
   std::vector<SurfacePoint> points;

@@ -98,8 +98,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       }
       const std::size_t k = v * bands + b;
       data.irradiance[k] = static_cast<float>(all);
-      data.radiance[k] =
-          own + static_cast<float>(brdf * all + through.all * std::numbers::inv_pi);
+      data.radiance[k] = own + static_cast<float>(brdf * all + through.all * std::numbers::inv_pi);
       data.radiance_stderr[k] = static_cast<float>(error);
       data.direct_radiance[k] = static_cast<float>(brdf * direct + through.direct * std::numbers::inv_pi);
       if (!data.caustic_radiance.empty())

@@ -34,8 +34,8 @@ std::vector<BandSums> band_sums(const VertexGatherer& gatherer, const VertexRing
   for (std::size_t v = first; v < last; ++v)
     for (std::size_t b = 0; b < bands; ++b) {
       const double s = data.radiance_stderr[v * bands + b];
-      const double l =
-          static_cast<double>(data.radiance[v * bands + b]) - static_cast<double>(gatherer.emitted(v, at_vertex)[b]);
+      const double l = static_cast<double>(data.radiance[v * bands + b]) -
+                       static_cast<double>(gatherer.emitted(v, at_vertex)[b]);
       sums[b].errors += rings.area(v) * s * s;
       sums[b].values += rings.area(v) * l * l;
     }

@@ -38,7 +38,9 @@ class ImageReading {
     const OIIO::ImageSpec& spec = input.spec();
     image_.read_width = spec.width;
     image_.read_height = spec.height;
-    const auto texels = [&] { return std::ceil(1.0 * spec.width / step_) * std::ceil(1.0 * spec.height / step_); };
+    const auto texels = [&] {
+      return std::ceil(1.0 * spec.width / step_) * std::ceil(1.0 * spec.height / step_);
+    };
     while (texels() > most_texels) ++step_;
     image_.width = (spec.width + step_ - 1) / step_;
     image_.height = (spec.height + step_ - 1) / step_;
@@ -49,7 +51,8 @@ class ImageReading {
 
   /// False if the file ends early or is damaged.
   bool read() {
-    return is_float_ ? read_rows<float>(OIIO::TypeDesc::FLOAT) : read_rows<std::uint8_t>(OIIO::TypeDesc::UINT8);
+    return is_float_ ? read_rows<float>(OIIO::TypeDesc::FLOAT)
+                     : read_rows<std::uint8_t>(OIIO::TypeDesc::UINT8);
   }
   TextureImage take() { return std::move(image_); }
 
@@ -60,8 +63,8 @@ class ImageReading {
     std::vector<T> row(static_cast<std::size_t>(spec.width) * channels_);
     std::vector<Texel> sums(static_cast<std::size_t>(image_.width));
     for (int y = 0; y < spec.height; ++y) {
-      if (!input_.read_scanlines(0, 0, spec.y + y, spec.y + y + 1, spec.z, 0, static_cast<int>(channels_), type,
-                                 row.data()))
+      if (!input_.read_scanlines(0, 0, spec.y + y, spec.y + y + 1, spec.z, 0, static_cast<int>(channels_),
+                                 type, row.data()))
         return false;
       if (step_ == 1) {
         for (std::size_t i = 0; i < row.size(); i += channels_) keep(&row[i]);
@@ -85,7 +88,8 @@ class ImageReading {
   }
   Texel linear(const std::uint8_t* v) const {
     const auto b = spread<std::uint8_t>(v, 255);
-    return {image_.decoded[b[0]], image_.decoded[b[1]], image_.decoded[b[2]], static_cast<float>(b[3]) / 255.0F};
+    return {image_.decoded[b[0]], image_.decoded[b[1]], image_.decoded[b[2]],
+            static_cast<float>(b[3]) / 255.0F};
   }
   Texel linear(const float* v) const {
     Texel t = spread<float>(v, 1);
@@ -143,8 +147,7 @@ TextureRead read_image(std::unique_ptr<OIIO::ImageInput> input, const std::strin
       1.0 * spec.width * spec.height > kMostRead)
     return failed(fmt::format("{} has {} x {} texels, which is too much", source, spec.width, spec.height));
   ImageReading reading(*input, encoding, most_texels);
-  if (!reading.read())
-    return failed(fmt::format("{} is damaged or cut off: {}", source, input->geterror()));
+  if (!reading.read()) return failed(fmt::format("{} is damaged or cut off: {}", source, input->geterror()));
   TextureImage image = reading.take();
   image.source = source;
   finish_texture_image(image);

@@ -134,11 +134,12 @@ class MaterialReader {
     GltfTextureRead read = textures_.read(use, encoding, where_ + "/" + pointer);
     if (!read.problem.empty()) {
       ++scene_.refused["textures"];
-      scene_.warnings.push_back(fmt::format("material \"{}\": its {} texture counts as white: {}", name, what,
-                                            read.problem));
+      scene_.warnings.push_back(
+          fmt::format("material \"{}\": its {} texture counts as white: {}", name, what, read.problem));
       return {};
     }
-    if (const std::string note = reduction_note(*read.texture.image); !note.empty() && reduced_.insert(note).second)
+    if (const std::string note = reduction_note(*read.texture.image);
+        !note.empty() && reduced_.insert(note).second)
       scene_.notes.push_back(note);
     return std::move(read.texture);
   }
@@ -196,11 +197,11 @@ class MaterialReader {
     material.non_diffuse.roughness = roughness * roughness;  // alpha, by the definition of the format
     double transmitted = number(source, "KHR_materials_transmission", "transmissionFactor", 0, 1);
     if (transmitted > 0)
-      transmitted *= mean(texture_info(extension(source, "KHR_materials_transmission"),
-                                       "KHR_materials_transmission", "transmissionTexture"),
-                          TextureEncoding::kLinear,
-                          in_extension("KHR_materials_transmission", "transmissionTexture"), "transmission",
-                          material.name)[0];
+      transmitted *=
+          mean(texture_info(extension(source, "KHR_materials_transmission"), "KHR_materials_transmission",
+                            "transmissionTexture"),
+               TextureEncoding::kLinear, in_extension("KHR_materials_transmission", "transmissionTexture"),
+               "transmission", material.name)[0];
     const double through = number(source, kDiffuseTransmission, "diffuseTransmissionFactor", 0, 1);
     const double diffuse = (1 - metallic) * (1 - transmitted);
     material.reflectance = factor * (diffuse * (1 - through));
@@ -281,8 +282,9 @@ class MaterialReader {
   void read_specular_glossiness(const tinygltf::Material& source, Material& material) {
     const tinygltf::Value& object = extension(source, kSpecularGlossiness);
     const Rgb diffuse = triple(source, kSpecularGlossiness, "diffuseFactor");
-    Texture colour = texture(texture_info(object, kSpecularGlossiness, "diffuseTexture"), TextureEncoding::kSrgb,
-                             in_extension(kSpecularGlossiness, "diffuseTexture"), "diffuse", material.name);
+    Texture colour =
+        texture(texture_info(object, kSpecularGlossiness, "diffuseTexture"), TextureEncoding::kSrgb,
+                in_extension(kSpecularGlossiness, "diffuseTexture"), "diffuse", material.name);
     // Less what is reflected before it comes to the diffuse part, by the definition of the extension.
     const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor");
     material.reflectance = diffuse * (1 - specular.maxCoeff());
@@ -300,11 +302,12 @@ class MaterialReader {
   }
 
   /// Alpha modes MASK and BLEND; `factor`: of the base colour, with its opacity.
-  void read_opacity(const tinygltf::Material& source, const std::vector<double>& factor, const Texture& colour,
-                    Material& material) const {
+  void read_opacity(const tinygltf::Material& source, const std::vector<double>& factor,
+                    const Texture& colour, Material& material) const {
     if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
     MaterialTextures& textures = material.textures;
-    textures.opacity_factor = factor.size() > 3 ? checked(factor[3], 1, "pbrMetallicRoughness/baseColorFactor") : 1;
+    textures.opacity_factor =
+        factor.size() > 3 ? checked(factor[3], 1, "pbrMetallicRoughness/baseColorFactor") : 1;
     if (colour && colour.image->has_opacity && colour.image->smallest_opacity < 1) textures.opacity = colour;
     if (source.alphaMode == "BLEND") return;
     const double cutoff = checked(source.alphaCutoff, 1e6, "alphaCutoff");
@@ -322,8 +325,8 @@ class MaterialReader {
     const double strength = number(source, kStrength, "emissiveStrength", 1, kMostStrength);
     const Rgb factor = rgb(source.emissiveFactor, kMostStrength, "emissiveFactor") * strength;
     if (!(factor > 0).any()) return;
-    Texture image = texture(source.emissiveTexture, TextureEncoding::kSrgb, "emissiveTexture", "emissive",
-                            material.name);
+    Texture image =
+        texture(source.emissiveTexture, TextureEncoding::kSrgb, "emissiveTexture", "emissive", material.name);
     const Rgb strongest = factor * units_.radiance();
     material.emitted_radiance = strongest * mean_of(image);
     if (image) {

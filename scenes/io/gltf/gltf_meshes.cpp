@@ -48,7 +48,8 @@ void read_texture_points(const GltfModel& gltf, const GltfAccessors& accessors,
                          GltfPrimitive& primitive) {
   const auto points = [&](std::size_t count, const std::string& pointer) -> std::vector<TexturePoint>& {
     if (count != primitive.positions.size())
-      throw InputError(gltf.at(pointer), fmt::format("{} values for {} positions", count, primitive.positions.size()),
+      throw InputError(gltf.at(pointer),
+                       fmt::format("{} values for {} positions", count, primitive.positions.size()),
                        "Export the file anew.");
     primitive.texture_points.resize(count);
     return primitive.texture_points;

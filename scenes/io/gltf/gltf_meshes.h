@@ -10,7 +10,7 @@ namespace reemit {
 /// A primitive of a glTF mesh as triangles in the coordinates of the mesh.
 struct GltfPrimitive {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  ///< One per position, or none.
+  std::vector<Vec3> normals;                 ///< One per position, or none.
   std::vector<TexturePoint> texture_points;  ///< Likewise.
   bool has_colours = false;                  ///< They have colours of their own.
   std::vector<Face> faces;

@@ -138,13 +138,33 @@ Spectrum radiance_of_exitance(const Spectrum& exitance, const Material& material
 
 }  // namespace
 
-NativeMaterials::NativeMaterials(const JsonCursor& materials, const std::filesystem::path& folder, Scene& scene) {
+NativeMaterials::NativeMaterials(const JsonCursor& materials, const std::filesystem::path& folder,
+                                 Scene& scene) {
   NativeTextures textures(folder, scene);
   for (const auto& [name, at] : materials.members()) {
-    at.expect_object({"reflectance", "back_reflectance", "radiance", "exitance", "luminance_cd_m2",
-                      "exitance_lm_m2", "total_power", "total_flux_lm", "emission_color", "emission_exponent",
-                      "sides", "emission_sides", "mirror", "metal", "transmittance", "diffuse_transmittance",
-                      "glass", "roughness", "lobe", "texture", "emission_texture", "opacity", "opacity_texture",
+    at.expect_object({"reflectance",
+                      "back_reflectance",
+                      "radiance",
+                      "exitance",
+                      "luminance_cd_m2",
+                      "exitance_lm_m2",
+                      "total_power",
+                      "total_flux_lm",
+                      "emission_color",
+                      "emission_exponent",
+                      "sides",
+                      "emission_sides",
+                      "mirror",
+                      "metal",
+                      "transmittance",
+                      "diffuse_transmittance",
+                      "glass",
+                      "roughness",
+                      "lobe",
+                      "texture",
+                      "emission_texture",
+                      "opacity",
+                      "opacity_texture",
                       "opacity_cutoff"});
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;

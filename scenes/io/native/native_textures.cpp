@@ -27,7 +27,8 @@ Texture NativeTextures::read_texture(const JsonCursor& at, TextureEncoding encod
   if (scene_.bands.kind() == BandKind::kSpectral)
     at.fail("a texture in a room of spectral bands", "Give the room the bands \"rgb\" or \"grey\".");
   if (const auto given = at.find("encoding"))
-    encoding = given->choice({"srgb", "linear"}) == "srgb" ? TextureEncoding::kSrgb : TextureEncoding::kLinear;
+    encoding =
+        given->choice({"srgb", "linear"}) == "srgb" ? TextureEncoding::kSrgb : TextureEncoding::kLinear;
   const JsonCursor file = at.at("file");
   TextureRead read = images_.from_file(folder_ / file.string(), encoding);
   if (!read.problem.empty()) file.fail(read.problem, "Names are relative to the folder of the room file.");
@@ -78,9 +79,10 @@ void NativeTextures::read(const JsonCursor& at, Material& material) {
   }
   if (const auto emission = at.find("emission_texture")) {
     if (!material.emits())
-      emission->fail("a texture of nothing: the material does not emit, or by \"total_power\" or "
-                     "\"total_flux_lm\", which are no radiance",
-                     "Give \"radiance\", \"exitance\", \"luminance_cd_m2\" or \"exitance_lm_m2\".");
+      emission->fail(
+          "a texture of nothing: the material does not emit, or by \"total_power\" or "
+          "\"total_flux_lm\", which are no radiance",
+          "Give \"radiance\", \"exitance\", \"luminance_cd_m2\" or \"exitance_lm_m2\".");
     textures.emission = read_texture(*emission, TextureEncoding::kSrgb);
     textures.emission_factor = material.emitted_radiance;
     material.emitted_radiance *= mean_of(textures.emission);

@@ -152,8 +152,7 @@ class ObjChecker {
   }
 
   void warn_of(std::string_view keyword) {
-    static constexpr std::array kHarmless = {"s",   "usemap", "maplib",   "lod",
-                                             "bevel", "c_interp", "d_interp"};
+    static constexpr std::array kHarmless = {"s", "usemap", "maplib", "lod", "bevel", "c_interp", "d_interp"};
     if (std::find(kHarmless.begin(), kHarmless.end(), keyword) != kHarmless.end()) return;
     ++geometry_.ignored_statements;
     if (warned_.size() >= kMostWarnings || !warned_.emplace(keyword).second) return;
@@ -186,6 +185,12 @@ std::uint32_t absolute(int index, std::size_t count, const Loading& loading, con
   return static_cast<std::uint32_t>(value);
 }
 
+// What refers to none leaves the face without: it still has a shape, and a textured one is warned of.
+std::uint32_t texture_point(int index, std::size_t count) {
+  const std::int64_t value = index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
+  return value < 0 ? 0xffffffffU : static_cast<std::uint32_t>(value);
+}
+
 void add_face(void* user, tinyobj::index_t* corners, int count) {
   auto& loading = *static_cast<Loading*>(user);
   ObjGeometry& geometry = loading.geometry;
@@ -193,8 +198,7 @@ void add_face(void* user, tinyobj::index_t* corners, int count) {
   for (int i = 0; i < count; ++i) {
     face.positions.push_back(absolute(corners[i].vertex_index, geometry.positions.size(), loading, face));
     if (corners[i].texcoord_index != 0)
-      face.texture_points.push_back(
-          absolute(corners[i].texcoord_index, geometry.texture_points.size(), loading, face));
+      face.texture_points.push_back(texture_point(corners[i].texcoord_index, geometry.texture_points.size()));
     if (corners[i].normal_index != 0)
       face.normals.push_back(absolute(corners[i].normal_index, geometry.normals.size(), loading, face));
   }
@@ -212,7 +216,10 @@ void check_ranges(ObjGeometry& geometry, const std::string& file) {
   for (ObjFace& face : geometry.faces) {
     check(face.positions, geometry.positions.size(), face);
     check(face.normals, geometry.normals.size(), face);
-    check(face.texture_points, geometry.texture_points.size(), face);
+    const bool has_missing =
+        std::any_of(face.texture_points.begin(), face.texture_points.end(),
+                    [&](std::uint32_t i) { return i >= geometry.texture_points.size(); });
+    if (has_missing) face.texture_points.clear();
     if (face.normals.size() != face.positions.size()) face.normals.clear();
     if (face.texture_points.size() != face.positions.size()) face.texture_points.clear();
   }

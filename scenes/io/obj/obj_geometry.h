@@ -13,10 +13,10 @@ namespace reemit {
 /// One `f` statement with what was in effect there. Indices count from 0.
 struct ObjFace {
   std::vector<std::uint32_t> positions;
-  std::vector<std::uint32_t> normals;  ///< One per corner, or none.
+  std::vector<std::uint32_t> normals;         ///< One per corner, or none.
   std::vector<std::uint32_t> texture_points;  ///< Likewise.
-  std::size_t group = 0;               ///< Into ObjGeometry::groups.
-  std::size_t material = 0;            ///< Into ObjMaterials::materials.
+  std::size_t group = 0;                      ///< Into ObjGeometry::groups.
+  std::size_t material = 0;                   ///< Into ObjMaterials::materials.
   std::uint32_t line = 0;
 };
 

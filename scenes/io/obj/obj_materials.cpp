@@ -148,7 +148,8 @@ class MapReader {
     TextureRead read = images_.from_file(folder_ / relative, encoding);
     if (!read.problem.empty()) {
       ++tell_.refused["textures"];
-      tell_.warnings.push_back(fmt::format("{}: {} is used in place of the texture: {}", where_, instead, read.problem));
+      tell_.warnings.push_back(
+          fmt::format("{}: {} is used in place of the texture: {}", where_, instead, read.problem));
       return {};
     }
     const std::string note = reduction_note(*read.image);

@@ -11,8 +11,9 @@ namespace reemit {
 
 /// The materials of the MTL files a room names. In linear Rec.709: Kd is the diffuse reflectance, Ke the
 /// radiance in W/(m2 sr) of the front; surfaces reflect on both sides. What Ks, d, Tr, Tf and illum take of
-/// the light goes to the non-diffuse part (obj_light_shares.h). A map_Kd stands for Kd: exporters write Kd beside
-/// it as a mean, a default or a leftover, so it is not multiplied in. map_Ke is multiplied by Ke, map_d by d.
+/// the light goes to the non-diffuse part (obj_light_shares.h). A map_Kd stands for Kd: exporters write Kd
+/// beside it as a mean, a default or a leftover, so it is not multiplied in. map_Ke is multiplied by Ke,
+/// map_d by d.
 class ObjMaterials {
  public:
   /// Reads one MTL file; `name` is relative to `folder`, `where` says which line asked for it. A file that is

@@ -110,9 +110,8 @@ class PlyBody {
 /// red, green and blue; nothing for any other.
 std::optional<std::size_t> coordinate_of(const PlyProperty& property) {
   static constexpr std::pair<std::string_view, std::size_t> kNames[] = {
-      {"x", 0},         {"y", 1},         {"z", 2}, {"nx", 3}, {"ny", 4}, {"nz", 5},  {"u", 6},     {"v", 7},
-      {"s", 6},         {"t", 7},         {"texture_u", 6},    {"texture_v", 7},      {"red", 8},
-      {"green", 9},     {"blue", 10}};
+      {"x", 0}, {"y", 1}, {"z", 2},         {"nx", 3},        {"ny", 4},  {"nz", 5},    {"u", 6},    {"v", 7},
+      {"s", 6}, {"t", 7}, {"texture_u", 6}, {"texture_v", 7}, {"red", 8}, {"green", 9}, {"blue", 10}};
   const auto it = std::find_if(std::begin(kNames), std::end(kNames),
                                [&](const auto& name) { return name.first == property.name; });
   if (it == std::end(kNames) || property.is_list) return std::nullopt;

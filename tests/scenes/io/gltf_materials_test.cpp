@@ -145,7 +145,7 @@ TEST(GltfMaterials, RefusesWrongValues) {
   expect_gltf_refused(with_material({{"emissiveFactor", {-1, 0, 0}}}),
                       {"#/materials/0/emissiveFactor: emissiveFactor is -1"});
   expect_gltf_refused(with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 3}}}}}}),
-                      {"#/materials/0: there is no texture 3"});
+                      {"#/materials/0/pbrMetallicRoughness/baseColorTexture: there is no texture 3"});
   expect_gltf_refused(
       with_material({{"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 2}}}}}}),
       {"#/materials/0/extensions/KHR_materials_transmission/transmissionFactor: "});

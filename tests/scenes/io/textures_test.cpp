@@ -37,17 +37,19 @@ class Textures : public testing::Test {
   Scene obj(const std::string& mtl, const std::string& more = "") const {
     folder_.write("room.mtl", mtl);
     return read_obj_scene(
-        folder_.write("room.obj", "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\n"
-                                  "vt 1 0.5 0\nvt 0\nusemtl a\nf 1/1 2/2 3/3 4/4\n" + more),
+        folder_.write("room.obj",
+                      "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\n"
+                      "vt 1 0.5 0\nvt 0\nusemtl a\nf 1/1 2/2 3/3 4/4\n" +
+                          more),
         {});
   }
   Scene native(const std::string& material, const std::string& object = "", const char* bands = "rgb") const {
     const std::string shape =
         object.empty() ? R"("quad": {"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0]})" : object;
-    return read_scene(folder_.write(
-        "room.json", std::string(R"({"format": "reemit-room", "version": 1, "bands": ")") + bands +
-                         R"(", "materials": {"a": {)" + material + R"(}}, "objects": [{"material": "a", )" + shape +
-                         "}]}"));
+    return read_scene(
+        folder_.write("room.json", std::string(R"({"format": "reemit-room", "version": 1, "bands": ")") +
+                                       bands + R"(", "materials": {"a": {)" + material +
+                                       R"(}}, "objects": [{"material": "a", )" + shape + "}]}"));
   }
   test::TempFolder folder_;
 };
@@ -78,9 +80,10 @@ TEST_F(Textures, ObjMapsOfEmissionAndOpacity) {
 }
 
 TEST_F(Textures, BadCoordinatesOfObjFilesAreTold) {
-  expect_input_error([&] { obj("newmtl a\n", "vt nan 0\n"); }, {"room.obj:13", "not a finite number"});
-  expect_input_error([&] { obj("newmtl a\n", "vt 1 2 3 4\n"); }, {"room.obj:13", "'vt' has 4 numbers"});
-  expect_input_error([&] { obj("newmtl a\n", "f 1/1 2/9 3/3\n"); }, {"room.obj:13", "index 9 is out of range"});
+  expect_input_error([&] { obj("newmtl a\n", "vt nan 0\n"); }, {"room.obj:12", "not a finite number"});
+  expect_input_error([&] { obj("newmtl a\n", "vt 1 2 3 4\n"); }, {"room.obj:12", "'vt' has 4 numbers"});
+  const Scene without = obj("newmtl a\n", "f 1/1 2/9 3/3\n");
+  EXPECT_TRUE(without.surfaces[0].faces[1].texture_points.empty());
 }
 
 TEST_F(Textures, FacesWithoutCoordinatesCountWithTheMean) {
@@ -99,18 +102,20 @@ TEST_F(Textures, GltfSamplersTransformsAndSets) {
   gltf.json["images"] = {{{"uri", "t.png"}}};
   gltf.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
   gltf.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
-  gltf.json["materials"][0] = {
-      {"alphaMode", "MASK"},
-      {"alphaCutoff", 0.25},
-      {"pbrMetallicRoughness",
-       {{"metallicFactor", 0},
-        {"baseColorFactor", {0.5, 0.5, 0.5, 0.5}},
-        {"baseColorTexture",
-         {{"index", 0},
-          {"texCoord", 0},
-          {"extensions",
-           {{"KHR_texture_transform",
-             {{"offset", {0.5, 0.25}}, {"rotation", std::acos(0.0)}, {"scale", {2, 3}}, {"texCoord", 1}}}}}}}}}};
+  gltf.json["materials"][0] = {{"alphaMode", "MASK"},
+                               {"alphaCutoff", 0.25},
+                               {"pbrMetallicRoughness",
+                                {{"metallicFactor", 0},
+                                 {"baseColorFactor", {0.5, 0.5, 0.5, 0.5}},
+                                 {"baseColorTexture",
+                                  {{"index", 0},
+                                   {"texCoord", 0},
+                                   {"extensions",
+                                    {{"KHR_texture_transform",
+                                      {{"offset", {0.5, 0.25}},
+                                       {"rotation", std::acos(0.0)},
+                                       {"scale", {2, 3}},
+                                       {"texCoord", 1}}}}}}}}}};
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
       gltf.accessor(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, 5126, "VEC2", 2);
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
@@ -139,7 +144,8 @@ TEST_F(Textures, GltfCoordinatesOfAnotherNumberAreTold) {
   gltf.square();
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
       gltf.accessor(std::vector<float>{0, 0, 1, 0}, 5126, "VEC2", 2);
-  test::expect_gltf_refused(gltf, {"#/meshes/0/primitives/0/attributes/TEXCOORD_0", "2 values for 4 positions"});
+  test::expect_gltf_refused(gltf,
+                            {"#/meshes/0/primitives/0/attributes/TEXCOORD_0", "2 values for 4 positions"});
 }
 
 TEST_F(Textures, NativeTexturesAndWhatIsWrongWithThem) {
@@ -154,7 +160,8 @@ TEST_F(Textures, NativeTexturesAndWhatIsWrongWithThem) {
   EXPECT_EQ(uv_of(scene, 2)[0], 1) << "a quad has coordinates of its own";
   expect_input_error([&] { native(R"("texture": {"file": "none.png"})"); },
                      {"room.json#/materials/a/texture/file", "none.png"});
-  expect_input_error([&] { native(R"("texture": {"file": "t.ppm", "wrap": "tile"})"); }, {"/texture/wrap", "repeat"});
+  expect_input_error([&] { native(R"("texture": {"file": "t.ppm", "wrap": "tile"})"); },
+                     {"/texture/wrap", "repeat"});
   expect_input_error([&] { native(R"("emission_texture": {"file": "t.ppm"})"); },
                      {"/emission_texture", "does not emit"});
   expect_input_error([&] { native(R"("opacity_cutoff": 0.5)"); }, {"/opacity_cutoff", "without a texture"});
@@ -214,11 +221,12 @@ TEST_F(Textures, CopiesOfAnImageKeepItsMean) {
 }
 
 TEST_F(Textures, PlyColoursAndCoordinates) {
-  folder_.write("m.ply",
-                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                "property float s\nproperty float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-                "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                "0 0 0 0 0 255 0 128\n1 0 0 1 0 255 255 255\n0 1 0 0 1 0 0 0\n3 0 1 2\n");
+  folder_.write(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float s\nproperty float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 0 0 255 0 128\n1 0 0 1 0 255 255 255\n0 1 0 0 1 0 0 0\n3 0 1 2\n");
   const std::string file = R"("file": {"path": "m.ply")";
   const Scene scene = native(R"("reflectance": 0.5, "radiance": 1)", file + "}");
   EXPECT_TRUE(scene.surfaces[0].has_vertex_colours);
