@@ -64,7 +64,7 @@ double true_zone_error(const Solution& solution, const Solution& reference) {
     double signal = 0;
     for (std::size_t i = 0; i < solution.mesh.zone_count(); ++i) {
       const ZoneId z(i);
-      const double rho = solution.zone_reflectance(z)[static_cast<Eigen::Index>(b)];
+      const double rho = solution.zone_reflectance(z, b);
       const double weight = solution.mesh.zone_area(z) * rho * rho;
       const Estimate truth = reference.irradiance(z, b);
       const double d = solution.irradiance(z, b).mean - truth.mean;

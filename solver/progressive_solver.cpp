@@ -97,10 +97,12 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
                       const std::atomic<bool>& interrupt, Examination examination) {
   const auto start = Clock::now();
   const PreparedRoom room(scene, solution, watch.preparing);
-  if (room.room.surfaces().any_specular())
-    throw InputError(scene.source,
-                     "the room has mirrors or glass, and the matrix method is that of Lambertian surfaces",
-                     "Solve it with --method shooting or walk.");
+  if (room.room.surfaces().any_specular() || room.room.surfaces().any_cut_outs())
+    throw InputError(
+        scene.source,
+        "the room has mirrors, glass or cut-outs, and the matrix method is that of opaque Lambertian "
+        "surfaces",
+        "Solve it with --method shooting or walk.");
   if (scene.sky)
     throw InputError(scene.source, "the room has a sky, and the matrix method has none",
                      "Solve it with --method shooting or walk.");
@@ -353,7 +355,9 @@ std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution
   GatheredZones gathered;
   gathered.keep(solution.sums, solution.gathered.zones);
   solution.gathered.restore(solution.sums);
-  const double bound = zone_error(SurfaceModel(scene, solution.mesh, 1), solution.mesh, solution.sums).bound;
+  const RoomTextures textures(scene, solution.mesh);
+  const SurfaceModel surfaces(scene, solution.mesh, textures, 1);
+  const double bound = zone_error(surfaces, solution.mesh, solution.sums).bound;
   gathered.restore(solution.sums);
 
   const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);

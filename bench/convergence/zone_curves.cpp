@@ -22,7 +22,7 @@ Reference reflected_radiosity(const Solution& solution) {
   for (std::size_t i = 0; i < solution.mesh.zone_count(); ++i)
     for (std::size_t b = 0; b < result.bands; ++b) {
       const ZoneId z(i);
-      const double rho = solution.zone_reflectance(z)[static_cast<Eigen::Index>(b)];
+      const double rho = solution.zone_reflectance(z, b);
       const Estimate e = solution.irradiance(z, b);
       result.value.push_back(static_cast<float>(rho * e.mean));
       result.stderr_of_value.push_back(static_cast<float>(rho * e.stderr_of_mean));

@@ -9,6 +9,7 @@
 #include "mesh/pieces/face_notes.h"
 #include "mesh/pieces/planar_triangulation.h"
 #include "mesh/pieces/segment_crossings.h"
+#include "mesh/pieces/texture_split.h"
 #include "scenes/io/common/polygon_loops.h"
 #include "scenes/model/error.h"
 
@@ -63,6 +64,7 @@ class PolygonRepair {
   void add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners);
   void add_polygon(FacePiece piece, const FaceLoops& polygon);
   void add_split(const FacePiece& piece, const FaceLoops& polygon);
+  bool add_texture_split(const FacePiece& piece, const FaceLoops& polygon);
   PlanarTriangulation triangulate(const FacePiece& piece, const FaceLoops& polygon,
                                   std::vector<Corner>& corners) const;
   InputError bad_face(const FacePiece& piece, const std::string& problem, const std::string& advice) const {
@@ -313,6 +315,19 @@ void PolygonRepair::add_split(const FacePiece& piece, const FaceLoops& polygon) 
   for (const auto& t : cut.triangles) add_triangle(piece, {corners[t[0]], corners[t[1]], corners[t[2]]});
 }
 
+// Where texture coordinates bend within a face, its triangles are those over which they are interpolated.
+bool PolygonRepair::add_texture_split(const FacePiece& piece, const FaceLoops& polygon) {
+  const Surface& surface = scene_.surfaces[piece.surface.index()];
+  const Face& face = surface.faces[piece.face];
+  if (!scene_.is_textured(surface) || polygon.loops.size() > 1 ||
+      polygon.loops[0].size() != face.outer.size() || has_affine_texture(surface, face))
+    return false;
+  const std::vector<Corner>& corners = polygon.loops[0];
+  for (const auto& t : texture_triangles(surface, face))
+    add_triangle(piece, {corners[t[0]], corners[t[1]], corners[t[2]]});
+  return true;
+}
+
 // Returns the largest distance of a corner from the plane of the part [m] if the eye can see it, else 0.
 double PolygonRepair::repair_part(SurfaceId surface, std::uint32_t face, const FaceLoops& part,
                                   double area_as_read) {
@@ -338,6 +353,7 @@ double PolygonRepair::repair_part(SurfaceId surface, std::uint32_t face, const F
     return c.normal.squaredNorm() > 0 && std::abs(c.normal.normalized().dot(piece.plane.normal)) < 1 - 1e-7;
   });
   const double bend = deviation > kVisiblyBent * piece.diameter ? deviation : 0;
+  if (add_texture_split(piece, part)) return bend;
   if (shaded || deviation > kPlanar * piece.diameter)
     add_split(piece, part);
   else

@@ -175,9 +175,17 @@ SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
 }
 
 double ZoneMesh::zone_area(ZoneId z) const {
-  if (is_group(z)) return members_area_[first_member(z) + member_count(z) - 1];
+  if (is_group(z)) return solid_share(z) * members_area_[first_member(z) + member_count(z) - 1];
   const double n = zone_cell_[z.index()].divisions;
-  return triangle_area(zone_triangle(z)) / (n * n);
+  return solid_share(z) * triangle_area(zone_triangle(z)) / (n * n);
+}
+
+void ZoneMesh::set_solid_shares(std::vector<float> shares) {
+  const auto is_share = [](float s) { return s > 0 && s <= 1; };
+  if (!shares.empty() &&
+      (shares.size() != zone_count() || !std::all_of(shares.begin(), shares.end(), is_share)))
+    throw std::invalid_argument("solid shares of zones that are missing or out of range");
+  solid_shares_ = std::move(shares);
 }
 
 Vec3 ZoneMesh::zone_normal(ZoneId z) const {

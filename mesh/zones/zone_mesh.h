@@ -101,7 +101,14 @@ class ZoneMesh {
   TriangleId zone_triangle(ZoneId z) const { return triangle_of(zone_side_[z.index()]); }
   bool zone_is_front(ZoneId z) const { return is_front(zone_side_[z.index()]); }
   SurfaceId zone_surface(ZoneId z) const { return triangle(zone_triangle(z)).surface; }
-  double zone_area(ZoneId z) const;  ///< [m2]
+  double zone_area(ZoneId z) const;  ///< Of what is there of it, where it is a cut-out [m2].
+  /// Share of the zone that is there [0,1]: below 1 for cut-outs, whose holes light passes through.
+  double solid_share(ZoneId z) const {
+    return solid_shares_.empty() ? 1 : static_cast<double>(solid_shares_[z.index()]);
+  }
+  const std::vector<float>& solid_shares() const { return solid_shares_; }  ///< By zone; empty: all 1.
+  /// Throws std::invalid_argument if they are not in (0,1], one for each zone, or none.
+  void set_solid_shares(std::vector<float> shares);
   /// Unit, points away from the side the zone is on; of a group, the direction of the sum of its area
   /// vectors, or the normal of its first member where that is 0.
   Vec3 zone_normal(ZoneId z) const;
@@ -158,6 +165,7 @@ class ZoneMesh {
   std::vector<SideId> members_;            // by group
   std::vector<double> members_area_;       // of the members of a group up to and with this one [m2]
   std::vector<std::uint32_t> member_;      // by side; empty without groups
+  std::vector<float> solid_shares_;
 };
 
 }  // namespace reemit

@@ -66,6 +66,35 @@ void add_non_diffuse(Hasher& hash, const NonDiffusePart& part) {
   for (const double number : numbers) hash.add(number);
 }
 
+void add_texture(Hasher& hash, const Texture& t) {
+  hash.add(bool{t});
+  if (!t) return;
+  hash.add(t.image->hash);
+  for (const std::uint64_t number : {std::uint64_t{t.set}, std::uint64_t(t.wrap_u), std::uint64_t(t.wrap_v)})
+    hash.add(number);
+  hash.add(t.nearest);
+  for (const double x : t.to_image.reshaped()) hash.add(x);
+}
+
+/// Nothing is added for a material without any.
+void add_textures(Hasher& hash, const MaterialTextures& textures) {
+  if (!textures.any()) return;
+  add_texture(hash, textures.reflectance);
+  add_texture(hash, textures.emission);
+  add_texture(hash, textures.opacity);
+  hash.add(textures.reflectance_factor);
+  hash.add(textures.emission_factor);
+  hash.add(textures.opacity_is_colour);
+  hash.add(textures.opacity_factor);
+  hash.add(textures.opacity_cutoff.value_or(-1.0));
+}
+
+void add_texture_point(Hasher& hash, const TexturePoint& point) {
+  for (const auto& uv : point.uv)
+    for (const double x : uv) hash.add(x);
+  for (const float x : point.colour) hash.add(static_cast<double>(x));
+}
+
 void add_material(Hasher& hash, const Material& m) {
   hash.add(m.reflectance);
   if (m.back_reflectance.size() > 0) hash.add(m.back_reflectance);
@@ -74,6 +103,7 @@ void add_material(Hasher& hash, const Material& m) {
   hash.add(m.emits_both_sides);
   if (m.emission_exponent != 0) hash.add(m.emission_exponent);
   add_non_diffuse(hash, m.non_diffuse);
+  add_textures(hash, m.textures);
 }
 
 // The corners themselves rather than their indices, so that vertices no face uses do not count.
@@ -96,7 +126,7 @@ void add_shape(Hasher& hash, const CurvedShape& shape) {
   hash.add(f.inward);
 }
 
-void add_surface(Hasher& hash, const Surface& surface) {
+void add_surface(Hasher& hash, const Surface& surface, bool is_textured) {
   hash.add(std::uint64_t{surface.faces.size()});
   for (const Face& face : surface.faces) {
     add_loop(hash, face.outer, surface.positions);
@@ -104,6 +134,9 @@ void add_surface(Hasher& hash, const Surface& surface) {
     for (const auto& hole : face.holes) add_loop(hash, hole, surface.positions);
     add_loop(hash, face.normals,
              surface.normals);  // creases, and with them shared vertices, follow from these
+    if (is_textured)
+      for (const std::uint32_t point : face.texture_points)
+        add_texture_point(hash, surface.texture_points[point]);
   }
   if (surface.shapes.empty()) return;
   hash.add(std::uint64_t{surface.shapes.size()});
@@ -137,7 +170,7 @@ std::string content_hash(const Scene& scene) {
   hash.add(std::uint64_t{scene.surfaces.size()});
   for (const Surface& surface : scene.surfaces) {
     add_material(hash, scene.material_of(surface));
-    add_surface(hash, surface);
+    add_surface(hash, surface, scene.is_textured(surface));
   }
   hash.add(std::uint64_t{scene.lights.size()});
   for (const PunctualLight& light : scene.lights) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "scenes/model/bands.h"
+#include "scenes/model/material_textures.h"
 
 namespace reemit {
 
@@ -70,6 +71,7 @@ struct Material {
   bool two_sided = true;  ///< The back reflects like the front; else the back of the face absorbs all light.
   bool emits_both_sides = false;  ///< Else only the front emits. Needs two_sided.
   NonDiffusePart non_diffuse;
+  MaterialTextures textures;  ///< What of it varies; reflectance and emission above are then means.
 
   const Spectrum& reflectance_of(bool front) const {
     return front || back_reflectance.size() == 0 ? reflectance : back_reflectance;
@@ -78,9 +80,12 @@ struct Material {
     const Spectrum& tau = non_diffuse.diffuse_transmittance;
     return tau.size() > 0 ? tau[static_cast<Eigen::Index>(band)] : 0;
   }
-  /// Of the side that reflects more.
+  /// Of the side and, where that is known, the point that reflects more.
   Spectrum largest_reflectance() const {
-    return back_reflectance.size() > 0 ? Spectrum(reflectance.max(back_reflectance)) : reflectance;
+    Spectrum most = reflectance;
+    for (const Spectrum* other : {&back_reflectance, &textures.most_reflectance})
+      if (other->size() > 0) most = most.max(*other);
+    return most;
   }
   /// Reflected and transmitted diffusely, by band, of the side that reflects more.
   Spectrum lambertian_share() const {

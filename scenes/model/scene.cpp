@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "scenes/model/scene_checks.h"
+#include "scenes/model/texture_checks.h"
 
 namespace reemit {
 namespace {
@@ -79,14 +80,14 @@ void reduce(Sky& sky, const BandSet& bands) {
 }
 
 void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
-  if (scene.bands.kind() != BandKind::kRgb) return;
+  if (scene.bands.kind() != BandKind::kRgb || has_coloured_textures(scene)) return;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
     const NonDiffusePart& rest = m.non_diffuse;
     for (const Spectrum* s :
          {&m.reflectance, &m.back_reflectance, &m.emitted_radiance, &rest.specular_reflectance,
           &rest.diffuse_transmittance, &rest.specular_transmittance, &rest.absorption_per_m, &rest.metal_eta,
-          &rest.metal_k})
+          &rest.metal_k, &m.textures.reflectance_factor, &m.textures.emission_factor})
       if (used[i] && s->size() > 0 && !is_grey(*s)) return;
   }
   for (const PunctualLight& light : scene.lights)
@@ -97,7 +98,8 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
     NonDiffusePart& rest = m.non_diffuse;
     for (Spectrum* s : {&m.reflectance, &m.back_reflectance, &m.emitted_radiance, &rest.specular_reflectance,
                         &rest.diffuse_transmittance, &rest.specular_transmittance, &rest.absorption_per_m,
-                        &rest.metal_eta, &rest.metal_k})
+                        &rest.metal_eta, &rest.metal_k, &m.textures.reflectance_factor,
+                        &m.textures.most_reflectance, &m.textures.emission_factor})
       reduce(*s, scene.bands);
   }
   for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);
@@ -156,6 +158,7 @@ bool Scene::bends_light() const {
 void finish_scene(Scene& scene) {
   check_materials(scene);
   check_geometry(scene);
+  check_textures(scene);
   check_luminous_surfaces(scene);
   check_lights(scene);
   check_sky(scene);

@@ -35,6 +35,8 @@ struct Scene {
   KindCounts not_modelled;  ///< Parts that were understood, but whose effect on light is not simulated.
 
   const Material& material_of(const Surface& s) const { return materials[s.material.index()]; }
+  /// Whether what a surface does with light differs from point to point.
+  bool is_textured(const Surface& s) const { return s.has_vertex_colours || material_of(s).textures.any(); }
   /// Whether a surface bends light (NonDiffusePart::bends_light).
   bool bends_light() const;
 };

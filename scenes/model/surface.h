@@ -5,6 +5,7 @@
 
 #include "scenes/model/ids.h"
 #include "scenes/model/shape.h"
+#include "scenes/model/texture.h"
 #include "scenes/model/vec.h"
 
 namespace reemit {
@@ -16,6 +17,8 @@ struct Face {
   std::vector<std::vector<std::uint32_t>> holes;  ///< Each >= 3 vertices, any winding.
   std::vector<std::uint32_t> normals;  ///< Into Surface::normals, one per outer vertex; empty = flat.
   std::uint32_t source_line = 0;       ///< In the file named by Surface::source; 0 = not known.
+  /// Into Surface::texture_points, one per outer vertex; empty = textures count with their means.
+  std::vector<std::uint32_t> texture_points = {};
 };
 
 /// A named group of faces and curved shapes of one material, in world coordinates.
@@ -25,6 +28,8 @@ struct Surface {
   MaterialId material;
   std::vector<Vec3> positions;  ///< [m]
   std::vector<Vec3> normals;    ///< Unit shading normals; used in stills and to find creases only.
+  std::vector<TexturePoint> texture_points;
+  bool has_vertex_colours = false;  ///< Reflectance is that of the material times TexturePoint::colour.
   std::vector<Face> faces;
   std::vector<CurvedShape> shapes;
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
+#include "mesh/zones/zone_cells.h"
 #include "solver/sampling/shapes/clipped_polygon.h"
 
 namespace reemit {
@@ -65,7 +67,7 @@ std::vector<LuminaireFace> luminaire_faces(const Room& room) {
   for (std::size_t i = 0; i < mesh.flat_count(); ++i) {
     const TriangleId t(i);
     const BaseTriangle& triangle = mesh.triangle(t);
-    if (!room.surfaces().emits(triangle.surface)) continue;
+    if (!room.surfaces().emits(triangle.surface) || room.surfaces().emission_varies(t)) continue;
     if (!(mesh.triangle_area(t) > 0)) continue;
     Pieces& pieces = by_face[{triangle.surface, triangle.face}];
     pieces.triangles.push_back(t);
@@ -93,6 +95,32 @@ std::vector<LuminaireFace> luminaire_faces(const Room& room) {
                        both_sides});
   }
   return faces;
+}
+
+std::vector<LuminaireCell> luminaire_cells(const Room& room) {
+  const ZoneMesh& mesh = room.mesh();
+  const SurfaceModel& surfaces = room.surfaces();
+  std::vector<LuminaireCell> result;
+  if (surfaces.textures().empty()) return result;
+  const ZoneCells cells(mesh);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const SideCell cell = cells.cell(i);
+    if (!surfaces.emission_varies(cell.triangle) || !surfaces.emits(cell.triangle, cell.front)) continue;
+    if (!(mesh.triangle_area(cell.triangle) > 0)) continue;
+    const SurfaceId surface = mesh.triangle(cell.triangle).surface;
+    const Spectrum exitance = surfaces.exitance(cells.zone(i), surface);
+    if (!(exitance > 0).any()) continue;
+    LuminaireCell& luminaire = result.emplace_back();
+    constexpr std::array<std::array<float, 2>, 3> kCorners{{{0, 0}, {1, 0}, {0, 1}}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const SidePoint at = cell_point(cell, kCorners[k][0], kCorners[k][1]);
+      luminaire.corners[k] = mesh.point(cell.triangle, at.at.u, at.at.v);
+    }
+    luminaire.triangle = cell.triangle;
+    luminaire.front = cell.front;
+    luminaire.radiance = (surfaces.emission_exponent(surface) + 2) / (2 * std::numbers::pi) * exitance;
+  }
+  return result;
 }
 
 }  // namespace reemit

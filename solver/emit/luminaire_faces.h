@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "solver/room/room.h"
@@ -13,8 +14,20 @@ struct LuminaireFace {
   bool emits_both_sides;
 };
 
+/// A cell of a zone whose emission differs from point to point.
+struct LuminaireCell {
+  std::array<Vec3, 3> corners;  ///< [m]
+  TriangleId triangle;
+  bool front = true;
+  Spectrum radiance;  ///< Of its zone along the normal, on average [W/(m2 sr)].
+};
+
+/// Of all faces with emissive textures, those cells whose zones emit; patches of round shapes have none.
+std::vector<LuminaireCell> luminaire_cells(const Room& room);
+
 /// The flat emitting parts of a room in pieces as large as they come: faces that are convex polygons and of
-/// which the mesh covers everything are one piece, others one for each base triangle.
+/// which the mesh covers everything are one piece, others one for each base triangle. Without those whose
+/// emission differs from point to point.
 std::vector<LuminaireFace> luminaire_faces(const Room& room);
 
 }  // namespace reemit

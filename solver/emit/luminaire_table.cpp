@@ -10,8 +10,12 @@
 namespace reemit {
 
 LuminaireTable::LuminaireTable(const Room& room)
-    : rays_(&room.rays()), sky_light_(room.sky()), bands_(room.band_count()) {
+    : rays_(&room.rays()),
+      sky_light_(room.sky()),
+      surfaces_(&room.surfaces()),
+      bands_(room.band_count()) {
   add_surfaces(room);
+  add_cells(room);
   add_lights(room.scene());
   add_sky(room);
   build_tree();
@@ -50,6 +54,37 @@ void LuminaireTable::add_surfaces(const Room& room) {
     add({shape, exponent}, surface);
     if (surfaces.emits(patch, false)) add({flipped(shape), exponent}, surface);
   }
+}
+
+void LuminaireTable::add_cells(const Room& room) {
+  const double metres = rays_->metres_per_unit();
+  first_cell_ = areas_.size();
+  for (const LuminaireCell& cell : luminaire_cells(room)) {
+    const SurfaceId surface = surfaces_->surface(cell.triangle);
+    std::vector<Vec3> corners;
+    for (const Vec3& c : cell.corners) corners.push_back((c - rays_->centre()) / metres);
+    const Vec3& front = room.mesh().triangle_normal(cell.triangle);
+    AreaLuminaire luminaire(corners, cell.front ? front : Vec3(-front),
+                            surfaces_->emission_exponent(surface));
+    area_of_surface_[surface.index()] += static_cast<float>(luminaire.area());
+    surface_of_area_.push_back(surface);
+    areas_.push_back(std::move(luminaire));
+    add_strength(cell.radiance);
+    cells_.push_back(cell.triangle);
+  }
+}
+
+void LuminaireTable::radiance_at(std::size_t entry, const Vec3f& target,
+                                 SurfaceModel::PointValues& radiance) const {
+  const TriangleId t = cells_[entry - first_cell_];
+  const Barycentric at = rays_->mesh().barycentric_of(t, rays_->in_room(target));
+  const auto u = static_cast<float>(at.u);
+  const auto v = static_cast<float>(at.v);
+  const RoomTextures& textures = surfaces_->textures();
+  textures.radiance(t, u, v, 0, radiance);
+  if (!textures.is_cut_out(surfaces_->surface(t))) return;
+  const float opacity = textures.opacity(t, u, v);
+  for (float& r : radiance) r *= opacity;
 }
 
 void LuminaireTable::add_lights(const Scene& scene) {

@@ -26,6 +26,11 @@ class LuminaireTable {
   /// Per band: radiance along the normal [W/(m2 sr)] of an area, intensity [W/sr], irradiance across the beam
   /// [W/m2], intensity per candela, or SkyLight::sky_strength.
   const float* strength(std::size_t entry) const { return &strength_[entry * bands_]; }
+  /// Whether the strength of an entry is but a mean over it, and radiance_at says more.
+  bool varies(std::size_t entry) const { return entry >= first_cell_ && entry < first_cell_ + cells_.size(); }
+  /// Radiance along the normal [W/(m2 sr)] where a sample of such an entry lies; of cut-outs, that times the
+  /// share that is there.
+  void radiance_at(std::size_t entry, const Vec3f& target, SurfaceModel::PointValues& radiance) const;
   /// Surface that an entry belongs to; not valid for lights that rays do not see.
   SurfaceId surface_of(std::size_t entry) const {
     return entry < areas_.size() ? surface_of_area_[entry] : SurfaceId();
@@ -51,6 +56,7 @@ class LuminaireTable {
 
  private:
   void add_surfaces(const Room& room);
+  void add_cells(const Room& room);
   void add_lights(const Scene& scene);
   void add_sky(const Room& room);
   void build_tree();
@@ -60,11 +66,14 @@ class LuminaireTable {
 
   const RayTracer* rays_;
   const SkyLight* sky_light_;
+  const SurfaceModel* surfaces_;
   std::size_t bands_;
   std::size_t sky_ = kNoEntry, sun_ = kNoEntry;  // entries
   std::vector<AreaLuminaire> areas_;
   std::vector<SurfaceId> surface_of_area_;
   std::vector<float> area_of_surface_;
+  std::size_t first_cell_ = 0;     // entry
+  std::vector<TriangleId> cells_;  // triangles of the entries from there on
   std::vector<PunctualEmitter> punctual_;
   std::vector<float> strength_;
   std::vector<float> brightness_;

@@ -42,13 +42,18 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
   if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return {};
   const Vec3f towards = sample.towards(origin);
   if (!(towards.dot(side_normal(*rays_, x)) > 0)) return {};
-  Arrival light{table_.strength(entry), sample.factor * inverse_probability, entry, towards, {}};
+  Arrival light{table_.strength(entry), sample.factor * inverse_probability, entry, towards, {}, {}};
   if (!passes(origin, sample, light.panes)) return {};
   if (sky_ != nullptr && table_.is_sky(entry) && sky_->is_coloured()) {
     std::vector<float> colour;
     sky_->colour(towards, colour);
     for (std::size_t b = 0; b < band_count(); ++b) colour[b] *= light.pane(b);
     light.panes = std::move(colour);
+  }
+  if (table_.varies(entry)) {
+    table_.radiance_at(entry, sample.target, light.at_point);
+    light.strength = nullptr;
+    light.is_at_point = true;
   }
   return light;
 }
@@ -85,19 +90,20 @@ void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDim
                              const float* weight, float* sum) const {
   if (empty()) return;
   const Arrival light = estimate(x, ray_origin(*rays_, x), u);
-  if (light.strength == nullptr) return;
+  if (!light.arrives()) return;
   for (std::size_t b = 0; b < band_count(); ++b)
-    sum[b] += weight[b] * light.factor * light.strength[b] * light.pane(b);
+    sum[b] += weight[b] * light.factor * light.strength_in(b) * light.pane(b);
 }
 
 void DirectLight::add_reflected_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
                                        float chance, const float* weight, float* sum) const {
   if (empty()) return;
   const Arrival light = estimate(x, ray_origin(*rays_, x), u);
-  if (light.strength == nullptr) return;
-  const BrdfValue brdf = surfaces_->value(x, light.towards.normalized());
+  if (!light.arrives()) return;
+  SurfaceModel::PointValues at_point;
+  const BrdfValue brdf = surfaces_->value(x, light.towards.normalized(), at_point);
   for (std::size_t b = 0; b < band_count(); ++b)
-    sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.strength[b] * light.pane(b);
+    sum[b] += weight[b] * (brdf(b) / chance) * light.factor * light.strength_in(b) * light.pane(b);
 }
 
 void DirectLight::add_lobe_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
@@ -120,12 +126,12 @@ void DirectLight::add_lobe_of(const SurfacePoint& x, SpecularWayOn way, const Su
                               const std::array<float, kDimensions>& u, const CausticShare& counted,
                               const float* weight, float* sum) const {
   const Arrival light = estimate(lit, ray_origin(*rays_, lit), u);
-  if (light.strength == nullptr) return;
+  if (!light.arrives()) return;
   SpecularStep step(band_count());
   if (!surfaces_->specular(x.triangle).value(x, way, light.towards.normalized(), step)) return;
   const float share = left_by_lobe(light, step, counted);
   for (std::size_t b = 0; b < band_count(); ++b)
-    sum[b] += weight[b] * share * step.share()[b] * light.factor * light.strength[b] * light.pane(b);
+    sum[b] += weight[b] * share * step.share()[b] * light.factor * light.strength_in(b) * light.pane(b);
 }
 
 float DirectLight::left_by_lobe(const Arrival& light, const SpecularStep& step,
@@ -153,9 +159,9 @@ void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequen
     const std::array<float, kDimensions> u{sequence.sample(index, 0), sequence.sample(index, 1),
                                            sequence.sample(index, 2)};
     const Arrival light = estimate(x, origin, u);
-    if (light.strength == nullptr) continue;
+    if (!light.arrives()) continue;
     for (std::size_t b = 0; b < band_count(); ++b) {
-      const double e = static_cast<double>(light.factor) * static_cast<double>(light.strength[b]) *
+      const double e = static_cast<double>(light.factor) * static_cast<double>(light.strength_in(b)) *
                        static_cast<double>(light.pane(b));
       sum[b] += e;
       if (sum_of_squares != nullptr) sum_of_squares[b] += e * e;

@@ -71,14 +71,18 @@ class DirectLight {
  private:
   /// What arrives at a point: the irradiance is estimated as factor * strength[b] * pane(b).
   struct Arrival {
-    const float* strength = nullptr;  ///< Null if nothing arrives.
+    const float* strength = nullptr;  ///< Null if nothing arrives, or is_at_point.
     float factor = 0;
     std::size_t entry = 0;   ///< Of the table.
     Vec3f towards{0, 0, 0};  ///< The luminaire; of any length.
     /// By band, what panes on the way leave of it, and the colour of the sky there; empty where there are
     /// neither.
     std::vector<float> panes;
+    SurfaceModel::PointValues at_point{};  ///< The strength where it differs over the luminaire.
+    bool is_at_point = false;
 
+    bool arrives() const { return strength != nullptr || is_at_point; }
+    float strength_in(std::size_t b) const { return is_at_point ? at_point[b] : strength[b]; }
     float pane(std::size_t b) const { return panes.empty() ? 1.0F : panes[b]; }
   };
   /// add_lobe_sample by one way; `lit` is x on the side of the surface that light falls on.

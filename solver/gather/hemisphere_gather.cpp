@@ -63,8 +63,9 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     if (is_read && !specular) return;
     const SurfacePoint point = surface_point(rays, hit, along);
     float scattered = 1;  // chance that the ray goes on from here as scattered light
+    SurfaceModel::PointValues at_point;
     if (specular) {
-      const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+      const float* reflectance = surfaces.reflectance(point, at_point);
       const DiffuseWay diffuse = is_read ? DiffuseWay::kNotFollowed : DiffuseWay::kFollowed;
       scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
       if (scattered > 0) add_direct(point, bounce, key, here, sum);
@@ -85,7 +86,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     const auto number = static_cast<std::uint32_t>(2 * bounce + 1);
     const std::array<float, 4> u_ray = rng_.uniform4(key.index, key.batch, key.step(number));
     const ScatterSample next = surfaces.sample(point, u_ray[0], u_ray[1]);
-    const BrdfValue brdf = surfaces.value(point, next.direction);
+    const BrdfValue brdf = surfaces.value(point, next.direction, at_point);
     bool dark = true;
     for (std::size_t b = 0; b < bands; ++b) dark = dark && weight[b] * brdf(b) == 0;
     if (dark) return;
@@ -107,7 +108,8 @@ void HemisphereGather::add_direct(const SurfacePoint& y, int bounce, const PathK
   const std::array<float, DirectLight::kDimensions> u = light_numbers(bounce, key);
   direct_->add_reflected_sample(y, u, 1, weight, sum);
   if (!caustics_.exists()) return;
-  const float* reflectance = room().surfaces().reflectance(y.triangle, y.front);
+  SurfaceModel::PointValues at_point;
+  const float* reflectance = room().surfaces().reflectance(y, at_point);
   caustics_.add_reflected(y, key.part, true, u[2], {reflectance, std::numbers::inv_pi_v<float>}, weight, sum);
 }
 
@@ -149,8 +151,9 @@ void GatherBatch::flush() {
 // Puts a ray back into the queue, turned a little, where it costs no block of its own.
 void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
   const int ray = static_cast<int>(lane);
-  rays_.set(count_, rays_.origin(ray),
-            gather_->room().rays().second_direction(rays_.direction(ray), hits, ray));
+  const RayTracer& rays = gather_->room().rays();
+  rays_.set(count_, rays_.origin(ray), rays.second_direction(rays_.direction(ray), hits, ray),
+            rays.cut_out_key(rays_, ray));
   const auto to = static_cast<std::size_t>(count_++);
   second_look_[to] = true;
   keys_[to] = keys_[lane];

@@ -30,7 +30,8 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
       return;
     }
     path.arrive(*direct_, hit, direction, weight, over_mirrors);
-    const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+    SurfaceModel::PointValues at_point;
+    const float* reflectance = surfaces.reflectance(hit, at_point);
     const float largest = *std::max_element(reflectance, reflectance + bands);
     const bool specular = surfaces.is_specular(hit.triangle, hit.front);
     if (!(largest > 0) && !specular) return;
@@ -60,7 +61,7 @@ void PathTracer::add_indirect(const SurfacePoint& x, float u0, float u1, const P
     const std::array<float, 4> u_ray = rng_.uniform4(key.index, key.batch, key.step(2 * bounce + 1));
     const ScatterSample next = surfaces.sample(point, u_ray[0], u_ray[1]);
     direction = next.direction;
-    const BrdfValue brdf = surfaces.value(point, direction);
+    const BrdfValue brdf = surfaces.value(point, direction, at_point);
     for (std::size_t b = 0; b < bands; ++b) {
       weight[b] *= brdf(b) / survival;
       weight[b] *= next.cosine_over_pdf;

@@ -62,7 +62,7 @@ void RadianceField::read_zones(const Solution& solution) {
   const auto read = [&](std::size_t z) {
     const ZoneMesh& mesh = solution.mesh;
     const double* rho =
-        room_->surfaces().reflectance(mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
+        room_->surfaces().reflectance(ZoneId(z), mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = z * bands_ + b;
       const auto reflectance = static_cast<float>(rho[b]);

@@ -64,7 +64,8 @@ class SpecularPath {
     const float found = (is_bent_ ? 1 : direct.found_by_lobe(hit.triangle, way_, pdf_per_sr_)) *
                         counted().of(surfaces.surface(hit.triangle));
     const SurfacePoint x = surface_point(room_->rays(), hit, along);
-    const float* emitted = surfaces.emitted(x.triangle, x.front);
+    SurfaceModel::PointValues at_point;
+    const float* emitted = surfaces.emitted(x, at_point);
     const float shape = found * surfaces.emission_shape(x.triangle, std::fabs(x.normal.dot(x.towards)));
     const float* there = of_light_there(weight);
     for (std::size_t b = 0; b < surfaces.band_count(); ++b) sum[b] += there[b] * shape * emitted[b];

@@ -24,7 +24,8 @@ static_assert(kBiasReplicates == ZoneSums::kGroups);
 void add_difference(const HemisphereGather& gather, const PathTracer& path, const SurfacePoint& x,
                     const PointSampler& sampler, std::uint32_t rays, PathKey key, float* sum) {
   const std::size_t bands = gather.band_count();
-  const float* reflectance = gather.room().surfaces().reflectance(x.triangle, x.front);
+  SurfaceModel::PointValues at_point;
+  const float* reflectance = gather.room().surfaces().reflectance(x, at_point);
   std::vector<float> plus(bands);
   std::vector<float> minus(bands);
   GatherBatch batch(gather);

@@ -9,10 +9,9 @@ std::vector<ZoneProbe> choose_probes(const Solution& solution, std::size_t count
   double total_area = 0;
   for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
     const ZoneId zone(z);
-    const Spectrum& reflectance = solution.zone_reflectance(zone);
     for (std::size_t b = 0; b < solution.bands.count(); ++b)
-      power[z] += mesh.zone_area(zone) * reflectance[static_cast<Eigen::Index>(b)] *
-                  solution.irradiance(zone, b).mean;
+      power[z] +=
+          mesh.zone_area(zone) * solution.zone_reflectance(zone, b) * solution.irradiance(zone, b).mean;
     total_power += power[z];
     total_area += mesh.zone_area(zone);
   }

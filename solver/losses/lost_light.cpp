@@ -55,9 +55,8 @@ ProbeSet reflected_probes(const Solution& solution) {
   const std::size_t bands = solution.bands.count();
   std::vector<double> power(mesh.zone_count());
   for (std::size_t z = 0; z < power.size(); ++z) {
-    const Spectrum& rho = solution.zone_reflectance(ZoneId(z));
     for (std::size_t b = 0; b < bands; ++b)
-      power[z] += rho[static_cast<Eigen::Index>(b)] * solution.irradiance(ZoneId(z), b).mean;
+      power[z] += solution.zone_reflectance(ZoneId(z), b) * solution.irradiance(ZoneId(z), b).mean;
     power[z] *= mesh.zone_area(ZoneId(z));
   }
   const double total = std::accumulate(power.begin(), power.end(), 0.0);

@@ -1,11 +1,18 @@
 #include "solver/reflect/surface_model.h"
 
+#include <algorithm>
 #include <numbers>
+
+#include "solver/texture/zone_means.h"
 
 namespace reemit {
 
-SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, double metres_per_unit)
-    : bands_(scene.bands.count()), zero_(bands_, 0.0F) {
+SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomTextures& textures,
+                           double metres_per_unit)
+    : textures_(&textures),
+      metres_per_unit_(static_cast<float>(metres_per_unit)),
+      bands_(scene.bands.count()),
+      zero_(bands_, 0.0F) {
   std::vector<bool> emits_both_sides;
   for (const Surface& surface : scene.surfaces) {
     const Material& m = scene.material_of(surface);
@@ -16,6 +23,7 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, double metr
     emits_both_sides.push_back(m.emits_both_sides);
     for (const bool front : {true, false}) {
       const Spectrum& rho = m.reflectance_of(front);
+      rows_.push_back({static_cast<std::uint32_t>(rows_.size()), 0});
       reflectance_.insert(reflectance_.end(), rho.begin(), rho.end());
       for (const double x : rho) side_reflectance_.push_back(static_cast<float>(x));
       largest_reflectance_.push_back(rho.maxCoeff());
@@ -25,13 +33,51 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, double metr
   }
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const TriangleId t(i);
-    const std::size_t surface = mesh.triangle(t).surface.index();
+    const SurfaceId s = mesh.triangle(t).surface;
+    const std::size_t surface = s.index();
     surface_.push_back(static_cast<std::uint32_t>(surface));
     const bool emits = surfaces_[surface].emits;
     const bool back = mesh.has_zones(t, false);
-    sides_.push_back({true, emits});
-    sides_.push_back({back, emits && back && emits_both_sides[surface]});
+    const bool varies = textures.varies_reflectance(s);
+    const bool glows = emits && textures.varies_emission(s);
+    const bool back_emits = emits && back && emits_both_sides[surface];
+    sides_.push_back({true, emits, varies, glows});
+    sides_.push_back({back, back_emits, varies && back && textures.varies_back(s), glows && back_emits});
   }
+  if (!textures.empty()) add_zone_rows(mesh);
+}
+
+void SurfaceModel::add_zone_rows(const ZoneMesh& mesh) {
+  ZoneTextureMeans means = zone_texture_means(*textures_, mesh, bands_);
+  zone_radiance_ = std::move(means.radiance);
+  if (means.reflectance.empty()) return;
+  const auto first = static_cast<std::uint32_t>(rows_.size());
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const SurfaceId s(r / 2);
+    if (textures_->varies_reflectance(s) && (r % 2 == 0 || textures_->varies_back(s)))
+      rows_[r] = {first, 0xffffffff};
+  }
+  for (std::size_t i = 0; i < means.reflectance.size(); i += bands_) {
+    const auto row = means.reflectance.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto end = row + static_cast<std::ptrdiff_t>(bands_);
+    for (auto x = row; x != end; ++x) side_reflectance_.push_back(static_cast<float>(*x));
+    largest_reflectance_.push_back(*std::max_element(row, end));
+  }
+  reflectance_.insert(reflectance_.end(), means.reflectance.begin(), means.reflectance.end());
+}
+
+Spectrum SurfaceModel::exitance(ZoneId z, SurfaceId s) const {
+  if (zone_radiance_.empty() || !textures_->varies_emission(s)) return exitance(s);
+  const Spectrum radiance =
+      Spectrum::Map(&zone_radiance_[z.index() * bands_], static_cast<Eigen::Index>(bands_));
+  return 2 * std::numbers::pi / (emission_exponent(s) + 2) * radiance;
+}
+
+void SurfaceModel::point_emitted(const SurfacePoint& x, PointValues& here) const {
+  textures_->radiance(x.triangle, x.u, x.v, x.footprint * metres_per_unit_, here);
+  const auto share = static_cast<float>(2 / (surfaces_[surface_of(x.triangle)].emission_exponent + 2));
+  if (share == 1) return;
+  for (std::size_t b = 0; b < bands_; ++b) here[b] *= share;
 }
 
 }  // namespace reemit

@@ -9,6 +9,7 @@
 #include "scenes/model/scene.h"
 #include "solver/reflect/lobe.h"
 #include "solver/reflect/specular.h"
+#include "solver/texture/room_textures.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
@@ -19,32 +20,52 @@ namespace reemit {
 /// from any thread.
 class SurfaceModel {
  public:
-  /// `metres_per_unit`: of the space of the rays (RayTracer::metres_per_unit).
-  SurfaceModel(const Scene& scene, const ZoneMesh& mesh, double metres_per_unit);
+  /// Room for the values of a point where they vary.
+  using PointValues = RoomTextures::Values;
+
+  /// `metres_per_unit`: of the space of the rays (RayTracer::metres_per_unit). The textures must outlive it.
+  SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomTextures& textures,
+               double metres_per_unit);
 
   std::size_t band_count() const { return bands_; }
   std::size_t surface_count() const { return surfaces_.size(); }
 
-  /// Diffuse reflectance of a side of a surface, one number per band [0,1], and the largest of them. Backs
-  /// that absorb all light are not told apart.
+  /// Diffuse reflectance of a zone, which lies on that side of a surface, one number per band [0,1], and the
+  /// largest of them; of textures the mean over the zone. Backs that absorb all light are not told apart.
+  const double* reflectance(ZoneId z, SurfaceId s, bool front) const {
+    return &reflectance_[row_of(z, s, front) * bands_];
+  }
+  const float* reflectance_float(ZoneId z, SurfaceId s, bool front) const {
+    return &side_reflectance_[row_of(z, s, front) * bands_];
+  }
+  double largest_reflectance(ZoneId z, SurfaceId s, bool front) const {
+    return largest_reflectance_[row_of(z, s, front)];
+  }
+  /// The same of a side of a surface, with textures at their means.
   const double* reflectance(SurfaceId s, bool front) const {
     return &reflectance_[row_of(s.index(), front) * bands_];
-  }
-  double largest_reflectance(SurfaceId s, bool front) const {
-    return largest_reflectance_[row_of(s.index(), front)];
   }
   /// The same of one side of a triangle; zero on backs that absorb.
   const float* reflectance(TriangleId t, bool front) const {
     return side(t, front).reflects ? &side_reflectance_[row_of(surface_of(t), front) * bands_] : zero_.data();
   }
+  /// At a point; textures are averaged over x.footprint. Where it varies, it is put into `here`.
+  const float* reflectance(const SurfacePoint& x, PointValues& here) const {
+    return reflectance(x.triangle, x.u, x.v, x.front, x.footprint, here);
+  }
+  const float* reflectance(const Hit& x, PointValues& here) const {
+    return reflectance(x.triangle, x.u, x.v, x.front, 0, here);
+  }
 
-  /// BRDF at x for light from direction `from` (unit), seen from x.towards.
-  BrdfValue value(const SurfacePoint& x, const Vec3f& from) const {
-    return std::visit([&](const auto& lobe) { return lobe.value(x, from); }, lobe_at(x));
+  /// BRDF at x for light from direction `from` (unit), seen from x.towards. Refers to `here`.
+  BrdfValue value(const SurfacePoint& x, const Vec3f& from, PointValues& here) const {
+    return std::visit([&](const auto& lobe) { return lobe.value(x, from); },
+                      Lobe(LambertLobe{reflectance(x, here)}));
   }
   /// A direction from which light seen from x.towards comes, for two uniform numbers.
   ScatterSample sample(const SurfacePoint& x, float u0, float u1) const {
-    return std::visit([&](const auto& lobe) { return lobe.sample(x, u0, u1); }, lobe_at(x));
+    return std::visit([&](const auto& lobe) { return lobe.sample(x, u0, u1); },
+                      Lobe(LambertLobe{reflectance(x.triangle, x.front)}));
   }
 
   SurfaceId surface(TriangleId t) const { return SurfaceId(surface_of(t)); }
@@ -94,6 +115,14 @@ class SurfaceModel {
   const float* emitted(TriangleId t, bool front) const {
     return emits(t, front) ? &emitted_[surface_of(t) * bands_] : zero_.data();
   }
+  /// At a point, as reflectance(x, here).
+  const float* emitted(const SurfacePoint& x, PointValues& here) const {
+    const Side& s = side(x.triangle, x.front);
+    if (!s.emission_varies) return emitted(x.triangle, x.front);
+    point_emitted(x, here);
+    return here.data();
+  }
+  bool emission_varies(TriangleId t) const { return side(t, true).emission_varies; }
   /// Radiance at an angle to the normal over emitted(): (e+2)/2 cos^e, 1 for Lambertian emission.
   float emission_shape(TriangleId t, float cosine) const {
     const float e = static_cast<float>(surfaces_[surface_of(t)].emission_exponent);
@@ -105,6 +134,11 @@ class SurfaceModel {
   const Spectrum& normal_radiance(SurfaceId s) const { return surfaces_[s.index()].normal_radiance; }
   /// Emitted by a square metre of one side [W/m2] per band.
   const Spectrum& exitance(SurfaceId s) const { return surfaces_[s.index()].exitance; }
+  /// The same of a zone, which lies on such a side; of textures the mean over the zone.
+  Spectrum exitance(ZoneId z, SurfaceId s) const;
+
+  const RoomTextures& textures() const { return *textures_; }
+  bool any_cut_outs() const { return !textures_->cut_outs().empty(); }
 
  private:
   struct OfSurface {
@@ -115,22 +149,43 @@ class SurfaceModel {
   struct Side {
     bool reflects;
     bool emits;
+    bool reflectance_varies = false;  // and it reflects
+    bool emission_varies = false;     // and it emits
+  };
+  /// Where the reflectance of a side of a surface stands: all zones have row `first`, or each its own.
+  struct Rows {
+    std::uint32_t first, mask;
   };
 
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   static std::size_t row_of(std::size_t surface, bool front) { return 2 * surface + (front ? 0 : 1); }
+  std::size_t row_of(ZoneId z, SurfaceId s, bool front) const {
+    const Rows& rows = rows_[row_of(s.index(), front)];
+    return std::size_t{rows.first} + (static_cast<std::uint32_t>(z.index()) & rows.mask);
+  }
   std::size_t surface_of(TriangleId t) const { return surface_[t.index()]; }
-  Lobe lobe_at(const SurfacePoint& x) const { return LambertLobe{reflectance(x.triangle, x.front)}; }
+  const float* reflectance(TriangleId t, float u, float v, bool front, float footprint,
+                           PointValues& here) const {
+    if (!side(t, front).reflectance_varies) return reflectance(t, front);
+    textures_->reflectance(t, u, v, footprint * metres_per_unit_, here);
+    return here.data();
+  }
+  void point_emitted(const SurfacePoint& x, PointValues& here) const;
+  void add_zone_rows(const ZoneMesh& mesh);
 
+  const RoomTextures* textures_;
+  float metres_per_unit_;
   std::size_t bands_;
   bool any_specular_ = false;
   bool any_transmits_ = false;
   std::vector<OfSurface> surfaces_;
   std::vector<SpecularSurface> specular_;  // by surface
-  std::vector<double> reflectance_;        // by surface and side (row_of)
+  std::vector<Rows> rows_;                 // by surface and side
+  std::vector<double> reflectance_;        // by surface and side, then by zone if any varies
   std::vector<double> largest_reflectance_;
   std::vector<float> side_reflectance_;  // as reflectance_
   std::vector<float> emitted_;           // by surface
+  std::vector<double> zone_radiance_;    // along the normal, by zone; empty if none varies
   std::vector<std::uint32_t> surface_;   // of each triangle
   std::vector<Side> sides_;              // by side (mesh/zones/side.h)
   std::vector<float> zero_;

@@ -5,6 +5,7 @@
 #include "scenes/model/scene.h"
 #include "solver/reflect/surface_model.h"
 #include "solver/sky/sky_light.h"
+#include "solver/texture/room_textures.h"
 #include "solver/trace/ray_tracer.h"
 
 namespace reemit {
@@ -17,8 +18,9 @@ class Room {
   Room(const Scene& scene, const ZoneMesh& mesh)
       : scene_(&scene),
         mesh_(&mesh),
-        rays_(mesh),
-        surfaces_(scene, mesh, rays_.metres_per_unit()),
+        textures_(scene, mesh),
+        rays_(mesh, textures_),
+        surfaces_(scene, mesh, textures_, rays_.metres_per_unit()),
         sky_(make_sky_light(scene, mesh, rays_, surfaces_)) {}
   Room(const Scene&&, const ZoneMesh&) = delete;
   Room(const Scene&, const ZoneMesh&&) = delete;
@@ -34,12 +36,13 @@ class Room {
   std::size_t band_count() const { return scene_->bands.count(); }
   /// Diffuse reflectance of a zone, one number per band [0,1].
   const float* zone_reflectance(ZoneId z) const {
-    return surfaces_.reflectance(mesh_->zone_triangle(z), mesh_->zone_is_front(z));
+    return surfaces_.reflectance_float(z, mesh_->zone_surface(z), mesh_->zone_is_front(z));
   }
 
  private:
   const Scene* scene_;
   const ZoneMesh* mesh_;
+  RoomTextures textures_;
   RayTracer rays_;
   SurfaceModel surfaces_;
   std::shared_ptr<const SkyLight> sky_;

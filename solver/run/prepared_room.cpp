@@ -1,15 +1,48 @@
 #include "solver/run/prepared_room.h"
 
+#include <algorithm>
+
 #include "solver/shoot/closed_room_check.h"
+#include "solver/texture/zone_means.h"
 
 namespace reemit {
 
+namespace {
+
+/// Zones of cut-outs are as large as what is there of them.
+void measure_cut_outs(const Scene& scene, ZoneMesh& mesh) {
+  const bool any = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                               [&](const Surface& s) { return scene.material_of(s).textures.is_cut_out(); });
+  if (any)
+    mesh.set_solid_shares(zone_texture_means(RoomTextures(scene, mesh), mesh, scene.bands.count()).solid);
+}
+
+/// What zones hold of textures, for all that is printed and exported without the room.
+void keep_zone_means(const Room& room, Solution& solution) {
+  if (room.surfaces().textures().empty()) return;
+  const ZoneMesh& mesh = room.mesh();
+  solution.zone_reflectances.clear();
+  solution.zone_exitances.clear();
+  for (std::size_t i = 0; i < mesh.zone_count(); ++i) {
+    const ZoneId z(i);
+    const SurfaceId surface = mesh.zone_surface(z);
+    const double* rho = room.surfaces().reflectance(z, surface, mesh.zone_is_front(z));
+    solution.zone_reflectances.insert(solution.zone_reflectances.end(), rho, rho + room.band_count());
+    Spectrum exitance = room.surfaces().exitance(z, surface);
+    if (!room.surfaces().emits(mesh.zone_triangle(z), mesh.zone_is_front(z))) exitance.setZero();
+    solution.zone_exitances.insert(solution.zone_exitances.end(), exitance.begin(), exitance.end());
+  }
+}
+
+}  // namespace
+
 PreparedRoom::PreparedRoom(const Scene& scene, Solution& solution, const WorkWatch& preparing)
-    : room((preparing.at(0), scene), solution.mesh),
+    : room((preparing.at(0), measure_cut_outs(scene, solution.mesh), scene), solution.mesh),
       transport(room),
       emission(collect_packet_sources(transport)) {
   for (std::size_t c = 0; c < emission.channels.count(); ++c)
     solution.audit.bands[c].watts_per_quantum = emission.watts_per_quantum[c];
+  keep_zone_means(room, solution);
   if (is_dark()) {
     solution.record.stopped = StopReason::kNoLuminaire;
     solution.record.unreached_zones = solution.mesh.zone_count();

@@ -84,7 +84,8 @@ class WaitingPackets {
   std::size_t count() const { return id_.size(); }
 
   void add(const Vec3f& origin, const Vec3f& direction, std::uint32_t id, const SpecularWay& way,
-           const std::int64_t* power) {
+           const std::int64_t* power, std::uint32_t cut_out_key = 0) {
+    cut_out_key_.push_back(cut_out_key);
     origin_.push_back(origin);
     direction_.push_back(direction);
     id_.push_back(id);
@@ -94,11 +95,13 @@ class WaitingPackets {
   /// Adds a packet of a block for its second look.
   void add_doubtful(const RayTracer& scene, const PacketBlock& block, const Hit16& hits, int lane) {
     add(block.rays.origin(lane), scene.second_direction(block.rays.direction(lane), hits, lane),
-        block.id[lane], block.way[lane], &block.power[static_cast<std::size_t>(lane) * values_]);
+        block.id[lane], block.way[lane], &block.power[static_cast<std::size_t>(lane) * values_],
+        scene.cut_out_key(block.rays, lane));
   }
   void append(const WaitingPackets& more) {
     for (std::size_t i = 0; i < more.count(); ++i)
-      add(more.origin_[i], more.direction_[i], more.id_[i], more.way_[i], &more.power_[i * values_]);
+      add(more.origin_[i], more.direction_[i], more.id_[i], more.way_[i], &more.power_[i * values_],
+          more.cut_out_key_[i]);
   }
 
   /// Moves those from `first` on whose way has gone beyond this part into `other`.
@@ -106,9 +109,10 @@ class WaitingPackets {
     std::size_t kept = first;
     for (std::size_t i = first; i < count(); ++i) {
       if (way_[i].part > part) {
-        other.add(origin_[i], direction_[i], id_[i], way_[i], &power_[i * values_]);
+        other.add(origin_[i], direction_[i], id_[i], way_[i], &power_[i * values_], cut_out_key_[i]);
         continue;
       }
+      cut_out_key_[kept] = cut_out_key_[i];
       origin_[kept] = origin_[i];
       direction_[kept] = direction_[i];
       id_[kept] = id_[i];
@@ -129,7 +133,7 @@ class WaitingPackets {
     block.count = static_cast<int>(std::min<std::size_t>(16, count() - first));
     for (int lane = 0; lane < block.count; ++lane) {
       const std::size_t i = first + static_cast<std::size_t>(lane);
-      block.rays.set(lane, origin_[i], direction_[i]);
+      block.rays.set(lane, origin_[i], direction_[i], cut_out_key_[i]);
       block.id[lane] = id_[i];
       block.way[lane] = way_[i];
       std::copy_n(&power_[i * values_], values_, &block.power[static_cast<std::size_t>(lane) * values_]);
@@ -138,6 +142,7 @@ class WaitingPackets {
 
  private:
   void resize(std::size_t count) {
+    cut_out_key_.resize(count);
     origin_.resize(count);
     direction_.resize(count);
     id_.resize(count);
@@ -146,6 +151,7 @@ class WaitingPackets {
   }
 
   std::size_t values_;  // of each packet
+  std::vector<std::uint32_t> cut_out_key_;  // as Ray16::key
   std::vector<Vec3f> origin_;
   std::vector<Vec3f> direction_;
   std::vector<std::uint32_t> id_;

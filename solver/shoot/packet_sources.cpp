@@ -94,7 +94,7 @@ PacketSources collect_packet_sources(const PacketRoom& transport) {
     if (!surfaces.emits(mesh.zone_triangle(zone), mesh.zone_is_front(zone))) continue;
     const SurfaceId surface = mesh.zone_surface(zone);
     add({zone, 0, static_cast<float>(surfaces.emission_exponent(surface))},
-        mesh.zone_area(zone) * surfaces.exitance(surface));
+        mesh.zone_area(zone) * surfaces.exitance(zone, surface));
   }
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     add({ZoneId(), static_cast<std::uint32_t>(l), 0},

@@ -216,17 +216,17 @@ class WalkTask {
       std::vector<std::int64_t>& part = account_of(block.way[lane].part, bounce);
       for (std::size_t c = 0; c < values; ++c)
         book(part[zone[lane].index() * values + c], quanta[c], shared_);
-      reflect(surface, block, lane, bounce, bits);
+      reflect(zone[lane], surface, block, lane, bounce, bits);
     }
   }
 
   /// Absorbs a packet, scatters it, or sends it on as a ray.
-  void reflect(SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce,
+  void reflect(ZoneId zone, SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce,
                const BitLanes& bits) {
     const auto k = static_cast<std::size_t>(lane);
     const std::int64_t* quanta = &block.power[k * values_];
-    const double* rho = transport_.surface_model().reflectance(surface, hits_.front[lane]);
-    double survival = transport_.surface_model().largest_reflectance(surface, hits_.front[lane]);
+    const double* rho = transport_.surface_model().reflectance(zone, surface, hits_.front[lane]);
+    double survival = transport_.surface_model().largest_reflectance(zone, surface, hits_.front[lane]);
     std::int64_t* absorbed = &absorbed_[surface.index() * values_];
     const float u = low_bytes_to_unit(bits, k);
     const double on = specular_.any() ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;

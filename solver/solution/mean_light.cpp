@@ -13,7 +13,7 @@ constexpr std::size_t kGroups = ZoneSums::kGroups;
 struct GroupedMean {
   explicit GroupedMean(std::size_t bands)
       : emitted(Spectrum::Zero(static_cast<Eigen::Index>(bands))), scatters(emitted) {
-    groups.fill({emitted, emitted});
+    groups.fill({emitted, emitted, emitted});
     all = groups[0];
   }
 
@@ -40,6 +40,7 @@ struct GroupedMean {
   struct Light {
     Spectrum irradiance;  // [W/m2]
     Spectrum scattered;   // reflected, and let through from the other side [W/m2]
+    Spectrum reflected;   // sum over zones of area times what textures make them reflect more than their mean
   };
   double area = 0;                    // [m2]
   Spectrum emitted;                   // by the zones themselves [W/m2]
@@ -70,8 +71,15 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
   const std::size_t bands = solution.bands.count();
   const std::size_t values = sums.direct.size();
   std::vector<GroupedMean> sides(2 * solution.surface_names.size(), GroupedMean(bands));
+  const bool varies = !solution.zone_reflectances.empty();
   const auto side_of = [&](ZoneId z) -> GroupedMean& {
     return sides[2 * mesh.zone_surface(z).index() + (mesh.zone_is_front(z) ? 0 : 1)];
+  };
+  // Reflectance of a zone over that of its material, which scatter() takes.
+  const auto excess = [&](std::size_t i) {
+    const ZoneId z(i / bands);
+    const Spectrum& mean = solution.zone_material(z).reflectance_of(mesh.zone_is_front(z));
+    return solution.zone_reflectances[i] - mean[static_cast<Eigen::Index>(i % bands)];
   };
   const auto add_up = [&](auto&& value_of, auto&& into) {
     for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
@@ -86,8 +94,11 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
   for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
     GroupedMean& side = side_of(ZoneId(z));
     side.area += mesh.zone_area(ZoneId(z));
-    for (std::size_t b = 0; b < bands; ++b)
-      side.emitted[static_cast<Eigen::Index>(b)] = solution.emitted_radiosity(ZoneId(z), b);
+    for (std::size_t b = 0; b < bands; ++b) {
+      double& emitted = side.emitted[static_cast<Eigen::Index>(b)];
+      const double here = solution.emitted_radiosity(ZoneId(z), b);
+      emitted = varies ? emitted + mesh.zone_area(ZoneId(z)) / side.area * (here - emitted) : here;
+    }
   }
   add_up([&](std::size_t i) { return sums.total(i); },
          [](GroupedMean& side) -> Spectrum& { return side.all.irradiance; });
@@ -103,6 +114,21 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
   for (std::size_t s = 0; s < sides.size(); ++s)
     scatter(solution.materials[solution.surface_materials[s / 2].index()], sides[s], sides[s ^ 1U],
             s % 2 == 0);
+  if (!varies) return sides;
+  // What zones reflect is not the mean reflectance times the mean irradiance.
+  const auto own = [](GroupedMean::Light& light, const GroupedMean& side, double weight) {
+    if (side.area > 0 && weight > 0) light.scattered += light.reflected / (side.area * weight);
+  };
+  add_up([&](std::size_t i) { return excess(i) * sums.total(i); },
+         [](GroupedMean& side) -> Spectrum& { return side.all.reflected; });
+  for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
+    add_up([&](std::size_t i) { return excess(i) * static_cast<double>(sums.group_total[g * values + i]); },
+           [g](GroupedMean& side) -> Spectrum& { return side.groups[g].reflected; });
+  for (GroupedMean& side : sides) {
+    own(side.all, side, static_cast<double>(sums.weight()));
+    for (std::size_t g = 0; g < kGroups; ++g)
+      own(side.groups[g], side, static_cast<double>(sums.group_weight[g]));
+  }
   return sides;
 }
 

@@ -169,6 +169,7 @@ Estimate Solution::irradiance(ZoneId z, std::size_t band) const {
 }
 
 double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {
+  if (!zone_exitances.empty()) return zone_exitances[z.index() * bands.count() + band];
   const Material& material = zone_material(z);
   if (!material.emits_both_sides && !mesh.zone_is_front(z)) return 0;
   return material.exitance()[to_index(band)];
@@ -188,7 +189,7 @@ Estimate Solution::transmitted(ZoneId z, std::size_t band, Irradiance of) const 
 }
 
 Estimate Solution::scattered(ZoneId z, std::size_t band, Irradiance of) const {
-  const double reflectance = zone_reflectance(z)[to_index(band)];
+  const double reflectance = zone_reflectance(z, band);
   const Estimate e = (this->*of)(z, band);
   const Estimate through = transmitted(z, band, of);
   // A black zone reflects nothing however little is known about its irradiance.
@@ -221,6 +222,7 @@ void keep_surfaces(const Scene& scene, Solution& solution) {
     if (material.non_diffuse.transmits_diffusely())
       kept.diffuse_transmittance = material.non_diffuse.diffuse_transmittance;
     material.non_diffuse = std::move(kept);
+    material.textures = {};  // zones have their means
   }
 }
 

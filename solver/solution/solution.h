@@ -142,6 +142,9 @@ struct Solution {
   std::vector<MaterialId> surface_materials;  ///< By SurfaceId, into materials.
   /// As in the room; of their non-diffuse parts diffuse transmission alone. Filled by keep_surfaces.
   std::vector<Material> materials;
+  /// Of rooms with textures or vertex colours, by zone and band: diffuse reflectance [0,1], and emitted
+  /// radiosity [W/m2]; empty in others, where the materials say it.
+  std::vector<double> zone_reflectances, zone_exitances;
   MeshReport mesh_report;
   ZoneMesh mesh{BaseMesh{}};
   ZoneSums sums;
@@ -164,8 +167,10 @@ struct Solution {
   const Material& zone_material(ZoneId z) const {
     return materials[surface_materials[mesh.zone_surface(z).index()].index()];
   }
-  const Spectrum& zone_reflectance(ZoneId z) const {
-    return zone_material(z).reflectance_of(mesh.zone_is_front(z));
+  /// Diffuse [0,1]; of textures the mean over the zone.
+  double zone_reflectance(ZoneId z, std::size_t band) const {
+    if (!zone_reflectances.empty()) return zone_reflectances[z.index() * bands.count() + band];
+    return zone_material(z).reflectance_of(mesh.zone_is_front(z))[static_cast<Eigen::Index>(band)];
   }
   double emitted_radiosity(ZoneId z,
                            std::size_t band) const;  ///< M_e = pi L_e of the side the zone is on [W/m2].

@@ -251,6 +251,22 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   return ZoneMesh(std::move(base), std::move(groups), std::move(splits));
 }
 
+void read_textures(const Hdf5Group& root, Solution& solution) {
+  if (!root.has_dataset("textures")) return;
+  const Hdf5Group group = root.open_group("textures");
+  const Hdf5Shape shape{solution.mesh.zone_count(), solution.bands.count()};
+  solution.zone_reflectances = group.read<double>("reflectance", shape);
+  solution.zone_exitances = group.read<double>("emitted", shape);
+  require(std::all_of(solution.zone_reflectances.begin(), solution.zone_reflectances.end(),
+                      [](double x) { return x >= 0 && x <= 1; }),
+          "reflectance of a zone outside [0,1]");
+  require(std::all_of(solution.zone_exitances.begin(), solution.zone_exitances.end(),
+                      [](double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }),
+          "negative or infinite emission of a zone");
+  if (group.has_dataset("solid_share"))
+    solution.mesh.set_solid_shares(group.read<float>("solid_share", {solution.mesh.zone_count()}));
+}
+
 /// No sum of sixteen of these overflows.
 constexpr std::int64_t kMostGroupWeight = std::int64_t{1} << 53;
 
@@ -325,6 +341,7 @@ Solution read_all(const Hdf5Group& root) {
   const Channels channels(solution.bands.count());
   solution.sums = read_sums(root, channels);
   solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / channels.count());
+  read_textures(root, solution);
   solution.gathered = read_gathered(root, solution);
   read_audit(root, solution);
   return solution;

@@ -60,6 +60,10 @@ void check_consistent(const Solution& solution) {
     require(t.surface.index() < surfaces, "triangle with a surface out of range");
   require(solution.mesh_report.surfaces.size() == surfaces,
           "one row of the mesh report per surface expected");
+  const std::size_t means_of_textures =
+      solution.zone_reflectances.empty() ? 0 : solution.mesh.zone_count() * bands;
+  for (const std::vector<double>* means : {&solution.zone_reflectances, &solution.zone_exitances})
+    require(means->size() == means_of_textures, "one mean of textures per zone and band expected");
   const ZoneSums& sums = solution.sums;
   const std::size_t channels = sums.channels.count();
   require(sums.channels.bands() == bands, "sums of another number of bands");
@@ -299,6 +303,19 @@ void write_zone_values(const Hdf5Group& zones, const Solution& s) {
                  [&](ZoneId z, std::size_t b) { return s.caustic_irradiance(z, b).stderr_of_mean; });
 }
 
+void write_textures(const Hdf5Group& root, const Solution& solution) {
+  if (solution.zone_reflectances.empty()) return;
+  const Hdf5Group group = root.create_group("textures");
+  const std::size_t bands = solution.bands.count();
+  put_bands(group, "reflectance", solution.zone_reflectances, bands, "1",
+            "diffuse reflectance of each zone, its mean over the textures there");
+  put_bands(group, "emitted", solution.zone_exitances, bands, "W/m2",
+            "emitted by each zone, its mean over the textures there");
+  if (!solution.mesh.solid_shares().empty())
+    put(group, "solid_share", solution.mesh.solid_shares(), 1, "1",
+        "share of each zone that is there; areas of zones are of that alone");
+}
+
 void write_sums(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group group = root.create_group("sums");
   const ZoneSums& sums = solution.sums;
@@ -368,6 +385,7 @@ void write_all(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group zones = root.create_group("zones");
   write_zone_geometry(zones, solution.mesh);
   write_zone_values(zones, solution);
+  write_textures(root, solution);
   write_sums(root, solution);
   write_gathered(root, solution);
   write_audit(root, solution);

@@ -57,6 +57,19 @@ void occlude_shape(const RTCOccludedFunctionNArguments* args) {
       RTCRayN_tfar(args->ray, args->N, i) = -kInfinity;
 }
 
+/// Lets rays pass that the cut-out does not stop: those whose number lies at or above its opacity there.
+void pass_cut_out(const RTCFilterFunctionNArguments* args) {
+  const auto& textures = *static_cast<const RoomTextures*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const std::uint32_t triangle = textures.cut_outs()[RTCHitN_primID(args->hit, args->N, i)];
+    const float opacity = textures.opacity(TriangleId(triangle), RTCHitN_u(args->hit, args->N, i),
+                                           RTCHitN_v(args->hit, args->N, i));
+    const std::uint32_t bits = mixed_bits(RTCRayN_id(args->ray, args->N, i) ^ mixed_bits(triangle + 1));
+    if (static_cast<float>(bits >> 8) * 0x1p-24F >= opacity) args->valid[i] = 0;
+  }
+}
+
 }  // namespace
 
 EmbreeTree::EmbreeTree() : device_(rtcNewDevice(nullptr)) {
@@ -74,7 +87,8 @@ EmbreeTree::~EmbreeTree() {
 }
 
 void EmbreeTree::add(const std::vector<Vec3f>& vertices,
-                     const std::vector<std::array<std::uint32_t, 3>>& indices, unsigned number) {
+                     const std::vector<std::array<std::uint32_t, 3>>& indices, unsigned number,
+                     const RoomTextures* cut_outs) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
@@ -88,29 +102,44 @@ void EmbreeTree::add(const std::vector<Vec3f>& vertices,
   for (const Vec3f& p : vertices)
     for (int k = 0; k < 3; ++k) *vertex++ = p[k];
   for (const auto& corners : indices) index = std::copy(corners.begin(), corners.end(), index);
+  if (cut_outs != nullptr) {
+    rtcSetGeometryUserData(geometry, const_cast<RoomTextures*>(cut_outs));
+    rtcSetGeometryIntersectFilterFunction(geometry, pass_cut_out);
+    rtcSetGeometryOccludedFilterFunction(geometry, pass_cut_out);
+  }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene_, geometry, number);
   rtcReleaseGeometry(geometry);
 }
 
 void EmbreeTree::add_triangles(const std::vector<Vec3f>& vertices, std::span<const BaseTriangle> triangles,
-                               const std::vector<std::uint32_t>& apart) {
+                               const std::vector<std::uint32_t>& feet, const RoomTextures* textures) {
   std::vector<std::array<std::uint32_t, 3>> indices;
   indices.reserve(triangles.size());
   for (const BaseTriangle& t : triangles) indices.push_back(t.vertex);
-  std::vector<Vec3f> apart_vertices;
-  std::vector<std::array<std::uint32_t, 3>> apart_indices;
-  for (const std::uint32_t t : apart) {
-    const auto first = static_cast<std::uint32_t>(apart_vertices.size());
-    for (std::uint32_t& v : indices[t]) {
-      apart_vertices.push_back(vertices[v]);
-      v = triangles[t]
-              .vertex[0];  // shrinks to a point, which no ray hits, and keeps the numbers of the others
+  struct Apart {
+    std::vector<Vec3f> vertices;
+    std::vector<std::array<std::uint32_t, 3>> indices;
+  };
+  const auto set_apart = [&](const std::vector<std::uint32_t>& apart) {
+    Apart result;
+    for (const std::uint32_t t : apart) {
+      const auto first = static_cast<std::uint32_t>(result.vertices.size());
+      for (std::uint32_t& v : indices[t]) {
+        result.vertices.push_back(vertices[v]);
+        v = triangles[t]
+                .vertex[0];  // shrinks to a point, which no ray hits, and keeps the numbers of the others
+      }
+      result.indices.push_back({first, first + 1, first + 2});
     }
-    apart_indices.push_back({first, first + 1, first + 2});
-  }
+    return result;
+  };
+  // A foot that is a cut-out is one of these.
+  const Apart of_cut_outs = textures == nullptr ? Apart{} : set_apart(textures->cut_outs());
+  const Apart of_feet = set_apart(feet);
   add(vertices, indices, kTriangles);
-  if (!apart.empty()) add(apart_vertices, apart_indices, kFeet);
+  if (!feet.empty()) add(of_feet.vertices, of_feet.indices, kFeet);
+  if (textures != nullptr) add(of_cut_outs.vertices, of_cut_outs.indices, kCutOuts, textures);
 }
 
 void EmbreeTree::add_shapes(const std::vector<CurvedShape>& shapes) {

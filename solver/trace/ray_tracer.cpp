@@ -1,5 +1,6 @@
 #include "solver/trace/ray_tracer.h"
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -45,7 +46,7 @@ void occluded1(RTCScene scene, RTCRay& ray) {
 #endif
 }
 
-RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float far) {
+RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float far, std::uint32_t key) {
   RTCRay ray{};
   ray.org_x = origin.x();
   ray.org_y = origin.y();
@@ -56,6 +57,7 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float f
   ray.tnear = near;
   ray.tfar = far;
   ray.mask = 0xffffffffU;
+  ray.id = key;
   return ray;
 }
 
@@ -65,7 +67,12 @@ Vec3f turned(const Vec3f& d) {
 
 }  // namespace
 
-RayTracer::RayTracer(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_unique<EmbreeTree>()) {
+RayTracer::RayTracer(const ZoneMesh& mesh) : RayTracer(mesh, RoomTextures()) {}
+
+RayTracer::RayTracer(const ZoneMesh& mesh, const RoomTextures& textures)
+    : mesh_(&mesh),
+      cut_outs_(textures.cut_outs().empty() ? nullptr : &textures),
+      embree_(std::make_unique<EmbreeTree>()) {
   const BaseMesh& base = mesh.base();
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
   Vec3 high = -low;
@@ -111,7 +118,7 @@ RayTracer::RayTracer(const ZoneMesh& mesh) : mesh_(&mesh), embree_(std::make_uni
   vertices.reserve(base.vertices.size());
   for (const Vec3& p : base.vertices) vertices.push_back(normalised(p));
   const auto flat = std::span(base.triangles).first(flat_count_);
-  embree_->add_triangles(vertices, flat, feet_.triangles());
+  embree_->add_triangles(vertices, flat, feet_.triangles(), cut_outs_);
   if (!shapes.empty()) embree_->add_shapes(shapes);
   embree_->commit();
 }
@@ -136,6 +143,13 @@ void RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float 
     hit.front = normals_[primitive].dot(direction) < 0;
     return;
   }
+  if (geometry == EmbreeTree::kCutOuts) {
+    hit.triangle = TriangleId(cut_outs_->cut_outs()[primitive]);
+    hit.u = u;
+    hit.v = v;
+    hit.front = normals_[hit.triangle.index()].dot(direction) < 0;
+    return;
+  }
   const Vec3 d = direction.cast<double>();
   if (geometry == EmbreeTree::kFeet) {
     const ShapeFeet::Place place = feet_.place_of({feet_.triangles()[primitive], u, v}, origin.cast<double>(),
@@ -153,6 +167,13 @@ void RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float 
   hit.u = static_cast<float>(place.at.u);
   hit.v = static_cast<float>(place.at.v);
   hit.front = patches.normal_at(point).dot(d) < 0;
+}
+
+std::uint32_t RayTracer::key_of(const Vec3f& origin, const Vec3f& direction) {
+  std::uint32_t key = 0x9e3779b9U;
+  for (const Vec3f* v : {&origin, &direction})
+    for (const float x : *v) key = mixed_bits(key ^ std::bit_cast<std::uint32_t>(x));
+  return key | 1U;  // 0 stands for none
 }
 
 RayTracer::~RayTracer() = default;
@@ -203,9 +224,10 @@ Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front) const {
 }
 
 bool RayTracer::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
+  const std::uint32_t key = cut_out_key(origin, direction);
   const auto trace = [&](const Vec3f& d, Hit& found) {
     RTCRayHit query{};
-    query.ray = make_ray(origin, d, 0, kInfinity);
+    query.ray = make_ray(origin, d, 0, kInfinity, key);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     intersect1(embree_->scene(), query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
@@ -223,11 +245,12 @@ bool RayTracer::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) c
 }
 
 bool RayTracer::closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
+  const std::uint32_t key = cut_out_key(origin, direction);
   const auto look = [&](const Vec3f& d) {
     float near = 0;
     for (;;) {
       RTCRayHit query{};
-      query.ray = make_ray(origin, d, near, kInfinity);
+      query.ray = make_ray(origin, d, near, kInfinity, key);
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       intersect1(embree_->scene(), query);
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
@@ -254,7 +277,7 @@ void RayTracer::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.ray.tfar[i] = kInfinity;
     query.ray.time[i] = 0;
     query.ray.mask[i] = 0xffffffffU;
-    query.ray.id[i] = 0;
+    query.ray.id[i] = cut_outs_ != nullptr && i < count ? cut_out_key(rays, i) : 0;
     query.ray.flags[i] = 0;
     query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     query.hit.primID[i] = kMiss;
@@ -343,7 +366,8 @@ void RayTracer::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   int doubtful_count = 0;
   for (int i = 0; i < count; ++i) {
     if (!is_doubtful(hits.triangle[i], hits.u[i], hits.v[i], hits.front[i])) continue;
-    doubtful.set(doubtful_count, rays.origin(i), second_direction(rays.direction(i), hits, i));
+    doubtful.set(doubtful_count, rays.origin(i), second_direction(rays.direction(i), hits, i),
+                 cut_out_key(rays, i));
     lanes[doubtful_count++] = i;
   }
   if (doubtful_count == 0) return;
@@ -365,16 +389,18 @@ bool RayTracer::visible(const Vec3f& from, const Vec3f& to) const {
   const Vec3f d = to - from;
   const float distance = d.norm();
   if (!(distance > 0)) return true;
-  RTCRay ray = make_ray(from, d / distance, 0, distance * (1 - 1e-6F));
+  const Vec3f direction = d / distance;
+  RTCRay ray = make_ray(from, direction, 0, distance * (1 - 1e-6F), cut_out_key(from, direction));
   occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;
 }
 
 bool RayTracer::escapes(const Vec3f& origin, const Vec3f& direction) const {
-  RTCRay ray = make_ray(origin, direction, 0, kInfinity);
+  const std::uint32_t key = cut_out_key(origin, direction);
+  RTCRay ray = make_ray(origin, direction, 0, kInfinity, key);
   occluded1(embree_->scene(), ray);
   if (ray.tfar < 0) return false;
-  ray = make_ray(origin, turned(direction), 0, kInfinity);
+  ray = make_ray(origin, turned(direction), 0, kInfinity, key);
   occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;
 }

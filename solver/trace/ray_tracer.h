@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/zones/zone_mesh.h"
+#include "solver/texture/room_textures.h"
 #include "solver/trace/shape_feet.h"
 
 namespace reemit {
@@ -24,8 +25,11 @@ struct Hit {
 struct alignas(64) Ray16 {
   float ox[16], oy[16], oz[16];
   float dx[16], dy[16], dz[16];
+  /// What decides at cut-outs, where a ray is one that was turned (RayTracer::cut_out_key); 0 for others.
+  std::uint32_t key[16] = {};
 
-  void set(int lane, const Vec3f& origin, const Vec3f& direction) {
+  void set(int lane, const Vec3f& origin, const Vec3f& direction, std::uint32_t cut_out_key = 0) {
+    key[lane] = cut_out_key;
     ox[lane] = origin.x();
     oy[lane] = origin.y();
     oz[lane] = origin.z();
@@ -60,6 +64,9 @@ class RayTracer {
   }
 
   explicit RayTracer(const ZoneMesh& mesh);
+  /// With the cut-outs of a room, which must outlive it: rays pass through a point of one with the share of
+  /// it that is not there, by a number that depends on the ray and the triangle alone.
+  RayTracer(const ZoneMesh& mesh, const RoomTextures& textures);
   ~RayTracer();
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
@@ -140,6 +147,14 @@ class RayTracer {
   Vec3f second_direction(const Vec3f& direction, const Hit16& hits, int lane) const {
     return second_direction(direction, hits.triangle[lane], hits.u[lane], hits.v[lane]);
   }
+  /// What decides whether a ray passes cut-outs, for its second look to decide alike; 0 in rooms without.
+  std::uint32_t cut_out_key(const Vec3f& origin, const Vec3f& direction) const {
+    return cut_outs_ == nullptr ? 0 : key_of(origin, direction);
+  }
+  std::uint32_t cut_out_key(const Ray16& rays, int lane) const {
+    if (cut_outs_ == nullptr) return 0;
+    return rays.key[lane] != 0 ? rays.key[lane] : key_of(rays.origin(lane), rays.direction(lane));
+  }
   /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
   /// eye).
   bool visible(const Vec3f& from, const Vec3f& to) const;
@@ -150,6 +165,7 @@ class RayTracer {
 
  private:
   std::uint32_t shape_of(TriangleId t) const { return mesh_->triangle(t).shape; }
+  static std::uint32_t key_of(const Vec3f& origin, const Vec3f& direction);
   Vec3 curved_point(TriangleId t, float u, float v) const;
   Vec3f curved_normal(TriangleId t, float u, float v) const;
   bool is_lost(std::uint32_t triangle, bool front) const {
@@ -162,6 +178,7 @@ class RayTracer {
                 const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
 
   const ZoneMesh* mesh_;
+  const RoomTextures* cut_outs_ = nullptr;  // null where the room has none
   double metres_per_unit_ = 1;
   Vec3 centre_{0, 0, 0};
   std::vector<Vec3f> corners_;

@@ -17,6 +17,7 @@ struct SurfacePoint {
   /// Unit, to where the light is seen from: back along the ray that met the point. 0 where irradiance is
   /// asked for, which no viewer has a part in.
   Vec3f towards{0, 0, 0};
+  float footprint = 0;  ///< Of what is seen at once, across; textures are averaged over it [normalised].
 };
 
 /// Geometric normal at a point of one side of a triangle or patch.

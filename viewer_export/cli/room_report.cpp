@@ -14,6 +14,7 @@
 #include "viewer_export/cli/luminaire_list.h"
 #include "viewer_export/cli/surface_models.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/cli/texture_report.h"
 #include "viewer_export/cli/zone_lines.h"
 
 namespace reemit::cli {
@@ -154,6 +155,8 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
                       box.size().z());
   text += fmt::format("geometry      {} surfaces, {} faces, {:.6g} m2 (one side)\n", scene.surfaces.size(),
                       face_count(scene), input_area(meshed.report));
+  if (const std::string textures = textures_text(scene); !textures.empty())
+    text += fmt::format("textures      {}\n", textures);
   text += fmt::format("mesh          {} base triangles, {} zones with default settings\n",
                       meshed.mesh.triangle_count(), meshed.mesh.zone_count());
   text += shared_zones_text(meshed.mesh, kHeadWidth);
@@ -196,6 +199,7 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
             {"base_triangles", meshed.mesh.triangle_count()},
             {"zones_by_default", meshed.mesh.zone_count()}};
   add_shared_zones(json, meshed.mesh);
+  json["textures"] = textures_json(scene);
   for (const auto& [name, count] : repairs(meshed.report)) json["repairs"][name] = count;
   json["materials"] = Json::array();
   for (const Material& material : scene.materials) {

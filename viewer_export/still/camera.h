@@ -21,6 +21,8 @@ class PinholeCamera {
 
   /// Ray through a point of the picture [px]: (0,0) is its upper left corner, y runs down.
   Ray ray(double x, double y) const;
+  /// Width of a pixel over its distance from the eye, in the middle of the picture.
+  double pixel_width() const { return per_pixel_; }
 
  private:
   Vec3 eye_;  // normalised

@@ -12,6 +12,10 @@
 
 namespace reemit {
 
+/// What a camera ray stands for, in pixels: textures are averaged over as much of what it sees. Below 1 since
+/// a pixel has several rays, which do the rest.
+constexpr double kSpot = 0.5;
+
 /// One replicate of one pixel while a block is rendered.
 struct TileRenderer::PixelSums {
   PointSampler sampler;
@@ -152,12 +156,14 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
   }
   const std::size_t bands = field_.band_count();
   const SurfaceModel& surfaces = room_->surfaces();
-  const SurfacePoint point = seen_point(hit, ray.direction);
+  SurfacePoint point = seen_point(hit, ray.direction);
+  point.footprint = spot_at(ray.skipped + static_cast<double>(hit.distance));
   sums.found.normal += point.normal.cast<double>();
   sums.found.depth += (ray.skipped + static_cast<double>(hit.distance)) * rays.metres_per_unit();
   ++sums.found.seen;
 
-  const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+  SurfaceModel::PointValues at_point;
+  const float* reflectance = surfaces.reflectance(point, at_point);
   for (std::size_t b = 0; b < bands; ++b) sums.albedo[b] += sums.share * reflectance[b];
   add_seen(point, all_.data(), 1, sample, sums, batch);
   if (surfaces.is_specular(hit.triangle, hit.front))
@@ -228,6 +234,7 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
               step.bends ? step.pdf_per_sr : from.pdf_per_sr,
               hit.distance};
     if (!step.bends) next.way += from.way;
+    next.x.footprint = from.x.footprint + spot_at(static_cast<double>(hit.distance));
     const bool is_shared = next.pdf_per_sr > 0 && sums.integrator != Integrator::kZones;
     const float found = is_shared ? direct_.found_by_lobe(hit.triangle, next.way, next.pdf_per_sr) : 1;
     for (std::size_t b = 0; b < next.through.size(); ++b) next.through[b] *= step.share()[b] / step.chance;
@@ -272,7 +279,8 @@ void TileRenderer::add_seen(const SurfacePoint& x, const float* through, float f
                             PixelSums& sums, GatherBatch& batch) const {
   const std::size_t bands = field_.band_count();
   const SurfaceModel& surfaces = room_->surfaces();
-  const float* emitted = surfaces.emitted(x.triangle, x.front);
+  SurfaceModel::PointValues at_point;
+  const float* emitted = surfaces.emitted(x, at_point);
   const float towards_eye = std::fabs(room_->rays().normal(x.triangle, x.u, x.v).dot(x.towards));
   const float emission = found * sums.share * surfaces.emission_shape(x.triangle, towards_eye);
   for (std::size_t b = 0; b < bands; ++b) sums.direct[b] += emission * emitted[b] * through[b];
@@ -308,7 +316,8 @@ void TileRenderer::add_highlights(const SurfacePoint& x, const float* through, i
 void TileRenderer::add_light(const SurfacePoint& x, const float* through, int sample, PixelSums& sums,
                              GatherBatch& batch) const {
   const SurfaceModel& surfaces = room_->surfaces();
-  add_scattered(x, surfaces.reflectance(x.triangle, x.front), sums.index, through, sample, sums, batch);
+  SurfaceModel::PointValues at_point;
+  add_scattered(x, surfaces.reflectance(x, at_point), sums.index, through, sample, sums, batch);
   if (!surfaces.is_specular(x.triangle, x.front) || !surfaces.specular(x.triangle).diffuses()) return;
   constexpr std::uint64_t kOfOtherSides = std::uint64_t{1} << 40;  // random numbers that no pixel has
   SurfacePoint behind = x;
@@ -390,6 +399,10 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const 
                          ZoneBiasEffort::of(camera_rays * (2 + settings_->gathers)), settings_->seed, stop_);
   if (stop_->requested()) return std::nullopt;
   return bias;
+}
+
+float TileRenderer::spot_at(double way) const {
+  return static_cast<float>(kSpot * camera_->pixel_width() * way);
 }
 
 SurfacePoint TileRenderer::seen_point(const Hit& hit, const Vec3f& direction) const {

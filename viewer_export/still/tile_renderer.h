@@ -74,6 +74,8 @@ class TileRenderer {
   /// chooses the random numbers.
   void add_scattered(const SurfacePoint& x, const float* share, std::uint64_t index, const float* through,
                      int sample, PixelSums& sums, GatherBatch& batch) const;
+  /// Across what a camera ray stands for after such a way [normalised].
+  float spot_at(double way) const;
   /// What is seen over x, a mirror, gloss or glass that a ray of length `way` met.
   void add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums, GatherBatch& batch) const;
   /// What a camera sees of the sky where nothing stands before it.

@@ -38,9 +38,8 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
       gathers_per_point_(settings.gathers_per_point()),
       log2_points_(std::countr_zero(static_cast<unsigned>(most_points))) {}
 
-const float* VertexGatherer::emitted(std::size_t v) const {
-  const ZoneId zone = rings_.begin(v)->zone;
-  return room_.surfaces().emitted(room_.mesh().zone_triangle(zone), room_.mesh().zone_is_front(zone));
+const float* VertexGatherer::emitted(std::size_t v, SurfaceModel::PointValues& here) const {
+  return room_.surfaces().emitted(rings_.point(v), here);
 }
 
 void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
@@ -74,14 +73,15 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
 
 std::optional<ZoneBias> VertexGatherer::zone_bias(const VertexData& data, double rays) const {
   std::vector<double> power(bands_, 0.0);  // reflected radiance times area
+  SurfaceModel::PointValues at_vertex;
   std::vector<double> area_up_to;
   double area = 0;
   for (std::size_t v = 0; v < rings_.size(); ++v) {
     area += rings_.area(v);
     area_up_to.push_back(area);
     for (std::size_t b = 0; b < bands_; ++b)
-      power[b] += rings_.area(v) *
-                  (static_cast<double>(data.radiance[v * bands_ + b]) - static_cast<double>(emitted(v)[b]));
+      power[b] += rings_.area(v) * (static_cast<double>(data.radiance[v * bands_ + b]) -
+                                    static_cast<double>(emitted(v, at_vertex)[b]));
   }
   if (!(area > 0)) return std::nullopt;
   std::vector<SurfacePoint> points;
@@ -124,9 +124,10 @@ const Spectrum* VertexGatherer::diffuse_transmittance(std::size_t v) const {
 }
 
 void VertexGatherer::store(std::size_t v, const float* means, VertexData& data) const {
-  const ZoneId zone = rings_.begin(v)->zone;
-  const float* own = emitted(v);
-  const float* reflectance = room_.zone_reflectance(zone);
+  SurfaceModel::PointValues emission_here;
+  SurfaceModel::PointValues reflectance_here;
+  const float* own = emitted(v, emission_here);
+  const float* reflectance = room_.surfaces().reflectance(rings_.point(v), reflectance_here);
   const Spectrum* tau = diffuse_transmittance(v);
   for (std::size_t b = 0; b < bands_; ++b) {
     const auto irradiance_of = [&](std::size_t r, std::size_t side) {

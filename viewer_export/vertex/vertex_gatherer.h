@@ -34,7 +34,7 @@ class VertexGatherer {
 
   const RadianceField& field() const { return field_; }
   /// Self-emitted radiance of the surface a vertex belongs to, one number per band [W/(m2 sr)].
-  const float* emitted(std::size_t v) const;
+  const float* emitted(std::size_t v, SurfaceModel::PointValues& here) const;
   /// Replicates of one vertex take this many numbers in `means` below.
   std::size_t values_per_vertex() const { return kReplicates * values_per_replicate(); }
 

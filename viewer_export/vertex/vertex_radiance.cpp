@@ -59,7 +59,6 @@ struct Through {
 /// independent.
 void average_zones(const Solution& solution, const VertexRings& rings, const RadianceField& field,
                    VertexData& data) {
-  const ZoneMesh& mesh = solution.mesh;
   const SurfaceModel& surfaces = field.room().surfaces();
   const std::size_t bands = data.bands.count();
   for (std::size_t v = 0; v < rings.size(); ++v)
@@ -83,10 +82,9 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
           if (q->zone == r->zone) same += q->area / area;
         variance += share * same * e.stderr_of_mean * e.stderr_of_mean;
       }
-      const ZoneId zone = rings.begin(v)->zone;
-      const TriangleId t = mesh.zone_triangle(zone);
-      const bool front = mesh.zone_is_front(zone);
-      const double brdf = lambert_brdf_per_sr(surfaces.reflectance(t, front)[b]);
+      SurfaceModel::PointValues here;
+      const double brdf = lambert_brdf_per_sr(surfaces.reflectance(rings.point(v), here)[b]);
+      const float own = surfaces.emitted(rings.point(v), here)[b];
       double error =
           std::hypot(brdf * std::sqrt(variance), std::sqrt(through.variance) * std::numbers::inv_pi);
       if (field.parts() > 1) {
@@ -100,8 +98,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
       }
       const std::size_t k = v * bands + b;
       data.irradiance[k] = static_cast<float>(all);
-      data.radiance[k] =
-          surfaces.emitted(t, front)[b] + static_cast<float>(brdf * all + through.all * std::numbers::inv_pi);
+      data.radiance[k] = own + static_cast<float>(brdf * all + through.all * std::numbers::inv_pi);
       data.radiance_stderr[k] = static_cast<float>(error);
       data.direct_radiance[k] = static_cast<float>(brdf * direct + through.direct * std::numbers::inv_pi);
       if (!data.caustic_radiance.empty())

@@ -25,11 +25,12 @@ std::vector<BandSums> band_sums(const VertexGatherer& gatherer, const VertexRing
                                 const VertexData& data, std::size_t first, std::size_t last) {
   const std::size_t bands = data.bands.count();
   std::vector<BandSums> sums(bands);
+  SurfaceModel::PointValues at_vertex;
   for (std::size_t v = first; v < last; ++v)
     for (std::size_t b = 0; b < bands; ++b) {
       const double s = data.radiance_stderr[v * bands + b];
-      const double l =
-          static_cast<double>(data.radiance[v * bands + b]) - static_cast<double>(gatherer.emitted(v)[b]);
+      const double l = static_cast<double>(data.radiance[v * bands + b]) -
+                       static_cast<double>(gatherer.emitted(v, at_vertex)[b]);
       sums[b].errors += rings.area(v) * s * s;
       sums[b].values += rings.area(v) * l * l;
     }

@@ -28,6 +28,12 @@ class VertexRings {
   std::size_t size() const { return first_.size() - 1; }
   const RingCell* begin(std::size_t vertex) const { return &rings_[first_[vertex]]; }
   const RingCell* end(std::size_t vertex) const { return rings_.data() + first_[vertex + 1]; }
+  /// The vertex in the first of its cells, without its normal.
+  SurfacePoint point(std::size_t vertex) const {
+    const RingCell& ring = *begin(vertex);
+    return {ring.cell.triangle, static_cast<float>(ring.vertex.u), static_cast<float>(ring.vertex.v),
+            ring.cell.front};
+  }
   double area(std::size_t vertex) const;  ///< A third of the zones around [m2].
 
   const std::vector<Vec3>& positions() const { return positions_; }  ///< [m]

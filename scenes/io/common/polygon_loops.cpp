@@ -12,6 +12,7 @@ namespace {
 struct Loop {
   std::vector<Vec3> corners;
   std::vector<Vec3> normals;
+  std::vector<TexturePoint> texture_points;
 };
 
 using Key = std::array<double, 3>;
@@ -30,6 +31,7 @@ std::vector<Loop> cut_at_repeated_corners(const Polygon& polygon) {
     for (std::size_t i = from; i < path.size(); ++i) {
       loop.corners.push_back(polygon.outer[path[i]]);
       if (!polygon.normals.empty()) loop.normals.push_back(polygon.normals[path[i]]);
+      if (!polygon.texture_points.empty()) loop.texture_points.push_back(polygon.texture_points[path[i]]);
     }
     if (loop.corners.size() >= 3) loops.push_back(std::move(loop));
   };
@@ -116,6 +118,7 @@ std::vector<Loop> loops_with_area(std::vector<Loop> loops) {
 void turn(Loop& loop) {
   std::reverse(loop.corners.begin(), loop.corners.end());
   std::reverse(loop.normals.begin(), loop.normals.end());
+  std::reverse(loop.texture_points.begin(), loop.texture_points.end());
 }
 
 }  // namespace
@@ -133,6 +136,7 @@ std::vector<Polygon> split_at_seams(Polygon polygon) {
   if (loops.size() == 1) {
     polygon.outer = std::move(loops[0].corners);
     polygon.normals = std::move(loops[0].normals);
+    polygon.texture_points = std::move(loops[0].texture_points);
     return {std::move(polygon)};
   }
   Eigen::Index dropped = 0;
@@ -168,6 +172,7 @@ std::vector<Polygon> split_at_seams(Polygon polygon) {
     if (loop_area(loops[i].corners).dot(front) < 0) turn(loops[i]);
     island.outer = std::move(loops[i].corners);
     island.normals = std::move(loops[i].normals);
+    island.texture_points = std::move(loops[i].texture_points);
     outline.push_back(i);
   }
   for (auto& hole : polygon.holes) {

@@ -1,15 +1,17 @@
 #pragma once
 #include <vector>
 
+#include "scenes/model/texture.h"
 #include "scenes/model/vec.h"
 
 namespace reemit {
 
 /// A polygon as formats write it: corners by coordinates.
 struct Polygon {
-  std::vector<Vec3> outer;               ///< Counter-clockwise seen from the front.
-  std::vector<Vec3> normals;             ///< One per outer corner, or none.
-  std::vector<std::vector<Vec3>> holes;  ///< Any winding.
+  std::vector<Vec3> outer;                        ///< Counter-clockwise seen from the front.
+  std::vector<Vec3> normals;                      ///< One per outer corner, or none.
+  std::vector<std::vector<Vec3>> holes;           ///< Any winding.
+  std::vector<TexturePoint> texture_points = {};  ///< One per outer corner, or none.
 };
 
 /// Area times unit normal of a closed loop (Newell's sum): exact for planar loops, the mean for others.

@@ -17,6 +17,14 @@ void SurfaceBuilder::add(const Polygon& polygon, std::uint32_t source_line) {
   face.source_line = source_line;
   for (const Vec3& p : polygon.outer) face.outer.push_back(index_of(p, surface_.positions, positions_));
   for (const Vec3& n : polygon.normals) face.normals.push_back(index_of(n, surface_.normals, normals_));
+  for (const TexturePoint& p : polygon.texture_points) {
+    const Key key{p.uv[0][0] + 0.0, p.uv[0][1] + 0.0,
+                  0};  // formats that use this have one set and no colours
+    const auto [entry, added] =
+        texture_points_.try_emplace(key, static_cast<std::uint32_t>(surface_.texture_points.size()));
+    if (added) surface_.texture_points.push_back(p);
+    face.texture_points.push_back(entry->second);
+  }
   for (const auto& hole : polygon.holes) {
     auto& loop = face.holes.emplace_back();
     for (const Vec3& p : hole) loop.push_back(index_of(p, surface_.positions, positions_));

@@ -28,7 +28,7 @@ class SurfaceBuilder {
   static std::uint32_t index_of(const Vec3& p, std::vector<Vec3>& points, Index& index);
 
   Surface surface_;
-  Index positions_, normals_;
+  Index positions_, normals_, texture_points_;
 };
 
 /// Adds the material in parentheses to the names of surfaces that would otherwise be called the same.

@@ -19,6 +19,7 @@ void reverse_loops(Surface& surface) {
   for (Face& face : surface.faces) {
     std::reverse(face.outer.begin(), face.outer.end());
     std::reverse(face.normals.begin(), face.normals.end());
+    std::reverse(face.texture_points.begin(), face.texture_points.end());
     for (auto& hole : face.holes) std::reverse(hole.begin(), hole.end());
   }
 }

@@ -157,6 +157,14 @@ void GltfAccessors::apply_sparse(const tinygltf::Accessor& accessor, int compone
   }
 }
 
+std::vector<std::array<double, 2>> GltfAccessors::vec2(int accessor, const std::string& where) const {
+  const std::vector<double> values = numbers(accessor, 2, where);
+  std::vector<std::array<double, 2>> pairs;
+  pairs.reserve(values.size() / 2);
+  for (std::size_t i = 0; i + 1 < values.size(); i += 2) pairs.push_back({values[i], values[i + 1]});
+  return pairs;
+}
+
 std::vector<Vec3> GltfAccessors::vec3(int accessor, const std::string& where) const {
   const std::vector<double> values = numbers(accessor, 3, where);
   std::vector<Vec3> vectors;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ class GltfAccessors {
   /// Vectors of three numbers; normalized integers become [0,1] or [-1,1]. Every number is finite.
   std::vector<Vec3> vec3(int accessor, const std::string& where) const;
   std::vector<Eigen::Vector4d> vec4(int accessor, const std::string& where) const;
+  std::vector<std::array<double, 2>> vec2(int accessor, const std::string& where) const;
   /// Unsigned integers, each below `limit`.
   std::vector<std::uint32_t> indices(int accessor, std::size_t limit, const std::string& where) const;
   /// The bytes of a buffer view.

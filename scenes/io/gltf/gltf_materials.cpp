@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scenes/io/gltf/gltf_texture.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
 
@@ -120,39 +121,90 @@ class MaterialReader {
     return it == source.extensions.end() ? nothing : it->second;
   }
 
-  /// The mean of a texture, 1 where there is none or it cannot be read; warns in both cases where there is
-  /// one.
-  Rgb mean(int texture, TextureEncoding encoding, const char* what, const std::string& name) {
-    if (texture < 0) return Rgb::Ones();
-    const std::optional<Rgb> value = textures_.mean(texture, encoding, where_);
-    if (!value) {
+  static Rgb mean_of(const Texture& texture) {
+    if (!texture) return Rgb::Ones();
+    const Texel& mean = texture.image->mean;
+    return Rgb(mean[0], mean[1], mean[2]);
+  }
+
+  /// A texture, null where there is none or it cannot be read, with a warning.
+  Texture texture(const tinygltf::TextureInfo& use, TextureEncoding encoding, const std::string& pointer,
+                  const char* what, const std::string& name) {
+    if (use.index < 0) return {};
+    GltfTextureRead read = textures_.read(use, encoding, where_ + "/" + pointer);
+    if (!read.problem.empty()) {
       ++scene_.refused["textures"];
       scene_.warnings.push_back(
-          fmt::format("material \"{}\": its {} texture cannot be read and counts as white", name, what));
-      return Rgb::Ones();
+          fmt::format("material \"{}\": its {} texture counts as white: {}", name, what, read.problem));
+      return {};
     }
+    if (const std::string note = reduction_note(*read.texture.image);
+        !note.empty() && reduced_.insert(note).second)
+      scene_.notes.push_back(note);
+    return std::move(read.texture);
+  }
+
+  /// Of textures that count with their means: 1 where there is none or it cannot be read; warns in both cases
+  /// where there is one.
+  Rgb mean(const tinygltf::TextureInfo& use, TextureEncoding encoding, const std::string& pointer,
+           const char* what, const std::string& name) {
+    const Texture read = texture(use, encoding, pointer, what, name);
+    if (!read) return Rgb::Ones();
+    const Rgb value = mean_of(read);
     ++scene_.not_modelled["textures"];
     scene_.warnings.push_back(
         fmt::format("material \"{}\": its {} texture is replaced by its mean {:.3f} {:.3f} {:.3f}", name,
-                    what, (*value)[0], (*value)[1], (*value)[2]));
-    return *value;
+                    what, value[0], value[1], value[2]));
+    return value;
+  }
+
+  /// A texture that an extension refers to.
+  tinygltf::TextureInfo texture_info(const tinygltf::Value& object, const char* extension_name,
+                                     const char* key) const {
+    tinygltf::TextureInfo use;
+    if (!object.IsObject() || !object.Has(key)) return use;
+    const tinygltf::Value& value = object.Get(key);
+    if (!value.IsObject() || !value.Has("index") || !value.Get("index").IsInt())
+      fail(in_extension(extension_name, key), fmt::format("{} has no index", key), "Export the file anew.");
+    use.index = value.Get("index").GetNumberAsInt();
+    if (value.Has("texCoord") && value.Get("texCoord").IsInt())
+      use.texCoord = value.Get("texCoord").GetNumberAsInt();
+    if (value.Has("extensions") && value.Get("extensions").Has("KHR_texture_transform"))
+      use.extensions["KHR_texture_transform"] = value.Get("extensions").Get("KHR_texture_transform");
+    return use;
+  }
+
+  /// The reflectance was read without its texture: now it becomes the mean.
+  static void vary_reflectance(Texture texture, Material& material) {
+    if (!texture) return;
+    material.textures.reflectance_factor = material.reflectance;
+    material.reflectance *= mean_of(texture);
+    material.textures.reflectance = std::move(texture);
   }
 
   void read_metallic_roughness(const tinygltf::Material& source, Material& material) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     const std::string within = "pbrMetallicRoughness/";
-    const Rgb base = rgb(pbr.baseColorFactor, 1, within + "baseColorFactor") *
-                     mean(pbr.baseColorTexture.index, TextureEncoding::kSrgb, "base colour", material.name);
+    const Rgb factor = rgb(pbr.baseColorFactor, 1, within + "baseColorFactor");
+    Texture colour = texture(pbr.baseColorTexture, TextureEncoding::kSrgb, within + "baseColorTexture",
+                             "base colour", material.name);
+    const Rgb base = factor * mean_of(colour);  // of what does not vary
     // Green holds the roughness, blue the metallic share.
-    const Rgb packed = mean(pbr.metallicRoughnessTexture.index, TextureEncoding::kLinear,
-                            "metallic-roughness", material.name);
+    const Rgb packed = mean(pbr.metallicRoughnessTexture, TextureEncoding::kLinear,
+                            within + "metallicRoughnessTexture", "metallic-roughness", material.name);
     const double metallic = checked(pbr.metallicFactor, 1, within + "metallicFactor") * packed[2];
     const double roughness = checked(pbr.roughnessFactor, 1, within + "roughnessFactor") * packed[1];
     material.non_diffuse.roughness = roughness * roughness;  // alpha, by the definition of the format
-    const double transmitted = number(source, "KHR_materials_transmission", "transmissionFactor", 0, 1);
+    double transmitted = number(source, "KHR_materials_transmission", "transmissionFactor", 0, 1);
+    if (transmitted > 0)
+      transmitted *=
+          mean(texture_info(extension(source, "KHR_materials_transmission"), "KHR_materials_transmission",
+                            "transmissionTexture"),
+               TextureEncoding::kLinear, in_extension("KHR_materials_transmission", "transmissionTexture"),
+               "transmission", material.name)[0];
     const double through = number(source, kDiffuseTransmission, "diffuseTransmissionFactor", 0, 1);
     const double diffuse = (1 - metallic) * (1 - transmitted);
-    material.reflectance = base * (diffuse * (1 - through));
+    material.reflectance = factor * (diffuse * (1 - through));
     if (through > 0)
       material.non_diffuse.diffuse_transmittance =
           triple(source, kDiffuseTransmission, "diffuseTransmissionColorFactor") * (diffuse * through);
@@ -166,9 +218,15 @@ class MaterialReader {
       material.non_diffuse.index_of_refraction = std::max(1.0, index_of_refraction(source));
       if (metallic == 0) material.non_diffuse.angle_law = AngleLaw::kDielectric;
       read_volume(source, material.non_diffuse);
-      return;
+    } else {
+      add_dielectric_gloss(source, metallic, material);
     }
-    add_dielectric_gloss(source, metallic, material);
+    if (colour && metallic > 0)
+      scene_.warnings.push_back(fmt::format(
+          "material \"{}\": its metallic share, {:.3f}, has the mean of the base colour texture everywhere",
+          material.name, metallic));
+    read_opacity(source, pbr.baseColorFactor, colour, material);
+    vary_reflectance(std::move(colour), material);
   }
 
   double index_of_refraction(const tinygltf::Material& source) const {
@@ -223,16 +281,10 @@ class MaterialReader {
 
   void read_specular_glossiness(const tinygltf::Material& source, Material& material) {
     const tinygltf::Value& object = extension(source, kSpecularGlossiness);
-    Rgb diffuse = triple(source, kSpecularGlossiness, "diffuseFactor");
-    if (object.Has("diffuseTexture")) {
-      const tinygltf::Value& texture = object.Get("diffuseTexture");
-      const bool indexed = texture.IsObject() && texture.Has("index") && texture.Get("index").IsInt();
-      if (!indexed)
-        fail(in_extension(kSpecularGlossiness, "diffuseTexture"), "diffuseTexture has no index",
-             "Export the file anew.");
-      diffuse *=
-          mean(texture.Get("index").GetNumberAsInt(), TextureEncoding::kSrgb, "diffuse", material.name);
-    }
+    const Rgb diffuse = triple(source, kSpecularGlossiness, "diffuseFactor");
+    Texture colour =
+        texture(texture_info(object, kSpecularGlossiness, "diffuseTexture"), TextureEncoding::kSrgb,
+                in_extension(kSpecularGlossiness, "diffuseTexture"), "diffuse", material.name);
     // Less what is reflected before it comes to the diffuse part, by the definition of the extension.
     const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor");
     material.reflectance = diffuse * (1 - specular.maxCoeff());
@@ -242,6 +294,27 @@ class MaterialReader {
     }
     const double roughness = 1 - number(source, kSpecularGlossiness, "glossinessFactor", 1, 1);
     material.non_diffuse.roughness = roughness * roughness;
+    std::vector<double> factor{1, 1, 1, 1};
+    if (object.Has("diffuseFactor") && object.Get("diffuseFactor").ArrayLen() > 3)
+      factor[3] = object.Get("diffuseFactor").Get(3).GetNumberAsDouble();
+    read_opacity(source, factor, colour, material);
+    vary_reflectance(std::move(colour), material);
+  }
+
+  /// Alpha modes MASK and BLEND; `factor`: of the base colour, with its opacity.
+  void read_opacity(const tinygltf::Material& source, const std::vector<double>& factor,
+                    const Texture& colour, Material& material) const {
+    if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
+    MaterialTextures& textures = material.textures;
+    textures.opacity_factor =
+        factor.size() > 3 ? checked(factor[3], 1, "pbrMetallicRoughness/baseColorFactor") : 1;
+    if (colour && colour.image->has_opacity && colour.image->smallest_opacity < 1) textures.opacity = colour;
+    if (source.alphaMode == "BLEND") return;
+    const double cutoff = checked(source.alphaCutoff, 1e6, "alphaCutoff");
+    if (textures.opacity)
+      textures.opacity_cutoff = cutoff;
+    else
+      textures.opacity_factor = textures.opacity_factor >= cutoff ? 1 : 0;
   }
 
   void read_emission(const tinygltf::Material& source, Material& material) {
@@ -252,10 +325,15 @@ class MaterialReader {
     const double strength = number(source, kStrength, "emissiveStrength", 1, kMostStrength);
     const Rgb factor = rgb(source.emissiveFactor, kMostStrength, "emissiveFactor") * strength;
     if (!(factor > 0).any()) return;
-    const Rgb emissive =
-        factor * mean(source.emissiveTexture.index, TextureEncoding::kSrgb, "emissive", material.name);
-    material.emitted_radiance = emissive * units_.radiance();
-    const std::string problem = strength_problem(material.emitted_radiance, "the radiance [W/(m2 sr)]");
+    Texture image =
+        texture(source.emissiveTexture, TextureEncoding::kSrgb, "emissiveTexture", "emissive", material.name);
+    const Rgb strongest = factor * units_.radiance();
+    material.emitted_radiance = strongest * mean_of(image);
+    if (image) {
+      material.textures.emission_factor = strongest;
+      material.textures.emission = std::move(image);
+    }
+    const std::string problem = strength_problem(Spectrum(strongest), "the radiance [W/(m2 sr)]");
     if (!problem.empty())
       fail(strength == 1 ? "emissiveFactor" : in_extension(kStrength, "emissiveStrength"), problem,
            kStrengthAdvice);
@@ -272,12 +350,7 @@ class MaterialReader {
       read_metallic_roughness(source, material);
     }
     read_emission(source, material);
-    if (source.alphaMode != "OPAQUE") {
-      ++scene_.not_modelled["transparent_materials"];
-      scene_.warnings.push_back(
-          fmt::format("material \"{}\": alpha mode {} is ignored, the surface is opaque", material.name,
-                      source.alphaMode == "MASK" ? "MASK" : "BLEND"));
-    }
+    if (source.normalTexture.index >= 0) ++scene_.not_modelled["normal_maps"];
     return material;
   }
 
@@ -285,7 +358,8 @@ class MaterialReader {
   GltfTextures textures_;
   const GltfUnits& units_;
   Scene& scene_;
-  std::string where_;  // JSON pointer of the material
+  std::set<std::string> reduced_;  // images, as told
+  std::string where_;              // JSON pointer of the material
 };
 
 }  // namespace

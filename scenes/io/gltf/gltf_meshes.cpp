@@ -1,5 +1,6 @@
 #include "scenes/io/gltf/gltf_meshes.h"
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 
@@ -42,6 +43,45 @@ void check_compression(const GltfModel& gltf, const tinygltf::Primitive& primiti
   }
 }
 
+void read_texture_points(const GltfModel& gltf, const GltfAccessors& accessors,
+                         const tinygltf::Primitive& source, const std::string& where,
+                         GltfPrimitive& primitive) {
+  const auto points = [&](std::size_t count, const std::string& pointer) -> std::vector<TexturePoint>& {
+    if (count != primitive.positions.size())
+      throw InputError(gltf.at(pointer),
+                       fmt::format("{} values for {} positions", count, primitive.positions.size()),
+                       "Export the file anew.");
+    primitive.texture_points.resize(count);
+    return primitive.texture_points;
+  };
+  for (std::size_t set = 0; set < TexturePoint::kSets; ++set) {
+    const std::string name = fmt::format("TEXCOORD_{}", set);
+    const int accessor = attribute(source, name.c_str());
+    if (accessor < 0) continue;
+    const std::string pointer = where + "/attributes/" + name;
+    const auto values = accessors.vec2(accessor, pointer);
+    std::vector<TexturePoint>& to = points(values.size(), pointer);
+    for (std::size_t i = 0; i < values.size(); ++i) to[i].uv[set] = values[i];
+  }
+  const int colours = attribute(source, "COLOR_0");
+  if (colours < 0) return;
+  const std::string pointer = where + "/attributes/COLOR_0";
+  const auto put = [&](const auto& values) {
+    std::vector<TexturePoint>& to = points(values.size(), pointer);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        to[i].colour[static_cast<std::size_t>(c)] = static_cast<float>(std::clamp(values[i][c], 0.0, 1.0));
+  };
+  const auto& all = gltf.model.accessors;
+  const bool has_alpha = static_cast<std::size_t>(colours) < all.size() &&
+                         all[static_cast<std::size_t>(colours)].type == TINYGLTF_TYPE_VEC4;
+  if (has_alpha)
+    put(accessors.vec4(colours, pointer));
+  else
+    put(accessors.vec3(colours, pointer));
+  primitive.has_colours = true;
+}
+
 GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accessors,
                              const tinygltf::Primitive& source, const std::string& where,
                              GltfOmissions& omissions) {
@@ -59,7 +99,6 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
   }
   if (!has_material) ++omissions.plain;
   if (!source.targets.empty()) ++omissions.morphed;
-  if (attribute(source, "COLOR_0") >= 0) ++omissions.coloured;
   const int positions = attribute(source, "POSITION");
   if (positions < 0) {
     throw InputError(gltf.at(where), "the primitive has no positions", "Export the file anew.");
@@ -75,6 +114,7 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
           "Export the file anew.");
     }
   }
+  read_texture_points(gltf, accessors, source, where, primitive);
   std::vector<std::uint32_t> order;
   if (source.indices >= 0) {
     order = accessors.indices(source.indices, primitive.positions.size(), where + "/indices");
@@ -90,6 +130,7 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
     Face face;
     face.outer.assign(t.begin(), t.end());
     if (!primitive.normals.empty()) face.normals = face.outer;
+    if (!primitive.texture_points.empty()) face.texture_points = face.outer;
     primitive.faces.push_back(std::move(face));
   }
   return primitive;

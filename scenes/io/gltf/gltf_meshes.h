@@ -10,7 +10,9 @@ namespace reemit {
 /// A primitive of a glTF mesh as triangles in the coordinates of the mesh.
 struct GltfPrimitive {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  ///< One per position, or none.
+  std::vector<Vec3> normals;                 ///< One per position, or none.
+  std::vector<TexturePoint> texture_points;  ///< Likewise.
+  bool has_colours = false;                  ///< They have colours of their own.
   std::vector<Face> faces;
   MaterialId material;
 };
@@ -19,7 +21,6 @@ struct GltfPrimitive {
 struct GltfOmissions {
   std::size_t other_modes = 0;  ///< Primitives made of points or lines.
   std::size_t morphed = 0;      ///< Primitives with morph targets.
-  std::size_t coloured = 0;     ///< Primitives with vertex colours.
   std::size_t collapsed = 0;    ///< Triangles that name a vertex twice.
   std::size_t plain = 0;        ///< Primitives without a material.
 };

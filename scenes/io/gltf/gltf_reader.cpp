@@ -66,8 +66,6 @@ class NodeReader {
          "mesh primitive(s) made of points or lines are left out");
     warn(omissions_.morphed, not_modelled, "morph_targets",
          "mesh primitive(s) have morph targets: the base shape is used");
-    warn(omissions_.coloured, not_modelled, "vertex_colours",
-         "mesh primitive(s) have vertex colours, which are ignored");
     warn(omissions_.plain, refused, "materials",
          "mesh primitive(s) have no material: grey with reflectance 0.5 is used");
     warn(flattened_, refused, "nodes_of_scale_0", "mesh node(s) are left out because their scale is 0");
@@ -137,6 +135,8 @@ class NodeReader {
     surface.material = primitive.material;
     surface.positions = primitive.positions;
     surface.normals = primitive.normals;
+    surface.texture_points = primitive.texture_points;
+    surface.has_vertex_colours = primitive.has_colours;
     surface.faces = primitive.faces;
     transform_surface(to_world, surface);
     for (const Vec3& corner : surface.positions) check_place(corner);

@@ -29,7 +29,8 @@ std::optional<Spectrum> converted(const Spectrum& value, const BandSet& from, co
 bool convert_material(Material& material, const BandSet& from, const BandSet& to) {
   for (Spectrum* value :
        {&material.reflectance, &material.emitted_radiance, &material.non_diffuse.specular_reflectance,
-        &material.non_diffuse.diffuse_transmittance, &material.non_diffuse.specular_transmittance}) {
+        &material.non_diffuse.diffuse_transmittance, &material.non_diffuse.specular_transmittance,
+        &material.textures.reflectance_factor, &material.textures.emission_factor}) {
     if (value->size() == 0) continue;
     const auto in_room = converted(*value, from, to);
     if (!in_room) return false;
@@ -100,7 +101,9 @@ MaterialId NativeObjects::material_of_file(ReferencedFile& file, const Surface& 
 
 void NativeObjects::read_file(const JsonCursor& at, const JsonCursor& object, const Placement& placement,
                               const std::string& name) {
-  at.expect_object({"path", "unit"});
+  at.expect_object({"path", "unit", "vertex_colours"});
+  const auto colours = at.find("vertex_colours");
+  const bool drops_colours = colours && !colours->boolean();
   ReferencedFile& file = load(at.at("path"));
   if (const auto mapping = object.find("materials")) {
     std::vector<std::string> known;
@@ -122,6 +125,7 @@ void NativeObjects::read_file(const JsonCursor& at, const JsonCursor& object, co
     Surface surface = original;
     surface.material = file.materials.empty() ? demand_material(object, placement)
                                               : material_of_file(file, original, object);
+    if (drops_colours) surface.has_vertex_colours = false;
     if (flips) flip_surface(surface);
     // A format without names of its own (PLY) takes the name of the object.
     const std::string full_name = surface.name.empty()

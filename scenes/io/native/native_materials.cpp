@@ -6,6 +6,7 @@
 
 #include "scenes/io/common/surface_geometry.h"
 #include "scenes/io/native/named_metals.h"
+#include "scenes/io/native/native_textures.h"
 #include "scenes/model/limits.h"
 
 namespace reemit {
@@ -137,12 +138,34 @@ Spectrum radiance_of_exitance(const Spectrum& exitance, const Material& material
 
 }  // namespace
 
-NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
+NativeMaterials::NativeMaterials(const JsonCursor& materials, const std::filesystem::path& folder,
+                                 Scene& scene) {
+  NativeTextures textures(folder, scene);
   for (const auto& [name, at] : materials.members()) {
-    at.expect_object({"reflectance", "back_reflectance", "radiance", "exitance", "luminance_cd_m2",
-                      "exitance_lm_m2", "total_power", "total_flux_lm", "emission_color", "emission_exponent",
-                      "sides", "emission_sides", "mirror", "metal", "transmittance", "diffuse_transmittance",
-                      "glass", "roughness", "lobe"});
+    at.expect_object({"reflectance",
+                      "back_reflectance",
+                      "radiance",
+                      "exitance",
+                      "luminance_cd_m2",
+                      "exitance_lm_m2",
+                      "total_power",
+                      "total_flux_lm",
+                      "emission_color",
+                      "emission_exponent",
+                      "sides",
+                      "emission_sides",
+                      "mirror",
+                      "metal",
+                      "transmittance",
+                      "diffuse_transmittance",
+                      "glass",
+                      "roughness",
+                      "lobe",
+                      "texture",
+                      "emission_texture",
+                      "opacity",
+                      "opacity_texture",
+                      "opacity_cutoff"});
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;
     material.name = name;
@@ -191,6 +214,7 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, Scene& scene) {
         check_strength(material.emitted_radiance, given);
       }
     }
+    textures.read(at, material);
     ids_.emplace(name, id);
     scene.materials.push_back(std::move(material));
   }

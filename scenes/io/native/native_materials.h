@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,8 +30,9 @@ Spectrum photometric_emission(double photometric, const std::optional<JsonCursor
 /// The materials of a room file.
 class NativeMaterials {
  public:
-  /// Reads the object of materials and appends them to `scene`. Scene::bands must be set.
-  NativeMaterials(const JsonCursor& materials, Scene& scene);
+  /// Reads the object of materials and appends them to `scene`. Scene::bands must be set. `folder`: that of
+  /// the room file, where textures are looked for.
+  NativeMaterials(const JsonCursor& materials, const std::filesystem::path& folder, Scene& scene);
 
   /// The material that a string names.
   MaterialId find(const JsonCursor& name) const;

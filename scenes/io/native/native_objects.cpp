@@ -145,7 +145,8 @@ void NativeObjects::read_box_with_materials(const JsonCursor& at, Surface shape,
       continue;
     }
     Surface side;
-    side.faces.push_back({{0, 1, 2, 3}, {}, {}, 0});
+    side.faces.push_back({{0, 1, 2, 3}, {}, {}, 0, shape.faces[i].texture_points});
+    side.texture_points = shape.texture_points;
     for (const std::uint32_t corner : shape.faces[i].outer) side.positions.push_back(shape.positions[corner]);
     side.material = material ? materials_.find(*material) : demand_material(at, placement);
     append(std::move(side), at, placement, fmt::format("{}{}/{}", placement.prefix, name, kBoxFaces[i]));

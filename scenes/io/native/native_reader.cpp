@@ -57,7 +57,7 @@ void read_room(const JsonCursor& room, const std::filesystem::path& folder, cons
   const auto given_unit = room.find("unit");
   const double unit = given_unit ? read_unit(*given_unit) : 1;
   if (unit != 1) scene.notes.push_back(fmt::format("lengths in the file are in {}", given_unit->string()));
-  NativeMaterials materials(room.at("materials"), scene);
+  NativeMaterials materials(room.at("materials"), folder, scene);
   if (const auto objects = room.find("objects")) {
     NativeObjects(folder, options, unit, room.find("groups"), materials, scene).read(*objects);
   }

@@ -42,6 +42,8 @@ class ObjChecker {
     where_ = at_line(file_.string(), line.number);
     if (keyword == "v" || keyword == "vn") {
       check_numbers(line);
+    } else if (keyword == "vt") {
+      check_texture_point(line);
     } else if (keyword == "f") {
       check_face(line);
     } else if (keyword == "usemtl") {
@@ -70,6 +72,18 @@ class ObjChecker {
     if (count < 3 || count > 7 || (line.words[0] == "vn" && count != 3))
       throw InputError(where_, fmt::format("'{}' has {} numbers", line.words[0], count), "Give x, y and z.");
     clean_ += fmt::format("{} {} {} {}\n", line.words[0], line.words[1], line.words[2], line.words[3]);
+  }
+
+  // u, then v and w or not.
+  void check_texture_point(const TextLine& line) {
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < line.words.size() && line.words[i][0] != '#'; ++i, ++count)
+      if (!parse_number(line.words[i]))
+        throw InputError(where_, fmt::format("'{}' is not a finite number", line.words[i]),
+                         "Was the file cut off?");
+    if (count < 1 || count > 3)
+      throw InputError(where_, fmt::format("'vt' has {} numbers", count), "Give u and v.");
+    clean_ += fmt::format("vt {} {}\n", line.words[1], count > 1 ? line.words[2] : "0");
   }
 
   void check_face(const TextLine& line) {
@@ -138,8 +152,7 @@ class ObjChecker {
   }
 
   void warn_of(std::string_view keyword) {
-    static constexpr std::array kHarmless = {"vt",  "s",     "usemap",   "maplib",
-                                             "lod", "bevel", "c_interp", "d_interp"};
+    static constexpr std::array kHarmless = {"s", "usemap", "maplib", "lod", "bevel", "c_interp", "d_interp"};
     if (std::find(kHarmless.begin(), kHarmless.end(), keyword) != kHarmless.end()) return;
     ++geometry_.ignored_statements;
     if (warned_.size() >= kMostWarnings || !warned_.emplace(keyword).second) return;
@@ -172,19 +185,27 @@ std::uint32_t absolute(int index, std::size_t count, const Loading& loading, con
   return static_cast<std::uint32_t>(value);
 }
 
+// What refers to none leaves the face without: it still has a shape, and a textured one is warned of.
+std::uint32_t texture_point(int index, std::size_t count) {
+  const std::int64_t value = index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
+  return value < 0 ? 0xffffffffU : static_cast<std::uint32_t>(value);
+}
+
 void add_face(void* user, tinyobj::index_t* corners, int count) {
   auto& loading = *static_cast<Loading*>(user);
   ObjGeometry& geometry = loading.geometry;
   ObjFace& face = geometry.faces.at(loading.next_face++);
   for (int i = 0; i < count; ++i) {
     face.positions.push_back(absolute(corners[i].vertex_index, geometry.positions.size(), loading, face));
+    if (corners[i].texcoord_index != 0)
+      face.texture_points.push_back(texture_point(corners[i].texcoord_index, geometry.texture_points.size()));
     if (corners[i].normal_index != 0)
       face.normals.push_back(absolute(corners[i].normal_index, geometry.normals.size(), loading, face));
   }
 }
 
 // Positive indices may point forward, so their range is known at the end only.
-// Faces that have normals at some corners only become flat.
+// Faces that have normals at some corners only become flat, those with texture coordinates at some have none.
 void check_ranges(ObjGeometry& geometry, const std::string& file) {
   const auto check = [&](const std::vector<std::uint32_t>& indices, std::size_t count, const ObjFace& face) {
     for (const std::uint32_t index : indices)
@@ -195,7 +216,12 @@ void check_ranges(ObjGeometry& geometry, const std::string& file) {
   for (ObjFace& face : geometry.faces) {
     check(face.positions, geometry.positions.size(), face);
     check(face.normals, geometry.normals.size(), face);
+    const bool has_missing =
+        std::any_of(face.texture_points.begin(), face.texture_points.end(),
+                    [&](std::uint32_t i) { return i >= geometry.texture_points.size(); });
+    if (has_missing) face.texture_points.clear();
     if (face.normals.size() != face.positions.size()) face.normals.clear();
+    if (face.texture_points.size() != face.positions.size()) face.texture_points.clear();
   }
 }
 
@@ -212,6 +238,9 @@ ObjGeometry read_obj_geometry(const fs::path& file, ObjMaterials& materials) {
   };
   callbacks.normal_cb = [](void* user, double x, double y, double z) {
     static_cast<Loading*>(user)->geometry.normals.emplace_back(x, y, z);
+  };
+  callbacks.texcoord_cb = [](void* user, double x, double y, double) {
+    static_cast<Loading*>(user)->geometry.texture_points.push_back({x, y});
   };
   callbacks.index_cb = add_face;
   tinyobj::LoadObjWithCallback(stream, callbacks, &loading);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -12,14 +13,16 @@ namespace reemit {
 /// One `f` statement with what was in effect there. Indices count from 0.
 struct ObjFace {
   std::vector<std::uint32_t> positions;
-  std::vector<std::uint32_t> normals;  ///< One per corner, or none.
-  std::size_t group = 0;               ///< Into ObjGeometry::groups.
-  std::size_t material = 0;            ///< Into ObjMaterials::materials.
+  std::vector<std::uint32_t> normals;         ///< One per corner, or none.
+  std::vector<std::uint32_t> texture_points;  ///< Likewise.
+  std::size_t group = 0;                      ///< Into ObjGeometry::groups.
+  std::size_t material = 0;                   ///< Into ObjMaterials::materials.
   std::uint32_t line = 0;
 };
 
 struct ObjGeometry {
   std::vector<Vec3> positions, normals;
+  std::vector<std::array<double, 2>> texture_points;
   std::vector<ObjFace> faces;
   std::vector<std::string> groups;  ///< Names made of `o` and `g`; may be empty.
   std::vector<std::string> warnings;

@@ -11,7 +11,6 @@
 
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/common/text_parse.h"
-#include "scenes/io/common/texture_average.h"
 #include "scenes/io/obj/obj_light_shares.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
@@ -106,10 +105,8 @@ std::string ignored_maps(const tinyobj::material_t& m) {
   const auto add = [&maps](const char* keyword, const std::string& file) {
     if (!file.empty()) maps += fmt::format("{}{} {}", maps.empty() ? "" : ", ", keyword, file);
   };
-  add("map_Ke", m.emissive_texname);
   add("map_Ks", m.specular_texname);
   add("map_Ns", m.specular_highlight_texname);
-  add("map_d", m.alpha_texname);
   add("bump", m.bump_texname);
   add("norm", m.normal_texname);
   add("disp", m.displacement_texname);
@@ -122,37 +119,99 @@ struct Telling {
   std::vector<std::string>& warnings;
   KindCounts& refused;
   KindCounts& not_modelled;
+  std::vector<std::string>& notes;
 };
 
-Spectrum textured_reflectance(const tinyobj::material_t& m, const fs::path& folder, const std::string& where,
-                              Telling& tell) {
-  const Spectrum kd = spectrum_of(m.diffuse);
-  if (m.diffuse_texname.empty()) return kd;
-  std::string relative = m.diffuse_texname;
-  std::replace(relative.begin(), relative.end(), '\\', '/');
-  const TextureAverage average = average_texture(folder / relative);
-  if (!average.problem.empty()) {
-    ++tell.refused["textures"];
-    tell.warnings.push_back(fmt::format("{}: Kd {:.3g} {:.3g} {:.3g} is used in place of the texture: {}",
-                                        where, kd[0], kd[1], kd[2], average.problem));
-    return kd;
-  }
-  ++tell.not_modelled["textures"];
-  tell.warnings.push_back(
-      fmt::format("{}: the texture {} is used as its average colour {:.3g} {:.3g} {:.3g}.", where, relative,
-                  average.rgb[0], average.rgb[1], average.rgb[2]));
-  return average.rgb;
+// A texture as its statement has it: -s and -o, then (0,0) is the lower left corner of the image.
+Texture texture_of(const tinyobj::texture_option_t& options, std::shared_ptr<const TextureImage> image) {
+  Texture texture;
+  texture.image = std::move(image);
+  if (options.clamp) texture.wrap_u = texture.wrap_v = TextureWrap::kClamp;
+  const auto at = [](const tinyobj::real_t& x) { return static_cast<double>(x); };
+  texture.to_image << at(options.scale[0]), 0, at(options.origin_offset[0]), 0, -at(options.scale[1]),
+      1 - at(options.origin_offset[1]);
+  return texture;
 }
 
-Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tell) {
+// Reads the maps of one material.
+class MapReader {
+ public:
+  MapReader(TextureImages& images, const fs::path& folder, const std::string& where, Telling& tell)
+      : images_(images), folder_(folder), where_(where), tell_(tell) {}
+
+  // Null where there is none, or none that can be read, which is told: `instead` of it.
+  Texture read(const std::string& name, const tinyobj::texture_option_t& options, TextureEncoding encoding,
+               const std::string& instead) {
+    if (name.empty()) return {};
+    std::string relative = name;
+    std::replace(relative.begin(), relative.end(), '\\', '/');
+    TextureRead read = images_.from_file(folder_ / relative, encoding);
+    if (!read.problem.empty()) {
+      ++tell_.refused["textures"];
+      tell_.warnings.push_back(
+          fmt::format("{}: {} is used in place of the texture: {}", where_, instead, read.problem));
+      return {};
+    }
+    const std::string note = reduction_note(*read.image);
+    if (!note.empty() && std::find(tell_.notes.begin(), tell_.notes.end(), note) == tell_.notes.end())
+      tell_.notes.push_back(note);
+    return texture_of(options, std::move(read.image));
+  }
+
+ private:
+  TextureImages& images_;
+  const fs::path& folder_;
+  const std::string& where_;
+  Telling& tell_;
+};
+
+Spectrum mean_of(const Texture& texture) {
+  const Texel& mean = texture.image->mean;
+  return Eigen::Array3d(mean[0], mean[1], mean[2]);
+}
+
+void read_opacity_map(const tinyobj::material_t& m, MapReader& maps, Material& material) {
+  Texture opacity = maps.read(m.alpha_texname, m.alpha_texopt, TextureEncoding::kLinear, "d");
+  if (!opacity) return;
+  material.textures.opacity_is_colour = !opacity.image->has_opacity;
+  material.textures.opacity_factor = static_cast<double>(m.dissolve);
+  material.textures.opacity = std::move(opacity);
+}
+
+void read_emission_map(const tinyobj::material_t& m, const std::string& where, MapReader& maps, Telling& tell,
+                       Material& material) {
+  Texture emission = maps.read(m.emissive_texname, m.emissive_texopt, TextureEncoding::kSrgb, "Ke");
+  if (!emission) return;
+  if (!material.emits()) {
+    tell.warnings.push_back(fmt::format("{}: its map_Ke emits nothing, because Ke is 0.", where));
+    return;
+  }
+  material.textures.emission_factor = material.emitted_radiance;
+  material.emitted_radiance *= mean_of(emission);
+  material.textures.emission = std::move(emission);
+}
+
+Material convert(const tinyobj::material_t& m, const fs::path& file, TextureImages& images, Telling tell) {
   const std::string where = fmt::format("{}: material '{}'", file.string(), m.name);
   Material material;
   material.name = m.name;
-  const ObjLightShares shares =
-      obj_light_shares({textured_reflectance(m, file.parent_path(), where, tell), spectrum_of(m.specular),
-                        spectrum_of(m.transmittance), m.dissolve, m.ior, m.illum});
+  const fs::path folder = file.parent_path();
+  MapReader maps(images, folder, where, tell);
+  const Spectrum kd = spectrum_of(m.diffuse);
+  Texture colour = maps.read(m.diffuse_texname, m.diffuse_texopt, TextureEncoding::kSrgb,
+                             fmt::format("Kd {:.3g} {:.3g} {:.3g}", kd[0], kd[1], kd[2]));
+  read_opacity_map(m, maps, material);
+  const ObjLightShares shares = obj_light_shares(
+      {colour ? Spectrum(Spectrum::Ones(3)) : kd, spectrum_of(m.specular), spectrum_of(m.transmittance),
+       material.textures.opacity ? 1.0 : static_cast<double>(m.dissolve), m.ior, m.illum});
   material.reflectance = shares.diffuse;
+  if (colour) {
+    material.textures.reflectance_factor = material.reflectance;
+    material.reflectance *= mean_of(colour);
+    material.textures.reflectance = std::move(colour);
+  }
   material.emitted_radiance = spectrum_of(m.emission);
+  read_emission_map(m, where, maps, tell, material);
   NonDiffusePart& rest = material.non_diffuse;
   if ((shares.specular > 0).any()) rest.specular_reflectance = shares.specular;
   if ((shares.transmitted > 0).any()) rest.specular_transmittance = shares.transmitted;
@@ -173,9 +232,9 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, Telling tel
     tell.warnings.push_back(fmt::format(
         "{}: Ni {:.3g} is below 1: light crosses it straight on, as a thin sheet; window glass has 1.5.",
         where, m.ior));
-  if (const std::string maps = ignored_maps(m); !maps.empty()) {
+  if (const std::string ignored = ignored_maps(m); !ignored.empty()) {
     ++tell.not_modelled["other_maps"];
-    tell.warnings.push_back(fmt::format("{}: ignored: {}.", where, maps));
+    tell.warnings.push_back(fmt::format("{}: ignored: {}.", where, ignored));
   }
   return material;
 }
@@ -229,7 +288,7 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
                                       file.string(), m.name));
       continue;
     }
-    materials.push_back(convert(m, file, {warnings_, refused, not_modelled}));
+    materials.push_back(convert(m, file, images_, {warnings_, refused, not_modelled, notes}));
   }
 }
 

@@ -4,14 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "scenes/io/common/texture_images.h"
 #include "scenes/model/scene.h"
 
 namespace reemit {
 
 /// The materials of the MTL files a room names. In linear Rec.709: Kd is the diffuse reflectance, Ke the
 /// radiance in W/(m2 sr) of the front; surfaces reflect on both sides. What Ks, d, Tr, Tf and illum take of
-/// the light goes to the non-diffuse part (obj_light_shares.h). A map_Kd stands for Kd by its average colour:
-/// exporters write Kd beside it as a mean, a default or a leftover, so it is not multiplied in.
+/// the light goes to the non-diffuse part (obj_light_shares.h). A map_Kd stands for Kd: exporters write Kd
+/// beside it as a mean, a default or a leftover, so it is not multiplied in. map_Ke is multiplied by Ke,
+/// map_d by d.
 class ObjMaterials {
  public:
   /// Reads one MTL file; `name` is relative to `folder`, `where` says which line asked for it. A file that is
@@ -24,8 +26,10 @@ class ObjMaterials {
 
   std::vector<Material> materials;
   KindCounts refused, not_modelled;  ///< As in Scene.
+  std::vector<std::string> notes;    ///< Of images that were made smaller.
 
  private:
+  TextureImages images_;
   std::map<std::string, std::size_t> index_;
   std::vector<std::string> warnings_;
   std::vector<std::string> undefined_;  // as messages show them

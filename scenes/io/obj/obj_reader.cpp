@@ -17,6 +17,10 @@ Polygon polygon_of(const ObjFace& face, const ObjGeometry& geometry) {
   Polygon polygon;
   for (const std::uint32_t index : face.positions) polygon.outer.push_back(geometry.positions[index]);
   for (const std::uint32_t index : face.normals) polygon.normals.push_back(geometry.normals[index]);
+  for (const std::uint32_t index : face.texture_points) {
+    TexturePoint& point = polygon.texture_points.emplace_back();
+    point.uv[0] = geometry.texture_points[index];
+  }
   return polygon;
 }
 
@@ -57,6 +61,7 @@ Scene read_obj_scene(const fs::path& file, const ReadOptions& /*options*/) {
   ObjMaterials materials;
   ObjGeometry geometry = read_obj_geometry(file, materials);
   scene.warnings = materials.warnings();
+  scene.notes = materials.notes;
   scene.materials = std::move(materials.materials);
   scene.refused = std::move(materials.refused);
   scene.not_modelled = std::move(materials.not_modelled);

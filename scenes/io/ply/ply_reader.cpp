@@ -7,9 +7,11 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "scenes/io/common/srgb.h"
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/ply/ply_header.h"
 #include "scenes/model/error.h"
@@ -104,32 +106,53 @@ class PlyBody {
   const std::string& file_;
 };
 
-/// Which of x y z nx ny nz a property is; nothing for any other.
+/// Which number of a vertex a property is: x y z nx ny nz, u and v of textures, which have several names, and
+/// red, green and blue; nothing for any other.
 std::optional<std::size_t> coordinate_of(const PlyProperty& property) {
-  static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
-  const auto it = std::find(std::begin(kNames), std::end(kNames), property.name);
+  static constexpr std::pair<std::string_view, std::size_t> kNames[] = {
+      {"x", 0}, {"y", 1}, {"z", 2},         {"nx", 3},        {"ny", 4},  {"nz", 5},    {"u", 6},    {"v", 7},
+      {"s", 6}, {"t", 7}, {"texture_u", 6}, {"texture_v", 7}, {"red", 8}, {"green", 9}, {"blue", 10}};
+  const auto it = std::find_if(std::begin(kNames), std::end(kNames),
+                               [&](const auto& name) { return name.first == property.name; });
   if (it == std::end(kNames) || property.is_list) return std::nullopt;
-  return static_cast<std::size_t>(it - std::begin(kNames));
+  return it->second;
+}
+constexpr std::size_t kNumbers = 11;
+
+/// Colours in integers are sRGB, those in floating point linear.
+double colour_of(double value, PlyType type) {
+  if (type == PlyType::kFloat || type == PlyType::kDouble) return std::clamp(value, 0.0, 1.0);
+  const double most = type == PlyType::kUint16 ? 65535 : 255;
+  return linear_from_srgb(std::clamp(value / most, 0.0, 1.0));
 }
 
 void read_vertices(const PlyElement& element, PlyBody& body, Surface& surface) {
-  bool given[6] = {};
+  bool given[kNumbers] = {};
   for (const PlyProperty& property : element.properties) {
     if (const auto k = coordinate_of(property)) given[*k] = true;
   }
   if (!given[0] || !given[1] || !given[2]) body.fail("the vertices have no x, y and z");
   const bool has_normals = given[3] && given[4] && given[5];
+  const bool has_coordinates = given[6] && given[7];
+  surface.has_vertex_colours = given[8] && given[9] && given[10];
   for (std::uint64_t i = 0; i < element.count; ++i) {
-    double values[6] = {};
+    double values[kNumbers] = {};
     for (const PlyProperty& property : element.properties) {
       if (const auto k = coordinate_of(property)) {
         values[*k] = body.next(property.type);
         if (!std::isfinite(values[*k])) body.fail(fmt::format("vertex {} is not finite", i));
+        if (*k >= 8) values[*k] = colour_of(values[*k], property.type);
       } else {
         body.skip(property);
       }
     }
     surface.positions.emplace_back(values[0], values[1], values[2]);
+    if (has_coordinates || surface.has_vertex_colours) {
+      TexturePoint& point = surface.texture_points.emplace_back();
+      point.uv[0] = {values[6], values[7]};
+      if (surface.has_vertex_colours)
+        for (std::size_t c = 0; c < 3; ++c) point.colour[c] = static_cast<float>(values[8 + c]);
+    }
     if (has_normals) surface.normals.push_back(Vec3(values[3], values[4], values[5]).normalized());
   }
 }
@@ -195,6 +218,8 @@ Surface read_ply_surface(const std::filesystem::path& file) {
   if (surface.faces.empty())
     throw InputError(name, "the file has no faces", "Export a mesh, not a cloud of points.");
   attach_normals(surface);
+  if (!surface.texture_points.empty())
+    for (Face& face : surface.faces) face.texture_points = face.outer;
   return surface;
 }
 

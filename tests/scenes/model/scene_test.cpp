@@ -121,7 +121,7 @@ TEST(FinishScene, RepairsShadingNormals) {
 
 TEST(FinishScene, DropsEmptySurfacesAndSizesEmptySpectra) {
   Scene scene = small_room();
-  scene.surfaces.push_back({"nothing", "", MaterialId(0), {}, {}, {}, {}});
+  scene.surfaces.push_back({"nothing", "", MaterialId(0), {}, {}, {}, false, {}, {}});
   scene.materials[0].emitted_radiance.resize(0);
   finish_scene(scene);
   EXPECT_EQ(scene.surfaces.size(), 2U);

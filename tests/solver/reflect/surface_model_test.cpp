@@ -45,7 +45,7 @@ TEST_F(Surfaces, KnowWhatEachSideReflects) {
   EXPECT_EQ(surfaces().surface_count(), 3U);
   EXPECT_EQ(surfaces().band_count(), 3U);
   EXPECT_EQ(surfaces().reflectance(SurfaceId(0), true)[1], 0.4);
-  EXPECT_EQ(surfaces().largest_reflectance(SurfaceId(1), true), 0.9);
+  EXPECT_EQ(surfaces().largest_reflectance(ZoneId(0), SurfaceId(1), true), 0.9);
   EXPECT_EQ(surfaces().reflectance(TriangleId(0), true)[2], 0.6F);
   EXPECT_EQ(surfaces().reflectance(TriangleId(0), false)[2], 0.0F) << "the back of a one-sided face absorbs";
   EXPECT_EQ(surfaces().reflectance(TriangleId(1), false)[0], 0.1F);
@@ -81,11 +81,12 @@ TEST_F(Surfaces, ReflectTheirReflectanceAndAreReciprocal) {
     const ScatterSample s = surfaces().sample(x, numbers.sample(k, 0), numbers.sample(k, 1));
     ASSERT_GT(s.direction.dot(x.normal), 0);
     ASSERT_NEAR(s.direction.norm(), 1, 1e-5);
-    const BrdfValue there = surfaces().value(x, s.direction);
+    SurfaceModel::PointValues here;
+    const BrdfValue there = surfaces().value(x, s.direction, here);
     SurfacePoint back = x;
     back.towards = s.direction;
     for (std::size_t b = 0; b < 3; ++b) {
-      EXPECT_EQ(there(b), surfaces().value(back, x.towards)(b));
+      EXPECT_EQ(there(b), surfaces().value(back, x.towards, here)(b));
       albedo[b] += static_cast<double>(there(b) * s.cosine_over_pdf) / kSamples;
     }
   }

@@ -1,0 +1,126 @@
+#include "scenes/model/texture_checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "scenes/model/error.h"
+
+namespace reemit {
+namespace {
+
+std::string file_of(const Scene& scene, const Surface& surface) {
+  return surface.source.empty() ? scene.source : surface.source;
+}
+
+std::string place_of(const Scene& scene, const Surface& surface, std::size_t face) {
+  const std::uint32_t line = surface.faces[face].source_line;
+  return fmt::format("{}{}: surface '{}', face {}", file_of(scene, surface),
+                     line > 0 ? fmt::format(":{}", line) : "", surface.name, face + 1);
+}
+
+void check_coordinates(const Scene& scene, const Surface& surface, std::size_t f) {
+  const Face& face = surface.faces[f];
+  const auto fail = [&](const std::string& problem, const char* advice) {
+    throw InputError(place_of(scene, surface, f), problem, advice);
+  };
+  if (face.texture_points.size() != face.outer.size())
+    fail(fmt::format("{} texture coordinates for {} vertices", face.texture_points.size(), face.outer.size()),
+         "Give one pair per outer vertex, or none.");
+  // Beyond, single precision no longer tells texels apart.
+  constexpr double kFarthest = 1e5;
+  for (const std::uint32_t index : face.texture_points) {
+    if (index >= surface.texture_points.size())
+      fail(fmt::format("texture coordinate {} is out of range", index), "Refer to one that the surface has.");
+    for (const auto& uv : surface.texture_points[index].uv)
+      for (const double x : uv)
+        if (!(std::abs(x) <= kFarthest))
+          fail(fmt::format("the texture coordinate {:g}", x), "Give finite ones of at most 100000.");
+  }
+}
+
+/// What the brightest texel reflects, as far as the other shares leave it.
+void limit_reflectance(Material& m, std::size_t bands) {
+  if (!m.textures.reflectance) return;
+  const Texel& largest = m.textures.reflectance.image->largest;
+  const Spectrum others = m.share_of_light() - m.largest_reflectance();
+  Spectrum most = m.textures.reflectance_factor;
+  for (Eigen::Index b = 0; b < most.size(); ++b) {
+    const float there = bands == 3 ? largest[static_cast<std::size_t>(b)]
+                                   : *std::max_element(largest.begin(), largest.begin() + 3);
+    most[b] = std::min(most[b] * static_cast<double>(there), std::max(0.0, 1 - others[b]));
+  }
+  m.textures.most_reflectance = most;
+  m.reflectance = m.reflectance.min(most);
+}
+
+void warn_of_unmapped(Scene& scene, std::size_t faces, std::size_t shapes, const std::string& first) {
+  if (faces + shapes == 0) return;
+  scene.not_modelled["faces_without_texture_coordinates"] += faces + shapes;
+  scene.warnings.push_back(
+      fmt::format("{} face(s) and {} round shape(s) have a texture but no texture coordinates; they count "
+                  "with the mean of the image. The first is {}",
+                  faces, shapes, first));
+}
+
+}  // namespace
+
+bool has_coloured_textures(const Scene& scene) {
+  const auto is_coloured = [](const Texture& t) { return t && !t.image->is_grey; };
+  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& s) {
+    const MaterialTextures& textures = scene.material_of(s).textures;
+    if (is_coloured(textures.reflectance) || is_coloured(textures.emission)) return true;
+    return s.has_vertex_colours &&
+           std::any_of(s.texture_points.begin(), s.texture_points.end(), [](const TexturePoint& p) {
+             return p.colour[0] != p.colour[1] || p.colour[1] != p.colour[2];
+           });
+  });
+}
+
+void check_textures(Scene& scene) {
+  const std::size_t bands = scene.bands.count();
+  for (Material& m : scene.materials) limit_reflectance(m, bands);
+  std::size_t unmapped = 0;
+  std::size_t shapes = 0;
+  std::string first;
+  for (Surface& surface : scene.surfaces) {
+    if (!scene.is_textured(surface)) continue;
+    if (scene.bands.kind() == BandKind::kSpectral && surface.has_vertex_colours) {
+      surface.has_vertex_colours = false;
+      ++scene.not_modelled["vertex_colours"];
+      scene.warnings.push_back(fmt::format(
+          "{}: surface '{}': its vertices have colours, which a room of spectral bands cannot use",
+          file_of(scene, surface), surface.name));
+      if (!scene.is_textured(surface)) continue;
+    }
+    const MaterialTextures& textures = scene.material_of(surface).textures;
+    if (scene.bands.kind() == BandKind::kSpectral && (textures.reflectance || textures.emission))
+      throw InputError(fmt::format("{}: surface '{}'", file_of(scene, surface), surface.name),
+                       "it has a texture, and the room has spectral bands",
+                       "Give the room the bands \"rgb\" or \"grey\", or the surface another material.");
+    const bool has_image = textures.reflectance || textures.emission || textures.opacity;
+    if (has_image && !surface.shapes.empty() && first.empty())
+      first = fmt::format("{}: surface '{}'", file_of(scene, surface), surface.name);
+    if (has_image) shapes += surface.shapes.size();
+    if (textures.is_cut_out() && !surface.shapes.empty()) {
+      scene.not_modelled["round_cut_outs"] += surface.shapes.size();
+      scene.warnings.push_back(fmt::format(
+          "{}: surface '{}': round shapes are opaque; give it \"segments\" to make a cut-out of it, or a "
+          "\"transmittance\"",
+          file_of(scene, surface), surface.name));
+    }
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+      if (!surface.faces[f].texture_points.empty()) {
+        check_coordinates(scene, surface, f);
+        continue;
+      }
+      if (!has_image) continue;
+      if (first.empty()) first = place_of(scene, surface, f);
+      ++unmapped;
+    }
+  }
+  warn_of_unmapped(scene, unmapped, shapes, first);
+}
+
+}  // namespace reemit

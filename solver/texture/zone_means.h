@@ -1,0 +1,24 @@
+#pragma once
+#include <vector>
+
+#include "solver/texture/room_textures.h"
+
+namespace reemit {
+
+/// What zones hold of textures: means over their areas, of cut-outs over what is there of them. Rows of zones
+/// of surfaces whose value does not vary are 0.
+struct ZoneTextureMeans {
+  std::vector<double> reflectance;  ///< [zone * bands + band], [0,1]; empty if none varies.
+  std::vector<double> radiance;     ///< Along the normal [W/(m2 sr)], likewise.
+  std::vector<float> solid;         ///< Share that is there, by zone, above 0; empty without cut-outs.
+};
+
+/// A cell is cut into no more than this squared parts to take its mean.
+inline constexpr int kMostMeanDivisions = 32;
+
+/// By the midpoint rule over the parts of each cell, which are an eighth of a texel across where
+/// kMostMeanDivisions are enough for that; where they are larger than half a texel, over copies of the images
+/// with larger texels.
+ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh& mesh, std::size_t bands);
+
+}  // namespace reemit
