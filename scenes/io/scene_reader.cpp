@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "scenes/io/common/glass_bodies.h"
+#include "scenes/io/common/scene_bands.h"
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/common/text_parse.h"
 #include "scenes/io/gltf/gltf_reader.h"
@@ -12,6 +13,7 @@
 #include "scenes/io/native/native_reader.h"
 #include "scenes/io/obj/obj_reader.h"
 #include "scenes/model/error.h"
+#include "scenes/model/scene_checks.h"
 
 namespace reemit {
 namespace {
@@ -63,6 +65,11 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   if (options.force_two_sided)
     for (Material& material : scene.materials) material.two_sided = true;
   settle_glass_bodies(scene);
+  if (options.bands.given()) {
+    check_materials(scene);
+    check_lights(scene);
+    give_bands(scene, options.bands);
+  }
   finish_scene(scene);
   return scene;
 }

@@ -1,10 +1,10 @@
 #include "scenes/model/scene.h"
 
 #include <algorithm>
-#include <type_traits>
 
 #include <fmt/format.h>
 
+#include "scenes/model/light_strength.h"
 #include "scenes/model/scene_checks.h"
 
 namespace reemit {
@@ -13,23 +13,6 @@ namespace {
 bool is_grey(const Spectrum& s) {
   constexpr double kRoundOff = 1e-9;  // colour conversions leave neutral colours neutral to about 1e-15
   return s.maxCoeff() - s.minCoeff() <= kRoundOff * s.maxCoeff();
-}
-
-// Intensity (of a measured luminaire: per candela) or irradiance, whichever the light has. Light is
-// PunctualLight or const PunctualLight.
-template <class Light>
-auto& power_of(Light& light) {
-  return std::visit(
-      [](auto& l) -> std::conditional_t<std::is_const_v<Light>, const Spectrum&, Spectrum&> {
-        using Kind = std::remove_cvref_t<decltype(l)>;
-        if constexpr (std::is_same_v<Kind, DirectionalLight>)
-          return l.irradiance;
-        else if constexpr (std::is_same_v<Kind, PhotometricLight>)
-          return l.intensity_per_candela;
-        else
-          return l.intensity;
-      },
-      light);
 }
 
 std::vector<bool> used_materials(const Scene& scene) {
@@ -60,7 +43,7 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
       if (used[i] && s->size() > 0 && !is_grey(*s)) return;
   }
   for (const PunctualLight& light : scene.lights)
-    if (!is_grey(power_of(light))) return;
+    if (!is_grey(strength_of(light))) return;
 
   for (Material& m : scene.materials) {
     NonDiffusePart& rest = m.non_diffuse;
@@ -69,7 +52,7 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
                         &rest.metal_eta, &rest.metal_k})
       reduce(*s, scene.bands);
   }
-  for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);
+  for (PunctualLight& light : scene.lights) reduce(strength_of(light), scene.bands);
   scene.bands = BandSet::grey();
   scene.notes.push_back("No surface or light has a colour: one grey band is transported.");
 }

@@ -21,6 +21,9 @@ void transfer_read_options(Archive& archive, Options& options) {
   archive.attribute("gltf_emissive_units", options.gltf_emissive_units);
   archive.attribute("gltf_light_efficacy_lm_per_W", options.gltf_light_efficacy);
   archive.attribute("force_two_sided", options.force_two_sided);
+  archive.attribute("bands_first_nm", options.bands.first_nm);
+  archive.attribute("bands_last_nm", options.bands.last_nm);
+  archive.attribute("bands_step_nm", options.bands.step_nm);
 }
 
 template <class Archive, class Settings>

@@ -1,6 +1,8 @@
 #pragma once
 #include <optional>
 
+#include "scenes/io/common/spectral_bands.h"
+
 namespace reemit {
 
 /// cd/m2, W/(sr m2), or what the program that wrote the file is known to write.
@@ -14,6 +16,9 @@ struct ReadOptions {
   /// Luminous efficacy by which the cd and lx of glTF lamps become watts [lm/W], finite and above 0. Nothing:
   /// by the program that wrote the file (docs/gltf_input.md).
   std::optional<double> gltf_light_efficacy;
+
+  /// Bands for a room of colours (docs/spectral.md); if not given, those of the file.
+  SpectralBands bands;
 
   bool operator==(const ReadOptions&) const = default;
 };
