@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "scenes/io/common/glass_bodies.h"
+#include "scenes/io/common/scene_bands.h"
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/common/text_parse.h"
 #include "scenes/io/common/up_direction.h"
@@ -16,6 +17,7 @@
 #include "scenes/io/native/sky_option.h"
 #include "scenes/io/obj/obj_reader.h"
 #include "scenes/model/error.h"
+#include "scenes/model/scene_checks.h"
 
 namespace reemit {
 namespace {
@@ -84,6 +86,11 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   if (options.force_two_sided)
     for (Material& material : scene.materials) material.two_sided = true;
   settle_glass_bodies(scene);
+  if (options.bands.given()) {
+    check_materials(scene);
+    check_lights(scene);
+    give_bands(scene, options.bands);
+  }
   if (!options.sky.empty() || !options.sun.empty()) add_sky(options.sky, options.sun, scene);
   finish_scene(scene);
   if (scene.sky) settle_sky(scene);

@@ -15,25 +15,8 @@ namespace {
 constexpr double kRgbEfficacy = 179;       // [lm/W], the Radiance convention [ZIM98]
 constexpr double kSpectralEfficacy = 683;  // [lm/W] at 555 nm
 
-struct Range {
-  double from, to;  // [nm]
-};
-
-// Bands meet half-way between their centres; the first and last are symmetric. A lone band has no width.
-std::vector<Range> band_ranges(const std::vector<double>& centres) {
-  const std::size_t n = centres.size();
-  if (n == 1) return {{centres[0], centres[0]}};
-  std::vector<Range> ranges(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double below = i > 0 ? centres[i] - centres[i - 1] : centres[1] - centres[0];
-    const double above = i + 1 < n ? centres[i + 1] - centres[i] : centres[i] - centres[i - 1];
-    ranges[i] = {centres[i] - below / 2, centres[i] + above / 2};
-  }
-  return ranges;
-}
-
 // Column i: XYZ of one watt in band i, relative to 683 lm/W.
-Eigen::Matrix3Xd band_xyz(const std::vector<Range>& ranges) {
+Eigen::Matrix3Xd band_xyz(const std::vector<WavelengthRange>& ranges) {
   Eigen::Matrix3Xd xyz(3, static_cast<Eigen::Index>(ranges.size()));
   for (std::size_t i = 0; i < ranges.size(); ++i)
     xyz.col(static_cast<Eigen::Index>(i)) = mean_cie_1931(ranges[i].from, ranges[i].to);
@@ -42,7 +25,7 @@ Eigen::Matrix3Xd band_xyz(const std::vector<Range>& ranges) {
 
 // Makes the flat spectrum exactly neutral when the bands cover the visible range, where only sampling keeps
 // it from being so. Bands that cover a part of it keep their true colours.
-void balance_white(Eigen::Matrix3Xd& xyz, const std::vector<Range>& ranges) {
+void balance_white(Eigen::Matrix3Xd& xyz, const std::vector<WavelengthRange>& ranges) {
   constexpr double kMostImbalance = 1.5;
   if (ranges.size() == 1) {  // nothing to tell colours apart by
     xyz.row(0) = xyz.row(1);
@@ -51,7 +34,7 @@ void balance_white(Eigen::Matrix3Xd& xyz, const std::vector<Range>& ranges) {
   }
   Eigen::Vector3d white = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < ranges.size(); ++i)
-    white += xyz.col(static_cast<Eigen::Index>(i)) * (ranges[i].to - ranges[i].from);
+    white += xyz.col(static_cast<Eigen::Index>(i)) * ranges[i].width();
   if (!(white.maxCoeff() <= kMostImbalance * white.minCoeff()) || white.minCoeff() <= 0) return;
   for (const Eigen::Index k : {0, 2}) xyz.row(k) *= white[1] / white[k];
 }
@@ -85,13 +68,23 @@ BandSet BandSet::spectral(std::vector<double> centres_nm) {
   BandSet bands;
   bands.kind_ = BandKind::kSpectral;
   for (const double centre : centres_nm) bands.names_.push_back(fmt::format("{}", centre));
-  const std::vector<Range> ranges = band_ranges(centres_nm);
+  bands.centres_nm_ = std::move(centres_nm);
+  std::vector<WavelengthRange> ranges;
+  for (std::size_t i = 0; i < bands.count(); ++i) ranges.push_back(bands.range_nm(i));
   Eigen::Matrix3Xd xyz = band_xyz(ranges);
   bands.efficacy_ = kSpectralEfficacy * xyz.row(1).transpose().array();
   balance_white(xyz, ranges);
   bands.to_rgb_ = (kSpectralEfficacy / kRgbEfficacy) * (xyz_to_rec709() * xyz);
-  bands.centres_nm_ = std::move(centres_nm);
   return bands;
+}
+
+WavelengthRange BandSet::range_nm(std::size_t band) const {
+  const std::vector<double>& centres = centres_nm_;
+  const double centre = centres[band];
+  if (centres.size() == 1) return {centre, centre};
+  const double below = band > 0 ? centre - centres[band - 1] : centres[1] - centre;
+  const double above = band + 1 < centres.size() ? centres[band + 1] - centre : below;
+  return {centre - below / 2, centre + above / 2};
 }
 
 std::string BandSet::efficacy_statement() const {
@@ -103,8 +96,10 @@ std::string BandSet::efficacy_statement() const {
     case BandKind::kSpectral:
       break;
   }
-  return fmt::format("{} spectral bands {} ... {} nm, 683 lm/W x V(lambda) averaged over each band", count(),
-                     names_.front(), names_.back());
+  return fmt::format(
+      "{} spectral bands {} ... {} nm, 683 lm/W x V(lambda) averaged over each band; colours by "
+      "CIE 1931 in linear Rec.709, equal-energy white shown as D65",
+      count(), names_.front(), names_.back());
 }
 
 Eigen::Array3d BandSet::to_rgb(const Spectrum& value) const {

@@ -12,6 +12,13 @@ using Spectrum = Eigen::ArrayXd;
 
 enum class BandKind { kGrey, kRgb, kSpectral };
 
+/// A range of wavelengths [nm], from <= to.
+struct WavelengthRange {
+  double from, to;
+
+  double width() const { return to - from; }
+};
+
 /// The bands a room transports: one for a grey room, three (linear Rec.709) for RGB, N for a spectral room.
 /// A radiometric value of a band is the power *within* that band, not a density per nanometre.
 class BandSet {
@@ -27,12 +34,14 @@ class BandSet {
   const std::string& name(std::size_t band) const { return names_[band]; }
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<double>& centres_nm() const { return centres_nm_; }  ///< Empty unless spectral.
+  /// Where a spectral band reaches: half-way to its neighbours; the first and last are symmetric about their
+  /// centres, and a lone band has no width.
+  WavelengthRange range_nm(std::size_t band) const;
 
   /// Luminous efficacy of each band [lm/W]: 179 x Rec.709 weights for grey and RGB ([ZIM98] appendix, the
-  /// Radiance convention), 683 x the mean of V(lambda) over the band for spectral rooms. Bands meet half-way
-  /// between their centres; a lone band is taken at its centre.
+  /// Radiance convention), 683 x the mean of V(lambda) over the band for spectral rooms.
   const Spectrum& efficacy_lm_per_w() const { return efficacy_; }
-  /// One line for file headers that states the conversion.
+  /// One line for file headers that states the conversion, and for spectral rooms the white of their colours.
   std::string efficacy_statement() const;
 
   /// Linear Rec.709 colour of a spectrum, scaled so that its luminance weights give luminance/179.

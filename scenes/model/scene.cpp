@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <memory>
-#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "scenes/model/light_strength.h"
 #include "scenes/model/scene_checks.h"
 #include "scenes/model/texture_checks.h"
 
@@ -16,23 +16,6 @@ namespace {
 bool is_grey(const Spectrum& s) {
   constexpr double kRoundOff = 1e-9;  // colour conversions leave neutral colours neutral to about 1e-15
   return s.maxCoeff() - s.minCoeff() <= kRoundOff * s.maxCoeff();
-}
-
-// Intensity (of a measured luminaire: per candela) or irradiance, whichever the light has. Light is
-// PunctualLight or const PunctualLight.
-template <class Light>
-auto& power_of(Light& light) {
-  return std::visit(
-      [](auto& l) -> std::conditional_t<std::is_const_v<Light>, const Spectrum&, Spectrum&> {
-        using Kind = std::remove_cvref_t<decltype(l)>;
-        if constexpr (std::is_same_v<Kind, DirectionalLight>)
-          return l.irradiance;
-        else if constexpr (std::is_same_v<Kind, PhotometricLight>)
-          return l.intensity_per_candela;
-        else
-          return l.intensity;
-      },
-      light);
 }
 
 std::vector<bool> used_materials(const Scene& scene) {
@@ -91,7 +74,7 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
       if (used[i] && s->size() > 0 && !is_grey(*s)) return;
   }
   for (const PunctualLight& light : scene.lights)
-    if (!is_grey(power_of(light))) return;
+    if (!is_grey(strength_of(light))) return;
   if (scene.sky && !is_grey(*scene.sky)) return;
 
   for (Material& m : scene.materials) {
@@ -102,7 +85,7 @@ void reduce_to_grey_if_colourless(Scene& scene, const std::vector<bool>& used) {
                         &m.textures.most_reflectance, &m.textures.emission_factor})
       reduce(*s, scene.bands);
   }
-  for (PunctualLight& light : scene.lights) reduce(power_of(light), scene.bands);
+  for (PunctualLight& light : scene.lights) reduce(strength_of(light), scene.bands);
   if (scene.sky) reduce(*scene.sky, scene.bands);
   scene.bands = BandSet::grey();
   scene.notes.push_back("No surface or light has a colour: one grey band is transported.");

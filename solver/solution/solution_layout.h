@@ -23,6 +23,9 @@ void transfer_read_options(Archive& archive, Options& options) {
   archive.attribute("force_two_sided", options.force_two_sided);
   archive.attribute("sky", options.sky);
   archive.attribute("sun", options.sun);
+  archive.attribute("bands_first_nm", options.bands.first_nm);
+  archive.attribute("bands_last_nm", options.bands.last_nm);
+  archive.attribute("bands_step_nm", options.bands.step_nm);
 }
 
 template <class Archive, class Settings>

@@ -73,6 +73,8 @@ void read_settings(const Hdf5Group& root, Solution& solution) {
   AttributeReader from_solve{solve};
   AttributeReader from_record{record};
   transfer_read_options(from_read, solution.read_options);
+  const SpectralBands& bands = solution.read_options.bands;
+  require(!bands.given() || bands.problem().empty(), "bands that no room can have");
   transfer_mesh_settings(from_mesh, solution.mesh_settings);
   transfer_solver_settings(from_solve, solution.settings);
   transfer_record(from_record, solution.record);

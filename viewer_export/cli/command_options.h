@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "scenes/io/common/spectral_bands.h"
 #include "scenes/io/native/sky_option.h"
 #include "scenes/io/scene_reader.h"
 #include "viewer_export/cli/option_values.h"
@@ -88,8 +89,11 @@ inline void add_seed_and_threads(CLI::App& command, std::uint64_t& seed, int& th
   add_integer_option(command, "--threads", threads, 0, 1024, "Threads; 0 = all cores");
 }
 
-/// How the numbers of glTF files are meant.
-inline void add_gltf_unit_options(CLI::App& command, ReadOptions& options) {
+/// What the formats of rooms leave open.
+inline void add_read_options(CLI::App& command, ReadOptions& options) {
+  add_parsed_option(command, "--bands", options.bands, parse_spectral_bands, "FIRST:LAST:STEP",
+                    "Solve a room of colours in these spectral bands [nm], as 400:700:10: colours\n"
+                    "become smooth spectra (docs/spectral.md)");
   add_choice_option<EmissiveUnits>(
       command, "--emissive-units", options.gltf_emissive_units,
       {{"auto", EmissiveUnits::kByGenerator},

@@ -140,7 +140,7 @@ void add_info_command(CLI::App& program, Action& action) {
           "Also write a picture of the mesh of a room to this .glb file: faces by what meshing did to\n"
           "them, sides that no light reaches, zones by size; and print the first faces of each kind")
       ->type_name("FILE");
-  add_gltf_unit_options(info, options->read);
+  add_read_options(info, options->read);
   add_sky_options(info, options->read);
   add_json_option(info, options->style);
   info.callback([options, &action] { action = [options] { return show(*options); }; });

@@ -322,7 +322,7 @@ void add_render_command(CLI::App& program, Action& action) {
   render.add_option("-o,--output", options->output, format_help())->required()->type_name("FILE|DIR/");
   add_room_option(render, options->room);
   render.add_flag("--two-sided", options->read.force_two_sided, "As of solve, for a room");
-  add_gltf_unit_options(render, options->read);
+  add_read_options(render, options->read);
   add_view_options(render, *options);
   add_quality_options(render, *options);
   render.option_defaults()->group("Output");

@@ -345,7 +345,7 @@ void add_solve_command(CLI::App& program, Action& action) {
       ->excludes(zones);
   solve.add_flag("--two-sided", options->read.force_two_sided,
                  "Let every face reflect on both sides (rooms with mixed winding)");
-  add_gltf_unit_options(solve, options->read);
+  add_read_options(solve, options->read);
   add_sky_options(solve, options->read);
 
   solve.option_defaults()->group("Output");
@@ -357,7 +357,7 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_progress_options(solve, options->style);
   // A run has one of each from its first batch to its last.
   for (const char* settled : {"--method", "--sampling", "--reemit", "--seed", "--zones", "--zone-area",
-                              "--two-sided", "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
+                              "--two-sided", "--bands", "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
     resume->excludes(solve.get_option(settled));
   solve.callback([options, &action] {
     if (options->resume.empty() && options->room.empty()) throw CLI::RequiredError("ROOM or --resume");

@@ -2,6 +2,8 @@
 #include <optional>
 #include <string>
 
+#include "scenes/io/common/spectral_bands.h"
+
 namespace reemit {
 
 /// cd/m2, W/(sr m2), or what the program that wrote the file is known to write.
@@ -19,6 +21,9 @@ struct ReadOptions {
   /// empty: those of the file.
   std::string sky{};
   std::string sun{};
+
+  /// Bands for a room of colours (docs/spectral.md); if not given, those of the file.
+  SpectralBands bands;
 
   bool operator==(const ReadOptions&) const = default;
 };

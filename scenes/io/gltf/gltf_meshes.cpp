@@ -33,16 +33,6 @@ int attribute(const tinygltf::Primitive& primitive, const char* name) {
   return it == primitive.attributes.end() ? -1 : it->second;
 }
 
-void check_compression(const GltfModel& gltf, const tinygltf::Primitive& primitive, int positions,
-                       const std::string& where) {
-  const bool compressed = primitive.extensions.contains("KHR_draco_mesh_compression");
-  const auto index = static_cast<std::size_t>(positions);
-  if (compressed && index < gltf.model.accessors.size() && gltf.model.accessors[index].bufferView < 0) {
-    throw InputError(gltf.at(where), "the geometry is compressed with Draco",
-                     "Decompress it first, for example with: gltf-transform copy in.glb out.glb");
-  }
-}
-
 void read_texture_points(const GltfModel& gltf, const GltfAccessors& accessors,
                          const tinygltf::Primitive& source, const std::string& where,
                          GltfPrimitive& primitive) {
@@ -103,7 +93,6 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
   if (positions < 0) {
     throw InputError(gltf.at(where), "the primitive has no positions", "Export the file anew.");
   }
-  check_compression(gltf, source, positions, where);
   primitive.positions = accessors.vec3(positions, where + "/attributes/POSITION");
   if (const int normals = attribute(source, "NORMAL"); normals >= 0) {
     primitive.normals = accessors.vec3(normals, where + "/attributes/NORMAL");

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +13,9 @@
 #include "scenes/io/common/json_cursor.h"
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/gltf/gltf_document.h"
+#include "scenes/io/gltf/gltf_draco.h"
+#include "scenes/io/gltf/gltf_extensions.h"
+#include "scenes/io/gltf/gltf_meshopt.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -23,18 +25,6 @@ namespace {
 constexpr std::uintmax_t kLargestGltf = std::uintmax_t{2} << 30;  // The parser counts bytes with 32 bits.
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-
-/// A required extension outside this list may change what the file means. Materials (KHR_materials_*) only
-/// change how a surface looks; those that are not taken over are warned of.
-constexpr std::array<std::string_view, 6> kSupportedExtensions{
-    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
-    "KHR_texture_basisu",    "EXT_texture_webp",      "EXT_mesh_gpu_instancing"};
-
-bool is_supported(const std::string& extension) {
-  return extension.starts_with("KHR_materials_") ||
-         std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) !=
-             kSupportedExtensions.end();
-}
 
 std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
   std::array<unsigned char, 4> b;
@@ -105,49 +95,19 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
   return true;
 }
 
-bool is_meshopt(const std::string& extension) {
-  return extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression";
+std::string word(std::size_t value) {
+  std::string bytes(4, '\0');
+  for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<char>(value >> (8 * i));
+  return bytes;
 }
 
-bool is_compression(const std::string& extension) {
-  return extension == "KHR_draco_mesh_compression" || is_meshopt(extension);
-}
-
-/// How to make a file without this compression of the geometry.
-std::string decoding_advice(const std::string& extension, const std::string& file) {
-  std::string advice = fmt::format(
-      "The geometry is compressed; decode it with: gltf-transform copy '{}' decoded.glb (npm install -g "
-      "@gltf-transform/cli)",
-      file);
-  if (is_meshopt(extension)) advice += fmt::format(", or: gltfpack -i '{}' -o decoded.glb -noq", file);
-  return advice;
-}
-
-/// The texts of an array of the document; what is none of that is for the parser to refuse.
-std::vector<std::string> extension_names(const nlohmann::json& document, const char* key) {
-  std::vector<std::string> names;
-  const auto list = document.find(key);
-  if (list == document.end() || !list->is_array()) return names;
-  for (const nlohmann::json& name : *list)
-    if (name.is_string()) names.push_back(name.get<std::string>());
-  return names;
-}
-
-/// Before the parser, which trips over the holes that compressed geometry leaves and says nothing of the
-/// cause.
-void check_extensions(const nlohmann::json& document, const std::string& file) {
-  for (const std::string& name : extension_names(document, "extensionsRequired"))
-    if (!is_supported(name))
-      throw InputError(
-          file, fmt::format("the file requires the glTF extension \"{}\", which is not supported", name),
-          is_compression(name) ? decoding_advice(name, file) : "Export without this extension.");
-}
-
-/// What to do about a file that the parser refuses.
-std::string parser_advice(const std::vector<std::string>& used, const std::string& file) {
-  const auto compression = std::find_if(used.begin(), used.end(), is_compression);
-  return compression != used.end() ? decoding_advice(*compression, file)
-                                   : "Check the file with the Khronos glTF validator, or export it anew.";
+/// A GLB file with another JSON chunk. Pre: json_of_glb accepts it.
+std::string with_json(const std::string& glb, std::string json) {
+  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::size_t rest = kHeader + kChunkHeader + word_at(glb, kHeader);
+  return glb.substr(0, 8) + word(kHeader + kChunkHeader + json.size() + glb.size() - rest) +
+         word(json.size()) + word(kJsonChunk) + json + glb.substr(rest);
 }
 
 /// Messages of the parser on one line, without bytes that a terminal cannot show, and cut.
@@ -168,19 +128,15 @@ std::string tidy(const std::string& text) {
 GltfModel load_gltf_model(const std::filesystem::path& file) {
   GltfModel loaded;
   loaded.file = file.string();
-  const std::string bytes = load_file(file, kLargestGltf);
+  std::string bytes = load_file(file, kLargestGltf);
   const bool binary = bytes.compare(0, 4, "glTF") == 0;
-  std::vector<std::string> used_extensions;
-  {
-    // Strict parse first: it bounds the nesting, which the library follows recursively.
-    const nlohmann::json document = parse_json(binary ? json_of_glb(bytes, loaded.file) : bytes, loaded.file);
-    JsonCursor(document, loaded.file).expect_object();
-    check_extensions(document, loaded.file);
-    used_extensions = extension_names(document, "extensionsUsed");
-    // Where geometry is compressed, the advice of the parser's refusal says more.
-    if (std::none_of(used_extensions.begin(), used_extensions.end(), is_compression))
-      check_gltf_document(document, loaded.file);
-  }
+  // Strict parse first: it bounds the nesting, which the library follows recursively.
+  const nlohmann::json document = parse_json(binary ? json_of_glb(bytes, loaded.file) : bytes, loaded.file);
+  JsonCursor(document, loaded.file).expect_object();
+  check_gltf_extensions(document, loaded.file);
+  check_gltf_document(document, loaded.file);
+  if (const auto simplified = simplified_for_parser(document))
+    bytes = binary ? with_json(bytes, simplified->dump()) : simplified->dump();
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keep_encoded, nullptr);
   parser.SetFsCallbacks({file_exists, same_path, read_whole_file, write_nothing, nullptr});
@@ -199,13 +155,16 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
   }
   if (!parsed) {
     throw InputError(loaded.file, tidy(errors.empty() ? "not a valid glTF file" : errors),
-                     parser_advice(used_extensions, loaded.file));
+                     "Check the file with the Khronos glTF validator, or export it anew.");
   }
   if (loaded.model.asset.version.substr(0, 2) != "2.") {
     throw InputError(loaded.file, fmt::format("glTF version \"{}\"", tidy(loaded.model.asset.version)),
                      "Export glTF 2.0.");
   }
   if (!warnings.empty()) loaded.warnings.push_back(tidy(warnings));
+  decode_meshopt_views(document, loaded);
+  decode_draco_primitives(document, loaded);
+  take_extended_texture_sources(document, loaded);
   return loaded;
 }
 

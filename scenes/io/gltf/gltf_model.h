@@ -7,6 +7,9 @@
 
 namespace reemit {
 
+/// What to do about compressed geometry that cannot be decoded.
+inline constexpr const char* kDamagedAdvice = "The file is damaged; export it anew.";
+
 /// A parsed glTF file whose images are still encoded: tinygltf::Image::image holds the bytes of the image
 /// file, or nothing where they lie in a buffer view or could not be found.
 struct GltfModel {
@@ -18,9 +21,9 @@ struct GltfModel {
   std::string at(const std::string& pointer) const { return file + "#" + pointer; }
 };
 
-/// Parses a .gltf or .glb file with its buffers. Throws InputError for a file that is cut off, chunks that do
-/// not fit, malformed JSON, missing buffers, another version than 2 and required extensions that are not
-/// supported.
+/// Parses a .gltf or .glb file with its buffers; compressed geometry is decoded. Throws InputError for a file
+/// that is cut off, chunks that do not fit, malformed JSON, missing buffers, another version than 2 and
+/// required extensions that are not supported.
 GltfModel load_gltf_model(const std::filesystem::path& file);
 
 }  // namespace reemit

@@ -135,6 +135,14 @@ std::vector<std::size_t> roots_to_read(const GltfModel& gltf, const std::vector<
   return roots;
 }
 
+/// KHR_node_visibility: a node that is hidden hides what is below it.
+bool is_hidden(const tinygltf::Node& node) {
+  const auto extension = node.extensions.find("KHR_node_visibility");
+  if (extension == node.extensions.end() || !extension->second.IsObject()) return false;
+  const tinygltf::Value& visible = extension->second.Get("visible");
+  return visible.IsBool() && !visible.Get<bool>();
+}
+
 }  // namespace
 
 std::vector<GltfPlacedNode> place_gltf_nodes(const GltfModel& gltf, Scene& scene) {
@@ -143,9 +151,14 @@ std::vector<GltfPlacedNode> place_gltf_nodes(const GltfModel& gltf, Scene& scene
   std::vector<GltfPlacedNode> open, placed;
   std::vector<std::size_t> roots = roots_to_read(gltf, parents, scene);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it) open.push_back({*it, Eigen::Affine3d::Identity()});
+  std::size_t hidden = 0;
   while (!open.empty()) {
     GltfPlacedNode node = open.back();
     open.pop_back();
+    if (is_hidden(gltf.model.nodes[node.node])) {
+      ++hidden;
+      continue;
+    }
     node.to_world = node.to_world * local_transform(gltf, node.node);
     placed.push_back(node);
     const auto& children = gltf.model.nodes[node.node].children;
@@ -153,6 +166,9 @@ std::vector<GltfPlacedNode> place_gltf_nodes(const GltfModel& gltf, Scene& scene
       open.push_back({static_cast<std::size_t>(*it), node.to_world});
     }
   }
+  if (hidden > 0)
+    scene.warnings.push_back(fmt::format(
+        "{} node(s) that are not visible (KHR_node_visibility) are left out with all below", hidden));
   return placed;
 }
 

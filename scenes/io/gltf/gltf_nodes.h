@@ -12,9 +12,9 @@ struct GltfPlacedNode {
   Eigen::Affine3d to_world;
 };
 
-/// The nodes of the default scene (else the first scene, else all roots), parents before children. Warns
-/// about other scenes. Throws InputError for cycles, nodes with two parents, and indices and transforms that
-/// make no sense.
+/// The nodes of the default scene (else the first scene, else all roots), parents before children, without
+/// those that are hidden. Warns about these and about other scenes. Throws InputError for cycles, nodes with
+/// two parents, and indices and transforms that make no sense.
 std::vector<GltfPlacedNode> place_gltf_nodes(const GltfModel& gltf, Scene& scene);
 
 /// The instances that EXT_mesh_gpu_instancing gives the node, or one identity. Throws InputError.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scenes/io/common/kind_counts.h"
+#include "scenes/io/common/scene_bands.h"
 #include "scenes/io/common/surface_geometry.h"
 #include "scenes/io/common/text_parse.h"
 #include "scenes/io/gltf/gltf_reader.h"
@@ -11,35 +12,6 @@
 #include "scenes/io/ply/ply_reader.h"
 
 namespace reemit {
-
-namespace {
-
-/// A spectrum of the bands `from` in the bands of the room, where that needs no guess: equal bands, grey to
-/// any for a reflectance or to RGB, RGB to grey by luminance.
-std::optional<Spectrum> converted(const Spectrum& value, const BandSet& from, const BandSet& to) {
-  if (from == to) return value;
-  if (from.kind() == BandKind::kGrey && to.kind() == BandKind::kRgb) return Spectrum::Constant(3, value[0]);
-  if (from.kind() == BandKind::kRgb && to.kind() == BandKind::kGrey) {
-    const Spectrum& weights = from.efficacy_lm_per_w();
-    return Spectrum::Constant(1, (value * weights).sum() / weights.sum());
-  }
-  return std::nullopt;
-}
-
-bool convert_material(Material& material, const BandSet& from, const BandSet& to) {
-  for (Spectrum* value :
-       {&material.reflectance, &material.emitted_radiance, &material.non_diffuse.specular_reflectance,
-        &material.non_diffuse.diffuse_transmittance, &material.non_diffuse.specular_transmittance,
-        &material.textures.reflectance_factor, &material.textures.emission_factor}) {
-    if (value->size() == 0) continue;
-    const auto in_room = converted(*value, from, to);
-    if (!in_room) return false;
-    *value = *in_room;
-  }
-  return true;
-}
-
-}  // namespace
 
 NativeObjects::ReferencedFile& NativeObjects::load(const JsonCursor& path) {
   const std::string& name = path.string();
@@ -90,11 +62,12 @@ MaterialId NativeObjects::material_of_file(ReferencedFile& file, const Surface& 
   MaterialId& id = file.ids[surface.material.index()];
   if (id.valid()) return id;
   Material material = own;
-  if (!convert_material(material, file.bands, scene_.bands)) {
-    object.fail(
-        fmt::format("the material \"{}\" of the file has no values for the bands of this room", own.name),
-        fmt::format("Map it to a material of the room: \"materials\": {{\"{}\": \"...\"}}.", own.name));
-  }
+  constexpr double kWorthAWord = 1e-3;
+  if (const double deviation = convert_material(material, file.bands, scene_); deviation > kWorthAWord)
+    scene_.warnings.push_back(
+        fmt::format("{}: the bands of the room are too few for the colours of material '{}': the nearest "
+                    "spectra miss one by {:.2g} %.",
+                    object.where(), own.name, 100 * deviation));
   id = materials_.import(std::move(material), scene_);
   return id;
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/io/common/json_cursor.h"
+#include "scenes/io/common/spectral_bands.h"
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/native/native_materials.h"
 #include "scenes/io/native/native_objects.h"
@@ -17,7 +18,6 @@ namespace reemit {
 namespace {
 
 constexpr int kFormatVersion = 1;
-constexpr std::size_t kMostBands = 1024;
 
 BandSet read_bands(const JsonCursor& at) {
   if (at.is_string()) return at.choice({"grey", "rgb"}) == "grey" ? BandSet::grey() : BandSet::rgb();

@@ -7,6 +7,7 @@
 #include "scenes/io/common/srgb.h"
 #include "scenes/io/native/native_materials.h"
 #include "scenes/model/error.h"
+#include "scenes/model/upsampling.h"
 
 namespace reemit {
 
@@ -61,38 +62,52 @@ Samples read_samples(const JsonCursor& at, bool extend) {
   return samples;
 }
 
-/// The limits of band i [nm]: halfway to its neighbours; the first and last band are symmetric about their
-/// centres.
-std::pair<double, double> band_limits(const std::vector<double>& centres, std::size_t i) {
-  const double below = i > 0 ? 0.5 * (centres[i] - centres[i - 1]) : 0.5 * (centres[1] - centres[0]);
-  const double above = i + 1 < centres.size() ? 0.5 * (centres[i + 1] - centres[i]) : below;
-  return {centres[i] - below, centres[i] + above};
-}
+enum class Quantity { kReflectance, kEmission, kOpticalConstant };
 
-Spectrum read_srgb(const JsonCursor& at, const BandSet& bands) {
-  at.expect_object({"srgb"});
-  const JsonCursor text = at.at("srgb");
+Eigen::Array3d read_srgb(const JsonCursor& text) {
   const std::string& hex = text.string();
   const bool well_formed =
       hex.size() == 7 && hex[0] == '#' &&
       std::all_of(hex.begin() + 1, hex.end(), [](unsigned char c) { return std::isxdigit(c); });
   if (!well_formed) text.fail(fmt::format("\"{}\" is not a colour", hex), "Write it as \"#rrggbb\".");
-  Spectrum rgb(3);
-  for (int i = 0; i < 3; ++i) {
+  Eigen::Array3d rgb;
+  for (int i = 0; i < 3; ++i)
     rgb[i] =
         linear_from_srgb(std::stoi(hex.substr(1 + 2 * static_cast<std::size_t>(i), 2), nullptr, 16) / 255.0);
+  return rgb;
+}
+
+Eigen::Array3d read_rgb(const JsonCursor& listed, double most) {
+  listed.expect_array(3, 3);
+  Eigen::Array3d rgb;
+  for (std::size_t i = 0; i < 3; ++i) rgb[static_cast<Eigen::Index>(i)] = listed[i].number_in(0, most);
+  return rgb;
+}
+
+/// {"srgb": "#rrggbb"} or {"rgb": [r, g, b]} in the bands of the room.
+Spectrum read_colour(const JsonCursor& at, const BandSet& bands, Quantity quantity, double most) {
+  const bool encoded = at.find("srgb").has_value();
+  at.expect_object({encoded ? "srgb" : "rgb"});
+  const Eigen::Array3d rgb = encoded ? read_srgb(at.at("srgb")) : read_rgb(at.at("rgb"), most);
+  if (bands.kind() == BandKind::kRgb) return rgb;
+  if (bands.kind() == BandKind::kGrey) {
+    const Spectrum weights = BandSet::rgb().efficacy_lm_per_w();
+    return Spectrum::Constant(1, (rgb * weights).sum() / weights.sum());
   }
-  switch (bands.kind()) {
-    case BandKind::kRgb:
-      return rgb;
-    case BandKind::kGrey: {
-      const Spectrum weights = BandSet::rgb().efficacy_lm_per_w();
-      return Spectrum::Constant(1, (rgb * weights).sum() / weights.sum());
-    }
-    case BandKind::kSpectral:
-      break;
-  }
-  at.fail("an sRGB colour has no spectrum", "Give one value per band or {\"nm\": [...], \"value\": [...]}.");
+  if (quantity == Quantity::kOpticalConstant)
+    at.fail("a colour has no spectrum of eta or k",
+            "Give one value per band or {\"nm\": [...], \"value\": [...]}.");
+  const Upsampling upsampling(bands);
+  const Upsampled upsampled =
+      quantity == Quantity::kEmission ? upsampling.emission(rgb) : upsampling.reflectance(rgb);
+  constexpr double kMostDeviation = 0.01;
+  if (upsampled.deviation > kMostDeviation)
+    at.fail(
+        fmt::format("the {} bands of the room are too few for this colour: the nearest spectrum misses it by "
+                    "{:.2g} %",
+                    bands.count(), 100 * upsampled.deviation),
+        "Give the room more bands, or the spectrum itself.");
+  return upsampled.values;
 }
 
 void demand_spectral(const JsonCursor& at, const BandSet& bands) {
@@ -102,8 +117,6 @@ void demand_spectral(const JsonCursor& at, const BandSet& bands) {
   }
 }
 
-enum class Quantity { kReflectance, kEmission, kOpticalConstant };
-
 Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quantity) {
   const auto count = static_cast<Eigen::Index>(bands.count());
   const double most = quantity == Quantity::kReflectance ? 1
@@ -111,6 +124,9 @@ Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quan
                                                          : NonDiffusePart::kLargestIndex;
   if (at.is_number()) return Spectrum::Constant(count, at.number_in(0, most));
   if (at.is_array()) {
+    if (bands.kind() == BandKind::kSpectral && at.size() == 3 && bands.count() != 3)
+      at.fail(fmt::format("3 values for {} bands", bands.count()),
+              "Write a colour as {\"rgb\": [r, g, b]}, or give one value per band.");
     at.expect_array(bands.count(), bands.count());
     Spectrum values(count);
     for (std::size_t i = 0; i < bands.count(); ++i)
@@ -122,7 +138,7 @@ Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quan
                                                "{{\"nm\": [...], \"value\": [...]}}.",
                                                bands.count()));
   }
-  if (at.find("srgb")) return read_srgb(at, bands);
+  if (at.find("srgb") || at.find("rgb")) return read_colour(at, bands, quantity, most);
   demand_spectral(at, bands);
   const Samples samples = read_samples(at, quantity != Quantity::kEmission);
   const JsonCursor listed = at.at("value");
@@ -136,7 +152,7 @@ Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quan
   }
   Spectrum values(count);
   for (std::size_t i = 0; i < centres.size(); ++i) {
-    const auto [from, to] = band_limits(centres, i);
+    const auto [from, to] = bands.range_nm(i);
     const double integral = samples.integral(from, to);
     values[static_cast<Eigen::Index>(i)] =
         quantity == Quantity::kEmission ? integral : integral / (to - from);

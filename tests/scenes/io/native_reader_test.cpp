@@ -357,16 +357,6 @@ TEST(NativeFiles, RefusesMissingAndUnknownFiles) {
   refused("room.json", {"cannot read \".json\" files"});
 }
 
-TEST(NativeFiles, SpectralRoomsNeedAMapping) {
-  const TempFolder folder;
-  folder.write("quad.obj", kQuadObj);
-  folder.write("quad.mtl", "newmtl inside\nKd 0.4 0.2 0.4\n");
-  const auto file = folder.write(
-      "room.json",
-      room(R"("bands": )" + kTwoBands + R"(, "materials": {}, "objects": [{"file": {"path": "quad.obj"}}])"));
-  expect_input_error([&] { read_native_scene(file, {}); }, {"#/objects/0", "\"inside\"", "Map it"});
-}
-
 TEST(NativeReader, TheExampleOfTheDocumentationIsARoom) {
   const std::string page =
       test::read_bytes(std::filesystem::path(REEMIT_SOURCE_DIR) / "docs" / "room_format.md");

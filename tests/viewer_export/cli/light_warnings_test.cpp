@@ -102,5 +102,34 @@ TEST_F(LightWarnings, UnitsOfGltfAreStatedAndKeptWithTheSolution) {
   EXPECT_EQ(json::parse(run({"info", path("room.h5"), "--json"}).out)["room_status"], "unchanged");
 }
 
+// A room of colours becomes a spectral one, for every command alike, and says so.
+TEST_F(LightWarnings, BandsForARoomOfColours) {
+  folder_.write(
+      "room.obj",
+      "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+      "usemtl red\nf 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\nusemtl lamp\nf 8 7 6 5\n");
+  folder_.write("room.mtl", "newmtl red\nKd 0.6 0.2 0.1\nnewmtl lamp\nKd 0.5 0.5 0.5\nKe 10 8 5\n");
+  std::vector<std::string> arguments = solve("room.obj");
+  arguments.insert(arguments.end(), {"--bands", "400:700:20"});
+  EXPECT_THAT(json::parse(run(arguments).out)["notes"],
+              Contains(AllOf(HasSubstr("16 bands, 400:700:20 nm"), HasSubstr("1 : 0.8 : 0.5"))));
+  const json solution = json::parse(run({"info", path("room.h5"), "--json"}).out);
+  EXPECT_EQ(solution["room_status"], "unchanged");
+  EXPECT_EQ(solution["bands"].size(), 16U);
+  run({"render", path("room.h5"), "-o", path("view.hdr"), "--eye", "0.5,0.5,0.5", "--look-at", "0.5,0.5,0",
+       "--size", "16x16", "--spp", "4"});
+  EXPECT_THAT(read_bytes(path("view.hdr")), HasSubstr("equal-energy white shown as D65"));
+
+  for (const char* bands : {"400:700", "400:700:0", "700:400:10", "400:700:x", "400:700:10:1", "0:700:10",
+                            "400:700:0.01", "400:405:10", "nan:700:10"}) {
+    const ProgramRun refused = run_reemit({"info", path("room.obj"), "--bands", bands});
+    EXPECT_EQ(refused.exit_code, 2) << bands;
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("--bands"), HasSubstr("400:700:10"))) << bands;
+  }
+  const ProgramRun resumed = run_reemit({"solve", "--resume", path("room.h5"), "--bands", "400:700:10"});
+  EXPECT_THAT(resumed.err, HasSubstr("--bands"));
+  EXPECT_EQ(resumed.exit_code, 2);
+}
+
 }  // namespace
 }  // namespace reemit::test
