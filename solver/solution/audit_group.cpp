@@ -73,7 +73,7 @@ bool can_be_added(const BandAudit& band) {
   for (const RunQuanta quanta : band.absorbed_on_backs) add(quanta, -1);
   for (const RunQuanta quanta : band.escaped) add(quanta, -1);
   add(band.unshot, -1);
-  constexpr double kMost = 0x1.fffp126;
+  constexpr double kMost = 0x1p126;
   return in < kMost && out < kMost;
 }
 
