@@ -74,7 +74,7 @@ void read_settings(const Hdf5Group& root, Solution& solution) {
   AttributeReader from_record{record};
   transfer_read_options(from_read, solution.read_options);
   const SpectralBands& bands = solution.read_options.bands;
-  require(!bands.given() || bands.problem().empty(), "bands that no room can have");
+  require_intact(!bands.given() || bands.problem().empty(), "bands that no room can have");
   transfer_mesh_settings(from_mesh, solution.mesh_settings);
   transfer_solver_settings(from_solve, solution.settings);
   transfer_record(from_record, solution.record);
@@ -259,10 +259,10 @@ void read_textures(const Hdf5Group& root, Solution& solution) {
   const Hdf5Shape shape{solution.mesh.zone_count(), solution.bands.count()};
   solution.zone_reflectances = group.read<double>("reflectance", shape);
   solution.zone_exitances = group.read<double>("emitted", shape);
-  require(std::all_of(solution.zone_reflectances.begin(), solution.zone_reflectances.end(),
+  require_intact(std::all_of(solution.zone_reflectances.begin(), solution.zone_reflectances.end(),
                       [](double x) { return x >= 0 && x <= 1; }),
           "reflectance of a zone outside [0,1]");
-  require(std::all_of(solution.zone_exitances.begin(), solution.zone_exitances.end(),
+  require_intact(std::all_of(solution.zone_exitances.begin(), solution.zone_exitances.end(),
                       [](double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }),
           "negative or infinite emission of a zone");
   if (group.has_dataset("solid_share"))

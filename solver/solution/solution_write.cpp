@@ -307,9 +307,9 @@ void write_textures(const Hdf5Group& root, const Solution& solution) {
   if (solution.zone_reflectances.empty()) return;
   const Hdf5Group group = root.create_group("textures");
   const std::size_t bands = solution.bands.count();
-  put_bands(group, "reflectance", solution.zone_reflectances, bands, "1",
+  put_rows(group, "reflectance", solution.zone_reflectances, bands, "1",
             "diffuse reflectance of each zone, its mean over the textures there");
-  put_bands(group, "emitted", solution.zone_exitances, bands, "W/m2",
+  put_rows(group, "emitted", solution.zone_exitances, bands, "W/m2",
             "emitted by each zone, its mean over the textures there");
   if (!solution.mesh.solid_shares().empty())
     put(group, "solid_share", solution.mesh.solid_shares(), 1, "1",
