@@ -192,7 +192,7 @@ void first_flight(const Settings& settings) {
   by_power.packet_share.clear();
   const ZoneLight reference = by_shadow_rays(room, direct, 1 << 13, 1);
   const auto print = [&](const char* method, double rays, double seconds, const ZoneLight& light) {
-    // Zones that see less than a quarter of the sky count as inside.
+    // Zones whose view is sky by less than an eighth count as inside.
     std::array<double, 2> squares{}, sums{};
     std::vector<double> relative;
     for (std::size_t z = 0; z < light.size(); ++z) {

@@ -136,7 +136,13 @@ float LuminaireTable::unoccluded(std::size_t entry, const Vec3f& x, const Vec3f&
   if (entry < areas_.size())
     return static_cast<float>(areas_[entry].expected_irradiance(x.cast<double>(), n.cast<double>()));
   if (entry == sky_) return sky_light_->expected_from_sky(x, n);
-  if (entry == sun_) return sky_light_->expected_from_sun(n);
+  if (entry == sun_) {
+    // Inside most points do not see the sun, however strong it is: it is asked for no more often than the
+    // sky, of which it is known how much they see.
+    const float unhidden = sky_light_->expected_from_sun(n);
+    if (sky_ == kNoEntry) return unhidden;
+    return std::min(unhidden, sky_light_->expected_from_sky(x, n) / brightness_[sun_]);
+  }
   return expected_irradiance(punctual_[entry - areas_.size()], x, n);
 }
 

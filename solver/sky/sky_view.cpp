@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "solver/sky/sky_table.h"
 
@@ -10,8 +12,24 @@ namespace reemit {
 namespace {
 
 using std::numbers::pi;
-/// Of what a direction has learnt, each of its four neighbours gets so much: rays were few.
-constexpr float kToNeighbours = 0.05F;
+/// Of what a direction has learnt, each of its four neighbours gets so much, twice over: rays were few, and a
+/// direction in which light comes that none of them met would be drawn too seldom and count too much.
+constexpr float kToNeighbours = 0.12F;
+constexpr int kRounds = 2;
+
+/// One round of it; at the poles nothing is lost.
+void share_with_neighbours(const std::vector<float>& from, std::vector<float>& to) {
+  constexpr std::size_t kColumns = SkyView::kColumns;
+  for (std::size_t d = 0; d < SkyView::kDirections; ++d) {
+    const std::size_t row = d / kColumns;
+    const std::size_t column = d % kColumns;
+    const float beside = from[row * kColumns + (column + 1) % kColumns] +
+                         from[row * kColumns + (column + kColumns - 1) % kColumns] +
+                         (row > 0 ? from[d - kColumns] : from[d]) +
+                         (row + 1 < SkyView::kRows ? from[d + kColumns] : from[d]);
+    to[d] = (1 - 4 * kToNeighbours) * from[d] + kToNeighbours * beside;
+  }
+}
 
 }  // namespace
 
@@ -55,18 +73,17 @@ void SkyView::add_escape(std::uint32_t place, const Vec3& local, float brightnes
 
 void SkyView::finish() {
   std::vector<float> learnt(kDirections);
+  std::vector<float> shared(kDirections);
   for (std::size_t place = 0; place < rays_.size(); ++place) {
     float* until = &until_[place * (kDirections + 1)];
     std::copy_n(until + 1, kDirections, learnt.begin());
+    for (int round = 0; round < kRounds; ++round) {
+      share_with_neighbours(learnt, shared);
+      std::swap(learnt, shared);
+    }
     double running = 0;
     for (std::size_t d = 0; d < kDirections; ++d) {
-      const std::size_t row = d / kColumns;
-      const std::size_t column = d % kColumns;
-      const float beside = learnt[row * kColumns + (column + 1) % kColumns] +
-                           learnt[row * kColumns + (column + kColumns - 1) % kColumns] +
-                           (row > 0 ? learnt[d - kColumns] : learnt[d]) +
-                           (row + 1 < kRows ? learnt[d + kColumns] : learnt[d]);
-      running += static_cast<double>((1 - 4 * kToNeighbours) * learnt[d] + kToNeighbours * beside);
+      running += static_cast<double>(learnt[d]);
       until[d + 1] = static_cast<float>(running);
     }
     if (!(running > 0)) {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include "scenes/io/common/text_file.h"
@@ -18,6 +21,7 @@ namespace {
 
 constexpr int kLeastRows = 8;
 constexpr int kMostRowsRead = 1 << 14;
+constexpr int kMostChannels = 1024;
 constexpr int kMostRowsKept = 1 << 11;
 
 /// Rows of linear RGB.
@@ -26,45 +30,48 @@ struct Pixels {
   std::vector<float> rgb;
 };
 
+/// Not through an ImageBuf, whose cache would hand out what a file of this name held before.
 Pixels load_pixels(const std::filesystem::path& file) {
   check_readable_file(file);
   const std::string name = file.string();
-  OIIO::ImageBuf image(name);
-  if (!image.init_spec(name, 0, 0) || image.nchannels() < 1)
-    throw InputError(name, "it cannot be read as an image: " + image.geterror(),
-                     "Give a latitude-longitude image as .hdr or .exr.");
-  const int columns = image.spec().width;
-  const int rows = image.spec().height;
-  if (rows < kLeastRows || columns != 2 * rows)
+  const auto unreadable = [&](const std::string& reason) {
+    return InputError(name, "it cannot be read as an image: " + reason,
+                      "Give a complete latitude-longitude image as .hdr or .exr.");
+  };
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name);
+  if (!input) throw unreadable(OIIO::geterror());
+  const int columns = input->spec().width;
+  const int rows = input->spec().height;
+  const int channels = input->spec().nchannels;
+  if (rows < kLeastRows || columns != 2 * rows || channels < 1)
     throw InputError(
         name, fmt::format("{} x {} pixels are no latitude-longitude image of the sky", columns, rows),
         fmt::format("It must be twice as wide as high, and at least {} x {}.", 2 * kLeastRows, kLeastRows));
-  if (rows > kMostRowsRead)
-    throw InputError(name, fmt::format("{} x {} pixels are too many", columns, rows),
-                     fmt::format("Make it {} x {} or smaller.", 2 * kMostRowsRead, kMostRowsRead));
-  if (!image.nativespec().format.is_floating_point())
+  if (rows > kMostRowsRead || channels > kMostChannels)
+    throw InputError(
+        name, fmt::format("{} x {} pixels of {} values are too many", columns, rows, channels),
+        fmt::format("Make it {} x {} or smaller, of red, green and blue.", 2 * kMostRowsRead, kMostRowsRead));
+  if (!input->spec().format.is_floating_point())
     throw InputError(name, "its pixels are whole numbers, which cannot hold the range of a sky",
                      "Give an image of floating-point values: .hdr or .exr.");
-  if (!image.read(0, 0, /*force*/ true, OIIO::TypeDesc::FLOAT))
-    throw InputError(name, "it cannot be read as an image: " + image.geterror(), "Is the file complete?");
-  Pixels pixels{rows, columns,
-                std::vector<float>(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns) * 3)};
-  const int channels = image.nchannels() >= 3 ? 3 : 1;
-  const int x0 = image.spec().x;
-  const int y0 = image.spec().y;
-  for (OIIO::ImageBuf::ConstIterator<float> p(image); !p.done(); ++p) {
-    const auto at = static_cast<std::size_t>(p.y() - y0) * static_cast<std::size_t>(columns) +
-                    static_cast<std::size_t>(p.x() - x0);
-    for (int c = 0; c < 3; ++c) {
-      const float value = p[std::min(c, channels - 1)];
-      if (!(value >= 0) || !std::isfinite(value))
-        throw InputError(name, fmt::format("pixel ({}, {}) has the value {}", p.x() - x0, p.y() - y0, value),
-                         "Radiance is a finite number of 0 or more: repair the image.");
-      pixels.rgb[3 * at + static_cast<std::size_t>(c)] = value;
-    }
+  const int used = channels >= 3 ? 3 : 1;
+  const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+  std::vector<float> values(count * static_cast<std::size_t>(used));
+  if (!input->read_image(0, 0, 0, used, OIIO::TypeDesc::FLOAT, values.data()))
+    throw unreadable(input->geterror());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] >= 0 && std::isfinite(values[i])) continue;
+    const std::size_t pixel = i / static_cast<std::size_t>(used);
+    throw InputError(name,
+                     fmt::format("pixel ({}, {}) has the value {}", pixel % static_cast<std::size_t>(columns),
+                                 pixel / static_cast<std::size_t>(columns), values[i]),
+                     "Radiance is a finite number of 0 or more: repair the image.");
   }
-  if (image.has_error())
-    throw InputError(name, "it cannot be read as an image: " + image.geterror(), "Is the file complete?");
+  Pixels pixels{rows, columns, std::move(values)};
+  if (used == 3) return pixels;
+  std::vector<float> grey = std::move(pixels.rgb);
+  pixels.rgb.resize(3 * count);
+  for (std::size_t i = 0; i < pixels.rgb.size(); ++i) pixels.rgb[i] = grey[i / 3];
   return pixels;
 }
 

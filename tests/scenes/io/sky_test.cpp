@@ -101,7 +101,7 @@ TEST(Sky, options_are_the_same_as_the_file) {
 TEST(Sky, a_room_that_is_lit_by_its_sky_is_not_called_dark) {
   const TempFolder folder;
   const std::string dark =
-      test::replaced(test::small_json_room(), R"("exitance": [30, 25, 20])", R"("exitance": 0)");
+      test::replaced(test::small_json_room(), R"("exitance": [30, 25, 20])", R"("sides": "both")");
   const auto file = folder.write("room.json", dark);
   using testing::Contains;
   using testing::HasSubstr;
