@@ -20,8 +20,9 @@ inline int wrapped(int i, int size, TextureWrap wrap) {
 /// `texel_at`: of x and y.
 template <class TexelAt>
 Texel value_of_copy(const Texture& texture, int width, int height, float u, float v, TexelAt&& texel_at) {
-  const float x = u * static_cast<float>(width);
-  const float y = v * static_cast<float>(height);
+  constexpr float kFarthest = 1e9F;  // what an int holds
+  const float x = std::clamp(u * static_cast<float>(width), -kFarthest, kFarthest);
+  const float y = std::clamp(v * static_cast<float>(height), -kFarthest, kFarthest);
   const auto column = [&](int i) { return wrapped(i, width, texture.wrap_u); };
   const auto row = [&](int i) { return wrapped(i, height, texture.wrap_v); };
   if (texture.nearest)

@@ -13,6 +13,7 @@
 #include "scenes/io/scene_reader.h"
 #include "solver/gather/direct_light.h"
 #include "solver/progressive_solver.h"
+#include "solver/solution/solution_file.h"
 #include "tests/support/mean_test.h"
 #include "tests/support/pixmap.h"
 #include "viewer_export/still/render_still.h"
@@ -258,6 +259,11 @@ TEST_F(TexturedRooms, CutOutLetsAsMuchThroughAsItsHoles) {
     if (s.surface_names[s.mesh.zone_surface(ZoneId(i)).index()] == "sheet" && s.mesh.zone_is_front(ZoneId(i)))
       area += s.mesh.zone_area(ZoneId(i));
   EXPECT_NEAR(area, 8, 0.05);
+  save_solution(s, folder_ / "cut.h5");
+  const Solution again = load_solution(folder_ / "cut.h5");
+  EXPECT_EQ(again.zone_reflectances, s.zone_reflectances);
+  EXPECT_EQ(again.zone_exitances, s.zone_exitances);
+  EXPECT_EQ(again.mesh.solid_shares(), s.mesh.solid_shares());
 }
 
 TEST_F(TexturedRooms, OpacityOfAHalfIsAClearSheetOfAHalf) {
