@@ -11,7 +11,8 @@
 
 namespace reemit {
 
-/// A spectrum of reflectances [0,1]: a number, one number per band, {"rgb": [r, g, b]}, {"srgb": "#rrggbb"} or
+/// A spectrum of reflectances [0,1]: a number, one number per band, {"rgb": [r, g, b]}, {"srgb": "#rrggbb"}
+/// or
 /// {"nm", "value"};
 /// see docs/room_format.md. Sampled spectra are averaged over each band, which needs a spectral room.
 Spectrum read_reflectance(const JsonCursor& at, const BandSet& bands);

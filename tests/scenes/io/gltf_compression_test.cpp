@@ -124,8 +124,8 @@ TEST_P(CompressedRoom, IsTheRoomThatWasCompressed) {
 INSTANTIATE_TEST_SUITE_P(Seeds, CompressedRoom,
                          testing::Values("ball_draco.glb", "ball_draco_sequential.glb", "ball_meshopt.glb",
                                          "ball_packed.gltf", "ball_webp.glb"),
-                         [](const auto& info) {
-                           const std::string name = info.param;
+                         [](const auto& seed) {
+                           const std::string name = seed.param;
                            return name.substr(0, name.find('.'));
                          });
 

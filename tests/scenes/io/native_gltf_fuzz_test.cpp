@@ -219,6 +219,25 @@ TEST(NativeGltfFuzz, GlbMutated) {
   expect_both(outcome);
 }
 
+// The compressed parts alone: all lengths and the document stay as they are.
+TEST(NativeGltfFuzz, CompressedBytesMutated) {
+  const std::filesystem::path seeds = std::filesystem::path(REEMIT_SOURCE_DIR) / "tests" / "hard" / "seeds";
+  for (const char* name : {"ball_draco.glb", "ball_draco_sequential.glb", "ball_meshopt.glb"}) {
+    SCOPED_TRACE(name);
+    const std::string whole = test::read_bytes(seeds / name);
+    const std::size_t start = whole.find(std::string("BIN\0", 4)) + 4;
+    std::mt19937 random(11);
+    Outcome outcome(read_gltf_file, name);
+    for (std::size_t i = 0; i < 400; ++i) {
+      std::string bytes = whole;
+      for (std::size_t changes = 1 + random() % 3; changes > 0; --changes)
+        bytes[start + random() % (bytes.size() - start)] = static_cast<char>(random());
+      outcome.feed(bytes, i);
+    }
+    expect_both(outcome);
+  }
+}
+
 TEST(NativeGltfFuzz, PlyMutated) {
   Outcome outcome(read_ply, "mesh.ply");
   feed_mutations(outcome, kPly, 4000);
