@@ -10,10 +10,7 @@
 namespace reemit {
 
 LuminaireTable::LuminaireTable(const Room& room)
-    : rays_(&room.rays()),
-      sky_light_(room.sky()),
-      surfaces_(&room.surfaces()),
-      bands_(room.band_count()) {
+    : rays_(&room.rays()), sky_light_(room.sky()), surfaces_(&room.surfaces()), bands_(room.band_count()) {
   add_surfaces(room);
   add_cells(room);
   add_lights(room.scene());

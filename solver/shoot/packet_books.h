@@ -150,7 +150,7 @@ class WaitingPackets {
     power_.resize(count * values_);
   }
 
-  std::size_t values_;  // of each packet
+  std::size_t values_;                      // of each packet
   std::vector<std::uint32_t> cut_out_key_;  // as Ray16::key
   std::vector<Vec3f> origin_;
   std::vector<Vec3f> direction_;

@@ -14,7 +14,7 @@ namespace reemit {
 class SkyView {
  public:
   static constexpr std::size_t kCells = 8;  ///< Along each edge of [-1,1]^3.
-  static constexpr std::size_t kRows = 16;   ///< Of directions, by equal steps of the cosine from up.
+  static constexpr std::size_t kRows = 16;  ///< Of directions, by equal steps of the cosine from up.
   static constexpr std::size_t kColumns = 32;
   static constexpr std::size_t kDirections = kRows * kColumns;
   /// Solid angle of a direction's cell [sr]; all are alike.

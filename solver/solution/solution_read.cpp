@@ -260,11 +260,11 @@ void read_textures(const Hdf5Group& root, Solution& solution) {
   solution.zone_reflectances = group.read<double>("reflectance", shape);
   solution.zone_exitances = group.read<double>("emitted", shape);
   require_intact(std::all_of(solution.zone_reflectances.begin(), solution.zone_reflectances.end(),
-                      [](double x) { return x >= 0 && x <= 1; }),
-          "reflectance of a zone outside [0,1]");
+                             [](double x) { return x >= 0 && x <= 1; }),
+                 "reflectance of a zone outside [0,1]");
   require_intact(std::all_of(solution.zone_exitances.begin(), solution.zone_exitances.end(),
-                      [](double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }),
-          "negative or infinite emission of a zone");
+                             [](double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }),
+                 "negative or infinite emission of a zone");
   if (group.has_dataset("solid_share"))
     solution.mesh.set_solid_shares(group.read<float>("solid_share", {solution.mesh.zone_count()}));
 }

@@ -308,9 +308,9 @@ void write_textures(const Hdf5Group& root, const Solution& solution) {
   const Hdf5Group group = root.create_group("textures");
   const std::size_t bands = solution.bands.count();
   put_rows(group, "reflectance", solution.zone_reflectances, bands, "1",
-            "diffuse reflectance of each zone, its mean over the textures there");
+           "diffuse reflectance of each zone, its mean over the textures there");
   put_rows(group, "emitted", solution.zone_exitances, bands, "W/m2",
-            "emitted by each zone, its mean over the textures there");
+           "emitted by each zone, its mean over the textures there");
   if (!solution.mesh.solid_shares().empty())
     put(group, "solid_share", solution.mesh.solid_shares(), 1, "1",
         "share of each zone that is there; areas of zones are of that alone");

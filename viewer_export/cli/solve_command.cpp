@@ -356,8 +356,9 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_json_option(solve, options->style);
   add_progress_options(solve, options->style);
   // A run has one of each from its first batch to its last.
-  for (const char* settled : {"--method", "--sampling", "--reemit", "--seed", "--zones", "--zone-area",
-                              "--two-sided", "--bands", "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
+  for (const char* settled :
+       {"--method", "--sampling", "--reemit", "--seed", "--zones", "--zone-area", "--two-sided", "--bands",
+        "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
     resume->excludes(solve.get_option(settled));
   solve.callback([options, &action] {
     if (options->resume.empty() && options->room.empty()) throw CLI::RequiredError("ROOM or --resume");
