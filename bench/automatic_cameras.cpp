@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/contact_sheet.h"
+#include "bench/program_options.h"
 #include "solver/room/room.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
@@ -77,17 +77,15 @@ void write_sheet(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App program("Contact sheet of the automatic cameras of solved rooms");
+  bench::ProgramOptions program("Contact sheet of the automatic cameras of solved rooms");
   program.add_option("solutions", settings.solutions, "Solution files; their names label the pictures")
-      ->required();
-  program.add_option("-o,--output", settings.output, "JPEG or PNG")->capture_default_str();
-  program.add_option("--font", settings.font, "Of the labels, a name or file")->capture_default_str();
-  program.add_option("--columns", settings.columns, "Rooms side by side")
-      ->check(CLI::Range(1, 20))
-      ->capture_default_str();
-  program.add_option("--spp", settings.spp, "Camera rays per pixel")->capture_default_str();
-  program.add_option("--threads", settings.threads, "0 = all cores")->capture_default_str();
-  CLI11_PARSE(program, argc, argv);
+      .required();
+  program.add_option("-o,--output", settings.output, "JPEG or PNG").show_default();
+  program.add_option("--font", settings.font, "Of the labels, a name or file").show_default();
+  program.add_option("--columns", settings.columns, "Rooms side by side").in_range(1, 20).show_default();
+  program.add_option("--spp", settings.spp, "Camera rays per pixel").show_default();
+  program.add_option("--threads", settings.threads, "0 = all cores").show_default();
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   try {
     write_sheet(settings);
   } catch (const std::exception& e) {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include "bench/program_options.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
 #include "tests/support/variable_furnace.h"
@@ -133,14 +133,12 @@ void measure(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  bench::ProgramOptions app(
       "Coverage of the 95 % intervals of zones, vertices and pixels in a furnace of known radiosity");
   Options options;
-  app.add_option("--seeds", options.seeds, "Independent runs")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--error", options.error, "Target of the solve, as a fraction")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--seeds", options.seeds, "Independent runs").show_default().in_range(1, 100000);
+  app.add_option("--error", options.error, "Target of the solve, as a fraction").show_default();
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     measure(options);
   } catch (const std::exception& e) {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/program_options.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
@@ -159,22 +159,18 @@ void measure(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Whether the true error of solutions and stills meets the --error target");
+  bench::ProgramOptions app("Whether the true error of solutions and stills meets the --error target");
   Options options;
-  app.add_option("room", options.room, "Room file with a camera")->required();
-  app.add_option("--seeds", options.seeds, "Independent runs")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 10000));
-  app.add_option("--solve-error", options.solve_target, "Target of solve, as a fraction")
-      ->capture_default_str();
-  app.add_option("--render-error", options.render_target, "Target of render, as a fraction")
-      ->capture_default_str();
+  app.add_option("room", options.room, "Room file with a camera").required();
+  app.add_option("--seeds", options.seeds, "Independent runs").show_default().in_range(1, 10000);
+  app.add_option("--solve-error", options.solve_target, "Target of solve, as a fraction").show_default();
+  app.add_option("--render-error", options.render_target, "Target of render, as a fraction").show_default();
   app.add_option("--zone-area", options.zone_area, "Largest zone area [m2]");
-  app.add_option("--size", options.size, "Width and height of the stills [px]")->capture_default_str();
+  app.add_option("--size", options.size, "Width and height of the stills [px]").show_default();
   app.add_option("--reference-samples", options.reference_samples,
                  "Path-traced samples per pixel of the reference")
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+      .show_default();
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     measure(options);
   } catch (const std::exception& e) {

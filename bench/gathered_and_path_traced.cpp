@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/contact_sheet.h"
+#include "bench/program_options.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
@@ -174,32 +174,28 @@ void write_sheet(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App program("Stills of rooms, gathered and path traced, side by side and compared");
+  bench::ProgramOptions program("Stills of rooms, gathered and path traced, side by side and compared");
   program.add_option("rooms", settings.rooms, "Room files; their first camera, or one found automatically")
-      ->required()
-      ->check(CLI::ExistingFile);
-  program.add_option("-o,--output", settings.output, "JPEG or PNG")->capture_default_str();
-  program.add_option("--font", settings.font, "Of the labels, a name or file")->capture_default_str();
-  program.add_option("--columns", settings.columns, "Rooms side by side")
-      ->check(CLI::Range(1, 20))
-      ->capture_default_str();
-  program.add_option("--width", settings.width, "Of a picture [px]")
-      ->check(CLI::Range(16, 4096))
-      ->capture_default_str();
-  program.add_option("--height", settings.height, "[px]")->check(CLI::Range(16, 4096))->capture_default_str();
-  program.add_option("--packets", settings.packets, "Of each zone solution")->capture_default_str();
+      .required()
+      .existing_file();
+  program.add_option("-o,--output", settings.output, "JPEG or PNG").show_default();
+  program.add_option("--font", settings.font, "Of the labels, a name or file").show_default();
+  program.add_option("--columns", settings.columns, "Rooms side by side").in_range(1, 20).show_default();
+  program.add_option("--width", settings.width, "Of a picture [px]").in_range(16, 4096).show_default();
+  program.add_option("--height", settings.height, "[px]").in_range(16, 4096).show_default();
+  program.add_option("--packets", settings.packets, "Of each zone solution").show_default();
   program.add_option("--spp", settings.spp, "Camera rays per pixel of each gathered still")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+      .in_range(1, 65536)
+      .show_default();
   program.add_option("--path-spp", settings.path_spp, "Of each path-traced one")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+      .in_range(1, 65536)
+      .show_default();
   program.add_option("--runs", settings.runs, "Solutions and stills with random numbers of their own")
-      ->check(CLI::Range(2, 64))
-      ->capture_default_str();
-  program.add_option("--seed", settings.seed)->capture_default_str();
-  program.add_option("--threads", settings.threads, "0 = all cores")->capture_default_str();
-  CLI11_PARSE(program, argc, argv);
+      .in_range(2, 64)
+      .show_default();
+  program.add_option("--seed", settings.seed).show_default();
+  program.add_option("--threads", settings.threads, "0 = all cores").show_default();
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   try {
     write_sheet(settings);
   } catch (const std::exception& e) {

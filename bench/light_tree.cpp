@@ -13,9 +13,9 @@
 #include <optional>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/program_options.h"
 #include "solver/emit/area_luminaire.h"
 #include "solver/emit/selection.h"
 #include "solver/sampling/counter_rng.h"
@@ -251,18 +251,16 @@ void print_scatter(std::size_t most, int receivers) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Time and scatter of choosing one luminaire among many");
+  bench::ProgramOptions app("Time and scatter of choosing one luminaire among many");
   std::size_t most = 1048576;
   int picks = 100000;
   int receivers = 50;
-  app.add_option("--most", most, "Largest number of luminaires")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 26));
-  app.add_option("--picks", picks, "Picks timed")->capture_default_str()->check(CLI::Range(1000, 100000000));
+  app.add_option("--most", most, "Largest number of luminaires").show_default().in_range(1, 1 << 26);
+  app.add_option("--picks", picks, "Picks timed").show_default().in_range(1000, 100000000);
   app.add_option("--receivers", receivers, "Receivers of the table of deviations")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000000));
-  CLI11_PARSE(app, argc, argv);
+      .show_default()
+      .in_range(1, 1000000);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     print_times(most, picks);
     print_scatter(most, receivers);

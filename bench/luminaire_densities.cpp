@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/luminaire_densities_page.h"
+#include "bench/program_options.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/sampling/counter_rng.h"
@@ -236,22 +236,20 @@ std::vector<Row> measure(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Variance and cost of the densities that luminaires are sampled with");
+  ProgramOptions app("Variance and cost of the densities that luminaires are sampled with");
   Options options;
-  app.add_option("--write", options.folder, "Folder for luminaire_densities.md and .csv")->required();
-  app.add_option("--places", options.places, "Places per distance")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 10'000));
+  app.add_option("--write", options.folder, "Folder for luminaire_densities.md and .csv").required();
+  app.add_option("--places", options.places, "Places per distance").show_default().in_range(1, 10'000);
   app.add_option("--samples", options.samples, "Samples per place and density")
-      ->capture_default_str()
-      ->check(CLI::Range(16, 1'000'000));
+      .show_default()
+      .in_range(16, 1'000'000);
   app.add_option("--repeats", options.repeats, "Timings, of which the best counts")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      .show_default()
+      .in_range(1, 1000);
   app.add_option("--shadow-ray-ns", options.ray_ns,
                  "Cost of a shadow ray; measured in the Cornell box if not given")
-      ->check(CLI::Range(1.0, 1e6));
-  CLI11_PARSE(app, argc, argv);
+      .in_range(1.0, 1e6);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     const std::filesystem::path out(options.folder);
     std::filesystem::create_directories(out);

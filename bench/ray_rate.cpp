@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -18,6 +17,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include "bench/program_options.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/room/room.h"
@@ -173,16 +173,16 @@ void measure(const Case& c, int threads, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Rays per second of the solver and of bare Embree on the same rays");
+  bench::ProgramOptions app("Rays per second of the solver and of bare Embree on the same rays");
   std::string room;
   std::vector<double> zones{3e3, 3e5};
   int threads = 2;
   int rounds = 7;
-  app.add_option("room", room, "Room file")->required();
-  app.add_option("--zones", zones, "Zones aimed at, one case each")->capture_default_str();
-  app.add_option("--threads", threads, "Threads")->capture_default_str();
-  app.add_option("--rounds", rounds, "Counted rounds")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("room", room, "Room file").required();
+  app.add_option("--zones", zones, "Zones aimed at, one case each").show_default();
+  app.add_option("--threads", threads, "Threads").show_default();
+  app.add_option("--rounds", rounds, "Counted rounds").show_default();
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     fmt::print("# {} with {} threads, median of {} rounds; left out: rays of incomplete blocks of 16\n", room,
                threads, rounds);

@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
+#include "bench/program_options.h"
 #include "solver/room/room.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/solution/room_of_solution.h"
@@ -154,26 +154,26 @@ void replay(Run& run, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  bench::ProgramOptions app(
       "Prints the way of one packet of a solve: for each ray the bounce (walks) or sweep (shooting), where "
       "it\n"
       "starts and what it meets. With shooting, zones send on what many packets brought, so a packet has one "
       "ray, and one more for each mirror and pane that it goes on from.");
   Options options;
   app.add_option("solution", options.solution, "Solution file; its room must be where it was")
-      ->required()
-      ->check(CLI::ExistingFile);
+      .required()
+      .existing_file();
   app.add_option("--batch", options.batch, "Number of the batch, from 0 (default: 0; all with --lost)");
   app.add_option("--packet", options.packet, "Number of the packet within its batch or sweep, from 0")
-      ->capture_default_str();
+      .show_default();
   app.add_option("--sweep", options.sweep,
                  "Shooting: 0 is the light of luminaires, 1 what zones send on first")
-      ->capture_default_str();
+      .show_default();
   app.add_flag(
       "--lost", options.lost,
       "Instead: every ray that ends where light should not get, outside, on a back that absorbs or on a "
       "side that is sealed");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     Run run(options.solution);
     if (options.lost)

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/program_options.h"
 #include "solver/progressive_solver.h"
 #include "tests/support/variable_furnace.h"
 
@@ -84,16 +84,14 @@ void measure(int seeds, double seconds, int threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Error of zones by size with and without gathering on small ones, at equal time");
+  bench::ProgramOptions app("Error of zones by size with and without gathering on small ones, at equal time");
   int seeds = 5;
   double seconds = 2;
   int threads = 2;
-  app.add_option("--seeds", seeds, "Independent runs")->capture_default_str()->check(CLI::Range(1, 1000));
-  app.add_option("--time", seconds, "Time of each solve [s]")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--threads", threads, "Threads")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--seeds", seeds, "Independent runs").show_default().in_range(1, 1000);
+  app.add_option("--time", seconds, "Time of each solve [s]").show_default().positive();
+  app.add_option("--threads", threads, "Threads").show_default();
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     measure(seeds, seconds, threads);
   } catch (const std::exception& e) {

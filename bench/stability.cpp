@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/program_options.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
@@ -205,12 +205,13 @@ void measure_batches(double packets) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Rounding: rooms of any size and anywhere, reflectance near 1, very large batches");
+  bench::ProgramOptions app(
+      "Rounding: rooms of any size and anywhere, reflectance near 1, very large batches");
   std::string room;
   double packets = 1e8;
-  app.add_option("room", room, "Room file")->required();
-  app.add_option("--packets", packets, "Packets of the comparison of batch sizes")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("room", room, "Room file").required();
+  app.add_option("--packets", packets, "Packets of the comparison of batch sizes").show_default();
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     measure_transforms(room);
     measure_reflectance();

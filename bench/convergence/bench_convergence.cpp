@@ -5,11 +5,11 @@
 #include <fstream>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/convergence/jobs.h"
 #include "bench/convergence/report.h"
+#include "bench/program_options.h"
 
 namespace reemit::bench {
 
@@ -64,30 +64,28 @@ Table measure(const Options& options, const Jobs& jobs, const std::vector<std::s
 
 int main(int argc, char** argv) {
   using namespace reemit::bench;
-  CLI::App app("Error over time of zones, vertices and stills against long references");
+  ProgramOptions app("Error over time of zones, vertices and stills against long references");
   Options options;
   Jobs jobs;
   std::string folder;
   std::vector<std::string> only;
   std::vector<std::string> quantities;
   bool from_table = false;
-  app.add_option("--write", folder, "Folder for convergence.csv, convergence.md and images/")->required();
+  app.add_option("--write", folder, "Folder for convergence.csv, convergence.md and images/").required();
   app.add_option("--rooms", options.rooms,
                  "Folder below which erw5/scene3.mgf and erw5/scene6.mgf are looked for");
-  app.add_option("--threads", options.threads, "Threads")->capture_default_str()->check(CLI::Range(1, 1024));
-  app.add_option("--seeds", options.seeds, "Runs of each method and level")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100));
+  app.add_option("--threads", options.threads, "Threads").show_default().in_range(1, 1024);
+  app.add_option("--seeds", options.seeds, "Runs of each method and level").show_default().in_range(1, 100);
   app.add_option("--reference-cache", options.reference_cache,
                  "Folder in which references are kept from run to run");
   app.add_option("--only-room", only, "Measure this room only (may be repeated)");
   app.add_option("--only", quantities, "Measure this only (may be repeated)")
-      ->check(CLI::IsMember({"zones", "vertices", "stills"}));
+      .one_of({"zones", "vertices", "stills"});
   app.add_flag("--quick", options.quick,
                "Short run: longest levels left out, references with a quarter of the work");
   app.add_flag("--from-table", from_table,
                "Measure nothing: page and plots from the convergence.csv that is there");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     const std::filesystem::path out(folder);
     std::filesystem::create_directories(out);

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/hit_paths/block_comparison.h"
 #include "bench/hit_paths/touching_lamps.h"
+#include "bench/program_options.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/room/room.h"
 #include "solver/zoning/build_zones.h"
@@ -95,7 +95,7 @@ std::size_t compare(const std::string& name, const Scene& scene, const Compariso
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  bench::ProgramOptions app(
       "Compares 16 x 16 blocks of stills with paths that only hit luminaires.\n"
       "Exit code 1 if a block differs by more than 5 standard errors and 3 %.");
   std::vector<std::filesystem::path> rooms;
@@ -104,12 +104,12 @@ int main(int argc, char** argv) {
   bool flat = false;
   CameraChoice cameras;
   ComparisonSettings settings;
-  app.add_option("rooms", rooms, "Room files")->check(CLI::ExistingFile);
+  app.add_option("rooms", rooms, "Room files").existing_file();
   app.add_flag("--generated", generated, "Compare the 20 generated rooms with touching lamps");
   app.add_flag("--one-room", one_room, "All files together are one room (MGF)");
   app.add_option("--photometry", settings.photometry,
                  "IES file of the measured luminaires, read anew for the reference")
-      ->check(CLI::ExistingFile);
+      .existing_file();
   app.add_flag("--flat", flat, "Leave out the normals of files, which the reference does not know");
   app.add_option("--cameras", cameras.most, "Cameras of each room");
   app.add_option("--camera", cameras.name, "Camera by name, auto-1, auto-2, ... of rooms without any");
@@ -117,25 +117,23 @@ int main(int argc, char** argv) {
          "--still", settings.stills,
          "Check this EXR file of `reemit render` instead of rendering. Several are of the same view,\n"
          "each of a solution with another seed; of one alone the noise of its zones is not known")
-      ->check(CLI::ExistingFile);
-  app.add_option("--width", settings.width, "Of pictures that are rendered [px]")->capture_default_str();
-  app.add_option("--height", settings.height, "[px]")->capture_default_str();
-  app.add_option("--seconds", settings.seconds, "For the reference of one picture [s]")
-      ->capture_default_str();
+      .existing_file();
+  app.add_option("--width", settings.width, "Of pictures that are rendered [px]").show_default();
+  app.add_option("--height", settings.height, "[px]").show_default();
+  app.add_option("--seconds", settings.seconds, "For the reference of one picture [s]").show_default();
   app.add_option("--passes", settings.passes,
                  "Paths per pixel of the reference instead, a multiple of 8: the same on any machine");
   app.add_option("--reference-error", settings.reference_error,
                  "Median over blocks at which the reference stops sooner")
-      ->capture_default_str();
-  app.add_option("--packets", settings.packets, "Of the zone solutions, all together")->capture_default_str();
-  app.add_option("--spp", settings.spp, "Of the checked stills, all together")->capture_default_str();
+      .show_default();
+  app.add_option("--packets", settings.packets, "Of the zone solutions, all together").show_default();
+  app.add_option("--spp", settings.spp, "Of the checked stills, all together").show_default();
   app.add_option("--zone-area", settings.zone_area, "[m2]");
-  app.add_option("--seed", settings.seed, "Of the first room; each has numbers of its own")
-      ->capture_default_str();
+  app.add_option("--seed", settings.seed, "Of the first room; each has numbers of its own").show_default();
   app.add_option("--bias", settings.planted_bias, "Planted in the checked still, as a share");
   app.add_flag("--walk", settings.by_walks, "Solve the zones by walks instead of shooting");
   app.add_flag("--path", settings.by_path, "Check the path tracer instead of the gathered still");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   if (rooms.empty()) one_room = false;
   if (!settings.stills.empty() && (generated || cameras.most != 1 || (rooms.size() != 1 && !one_room))) {
     fmt::print(stderr, "bench_hit_paths: stills are of one camera in one room\n");

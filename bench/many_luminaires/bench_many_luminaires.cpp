@@ -7,13 +7,13 @@
 #include <thread>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/convergence/jobs.h"
 #include "bench/many_luminaires/figures.h"
 #include "bench/many_luminaires/page.h"
 #include "bench/many_luminaires/parts.h"
+#include "bench/program_options.h"
 
 namespace reemit::bench {
 namespace {
@@ -53,25 +53,23 @@ Figures measure(const RunSettings& settings, const std::vector<std::string>& onl
 
 int main(int argc, char** argv) {
   using namespace reemit::bench;
-  CLI::App app("Time and error of the ways to choose one luminaire among many");
+  ProgramOptions app("Time and error of the ways to choose one luminaire among many");
   RunSettings settings;
   std::string folder;
   std::vector<std::string> only;
   bool from_table = false;
   app.add_option("--write", folder, "Folder for many_luminaires.csv, many_luminaires.md and images/")
-      ->required();
+      .required();
   app.add_option("--threads", settings.threads, "Threads of references and stills")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
-  app.add_option("--seeds", settings.seeds, "Runs of each measured error")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100));
+      .show_default()
+      .in_range(1, 1024);
+  app.add_option("--seeds", settings.seeds, "Runs of each measured error").show_default().in_range(1, 100);
   app.add_option("--only", only, "Measure this part only (may be repeated)")
-      ->check(CLI::IsMember({"sphereflake", "panels", "growth"}));
+      .one_of({"sphereflake", "panels", "growth"});
   app.add_flag("--quick", settings.quick, "Short run: fewer points, samples and luminaires");
   app.add_flag("--from-table", from_table,
                "Measure nothing: page and plots from the many_luminaires.csv that is there");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     settings.folder = folder;
     std::filesystem::create_directories(settings.folder / "images");

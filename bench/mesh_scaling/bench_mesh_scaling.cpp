@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "bench/mesh_scaling/furnished_hall.h"
+#include "bench/program_options.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 
@@ -133,11 +133,12 @@ int main(int argc, char** argv) {
   std::vector<std::size_t> sizes{100'000, 300'000, 1'000'000};
   std::string write;
   bool detail = false;
-  CLI::App app("Loading and meshing of furnished halls: processor time, memory and their exponents");
+  bench::ProgramOptions app(
+      "Loading and meshing of furnished halls: processor time, memory and their exponents");
   app.add_option("--triangles", sizes, "Sizes of the rooms");
   app.add_option("--write", write, "Only write the first room to this OBJ file");
   app.add_flag("--detail", detail, "With --write: the room that grows in detail");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     if (!write.empty()) {
       const auto growth = detail ? bench::Growth::kDetail : bench::Growth::kHall;

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <exception>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/program_options.h"
 #include "bench/validation/cube_convergence.h"
 #include "bench/validation/families.h"
 #include "bench/validation/plots.h"
@@ -48,15 +48,15 @@ std::vector<ValidationRow> measure(const std::vector<ReferenceCase>& cases, cons
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Validation against values that are known without Monte Carlo");
+  reemit::bench::ProgramOptions app("Validation against values that are known without Monte Carlo");
   Effort effort;
   std::string only;
   std::string folder;
   app.add_option("--write", folder, "Write validation.md, validation.csv and plots into this folder");
   app.add_option("--only", only, "One kind of cases only; prints its rows");
   app.add_option("--work", effort.work, "Work relative to the full run; errors grow as 1/sqrt(work)")
-      ->check(CLI::Range(1e-3, 100.0));
-  CLI11_PARSE(app, argc, argv);
+      .in_range(1e-3, 100.0);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     if (!folder.empty()) require_gnuplot();
     const std::vector<ReferenceCase> cases = read_reference_cases(reference_cases_path());

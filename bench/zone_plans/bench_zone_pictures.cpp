@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/contact_sheet.h"
+#include "bench/program_options.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
@@ -92,15 +92,16 @@ void add_room(const Settings& settings, std::size_t row, bench::ContactSheet& sh
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App program("Contact sheet of rooms by zones of one size and by zones that fit the light");
-  program.add_option("rooms", settings.rooms, "Room files")->required();
-  program.add_option("-o,--output", settings.output, "JPEG or PNG")->capture_default_str();
-  program.add_option("--font", settings.font, "Of the labels, a name or file")->capture_default_str();
-  program.add_option("--packets", settings.packets, "Of each solve")->capture_default_str();
-  program.add_option("--zones", settings.zones, "Zones asked for")->capture_default_str();
-  program.add_option("--spp", settings.spp, "Camera rays per pixel")->capture_default_str();
-  program.add_option("--path-spp", settings.path_spp, "The same for path tracing")->capture_default_str();
-  CLI11_PARSE(program, argc, argv);
+  bench::ProgramOptions program(
+      "Contact sheet of rooms by zones of one size and by zones that fit the light");
+  program.add_option("rooms", settings.rooms, "Room files").required();
+  program.add_option("-o,--output", settings.output, "JPEG or PNG").show_default();
+  program.add_option("--font", settings.font, "Of the labels, a name or file").show_default();
+  program.add_option("--packets", settings.packets, "Of each solve").show_default();
+  program.add_option("--zones", settings.zones, "Zones asked for").show_default();
+  program.add_option("--spp", settings.spp, "Camera rays per pixel").show_default();
+  program.add_option("--path-spp", settings.path_spp, "The same for path tracing").show_default();
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   try {
     bench::ContactSheet sheet(5 * (kWidth + kGap) + kGap,
                               static_cast<int>(settings.rooms.size()) * (kHeight + kLabel) + kGap,

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/program_options.h"
 #include "bench/zone_plans/picture_check.h"
 #include "bench/zone_plans/plan_plot.h"
 #include "bench/zone_plans/plan_table.h"
@@ -75,7 +75,7 @@ PictureCheck references(const Scene& scene, int spp) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Zones of one size against zones that fit the light, by their number or by time");
+  ProgramOptions app("Zones of one size against zones that fit the light, by their number or by time");
   std::vector<std::filesystem::path> rooms;
   std::vector<int> counts{500, 1000, 2000, 4000, 8000, 16000, 32000};
   std::vector<double> times;
@@ -85,20 +85,20 @@ int main(int argc, char** argv) {
   bool only_fitting = false;
   int reference_spp = 1024;
   std::filesystem::path plot, table;
-  auto* measured = app.add_option("rooms", rooms, "Room files");
-  app.add_option("--zones", counts, "Numbers of zones to ask for")->capture_default_str();
-  app.add_option("--packets", settings.packets, "Packets of each solve")->capture_default_str();
+  const ProgramOption measured = app.add_option("rooms", rooms, "Room files");
+  app.add_option("--zones", counts, "Numbers of zones to ask for").show_default();
+  app.add_option("--packets", settings.packets, "Packets of each solve").show_default();
   app.add_option("--time", times, "Seconds of each solve instead: each of these for each number of zones");
   app.add_option("--reference-spp", reference_spp, "Camera rays per pixel of the path-traced pictures")
-      ->capture_default_str();
+      .show_default();
   app.add_flag("--only-fitting", only_fitting, "Leave the zones of one size out");
-  auto* drawn = app.add_option("--plot", plot, "Draw the errors with gnuplot, as SVG");
+  const ProgramOption drawn = app.add_option("--plot", plot, "Draw the errors with gnuplot, as SVG");
   app.add_option("--from-table", table,
                  "Measure nothing: draw a table that was printed before (with --time: by time)")
-      ->needs(drawn)
-      ->excludes(measured);
-  CLI11_PARSE(app, argc, argv);
-  if (rooms.empty() && table.empty()) return app.exit(CLI::RequiredError("rooms"));
+      .needs(drawn)
+      .excludes(measured);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
+  if (rooms.empty() && table.empty()) return app.exit_without("rooms");
   const bool by_time = !times.empty();
   if (by_time)
     settings.packets = 0;
