@@ -175,7 +175,7 @@ ZoneLight by_packets(const PacketRoom& transport, const PacketSources& sources, 
   shoot_batch({transport, sources, settings, batch, packets}, books);
   ZoneLight light(transport.zones());
   for (std::size_t z = 0; z < light.size(); ++z)
-    light[z] = static_cast<double>(books.direct[z * transport.bands()]) * sources.watts_per_quantum[0] /
+    light[z] = static_cast<double>(books.direct[z * transport.channels().count()]) * sources.watts_per_quantum[0] /
                transport.mesh().zone_area(ZoneId(z));
   return light;
 }

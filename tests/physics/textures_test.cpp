@@ -87,7 +87,7 @@ class TexturedRooms : public testing::Test {
       const BandAudit& band = s.audit.bands[0];
       EXPECT_EQ(band.balance(), 0);
       EXPECT_EQ(band.total_escaped(), 0);
-      std::int64_t quanta = 0;
+      RunQuanta quanta = 0;
       for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
         if (scene.surfaces[i].name.starts_with(name)) quanta += band.absorbed[i];
       watts.add(s.audit.watts(band, quanta));

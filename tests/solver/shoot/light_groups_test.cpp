@@ -154,7 +154,7 @@ TEST(LightGroups, WhatReadsZonesReadsAllGroups) {
       EXPECT_NEAR(grouped.direct_irradiance(zone, band).mean + grouped.indirect_irradiance(zone, band).mean,
                   total, 1e-12 * total);
       EXPECT_GT(irradiance.stderr_of_mean, 0);
-      const auto rho = static_cast<float>(grouped.zone_reflectance(zone)[static_cast<Eigen::Index>(band)]);
+      const auto rho = static_cast<float>(grouped.zone_reflectance(zone, band));
       EXPECT_FLOAT_EQ(field.reflected(zone)[band],
                       lambert_reflected_radiance(rho, static_cast<float>(total)));
     }
