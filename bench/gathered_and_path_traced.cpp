@@ -43,6 +43,7 @@ struct Settings {
   int runs = 4;                       // of each, with random numbers and solutions of their own
   std::uint64_t seed = 1;
   int threads = 0;
+  ReadOptions read;
 };
 
 /// A mean over independent runs.
@@ -101,7 +102,7 @@ struct View {
 
 View render(const std::filesystem::path& file, const Settings& settings) {
   const std::atomic<bool> never{false};
-  const Scene scene = read_scene(file);
+  const Scene scene = read_scene(file, settings.read);
   const MeshResult mesh = build_zones(scene);
   const Room room(scene, mesh.mesh);
   const std::vector<Camera> cameras = scene.cameras.empty() ? default_cameras(room) : scene.cameras;
@@ -194,6 +195,8 @@ int main(int argc, char** argv) {
       .in_range(2, 64)
       .show_default();
   program.add_option("--seed", settings.seed).show_default();
+  program.add_option("--sky", settings.read.sky, "Of all rooms, as reemit solve has it");
+  program.add_option("--sun", settings.read.sun, "Likewise");
   program.add_option("--threads", settings.threads, "0 = all cores").show_default();
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   try {
