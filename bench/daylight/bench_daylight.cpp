@@ -175,8 +175,8 @@ ZoneLight by_packets(const PacketRoom& transport, const PacketSources& sources, 
   shoot_batch({transport, sources, settings, batch, packets}, books);
   ZoneLight light(transport.zones());
   for (std::size_t z = 0; z < light.size(); ++z)
-    light[z] = static_cast<double>(books.direct[z * transport.channels().count()]) * sources.watts_per_quantum[0] /
-               transport.mesh().zone_area(ZoneId(z));
+    light[z] = static_cast<double>(books.direct[z * transport.channels().count()]) *
+               sources.watts_per_quantum[0] / transport.mesh().zone_area(ZoneId(z));
   return light;
 }
 
