@@ -14,8 +14,9 @@ void tidy(std::vector<ChangedFace>& changes) {
 std::span<const ChangedFace> changes_of(std::span<const ChangedFace> changes, SurfaceId surface,
                                         std::uint32_t face) {
   const auto place = [](const ChangedFace& c) { return std::tuple(c.surface, c.face); };
-  const auto range = std::ranges::equal_range(changes, std::tuple(surface, face), {}, place);
-  return {range.begin(), range.end()};
+  const std::tuple wanted(surface, face);
+  return {std::ranges::lower_bound(changes, wanted, {}, place),
+          std::ranges::upper_bound(changes, wanted, {}, place)};
 }
 
 }  // namespace reemit

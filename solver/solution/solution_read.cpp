@@ -12,6 +12,7 @@
 #include "solver/solution/shape_rows.h"
 #include "solver/solution/solution_file.h"
 #include "solver/solution/solution_layout.h"
+#include "solver/solution/texture_group.h"
 
 namespace reemit {
 namespace {
@@ -251,22 +252,6 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
   transfer_mesh_counts(counts, solution.mesh_report);
   solution.mesh_report.warnings = group.read_texts("warnings");
   return ZoneMesh(std::move(base), std::move(groups), std::move(splits));
-}
-
-void read_textures(const Hdf5Group& root, Solution& solution) {
-  if (!root.has_dataset("textures")) return;
-  const Hdf5Group group = root.open_group("textures");
-  const Hdf5Shape shape{solution.mesh.zone_count(), solution.bands.count()};
-  solution.zone_reflectances = group.read<double>("reflectance", shape);
-  solution.zone_exitances = group.read<double>("emitted", shape);
-  require_intact(std::all_of(solution.zone_reflectances.begin(), solution.zone_reflectances.end(),
-                             [](double x) { return x >= 0 && x <= 1; }),
-                 "reflectance of a zone outside [0,1]");
-  require_intact(std::all_of(solution.zone_exitances.begin(), solution.zone_exitances.end(),
-                             [](double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }),
-                 "negative or infinite emission of a zone");
-  if (group.has_dataset("solid_share"))
-    solution.mesh.set_solid_shares(group.read<float>("solid_share", {solution.mesh.zone_count()}));
 }
 
 /// No sum of sixteen of these overflows.

@@ -12,6 +12,7 @@
 #include "solver/solution/shape_rows.h"
 #include "solver/solution/solution_file.h"
 #include "solver/solution/solution_layout.h"
+#include "solver/solution/texture_group.h"
 
 namespace reemit {
 namespace {
@@ -301,19 +302,6 @@ void write_zone_values(const Hdf5Group& zones, const Solution& s) {
   put_zone_bands(zones, s, "irradiance_caustic_stderr",
                  "standard error of the irradiance over mirrors, glass and gloss",
                  [&](ZoneId z, std::size_t b) { return s.caustic_irradiance(z, b).stderr_of_mean; });
-}
-
-void write_textures(const Hdf5Group& root, const Solution& solution) {
-  if (solution.zone_reflectances.empty()) return;
-  const Hdf5Group group = root.create_group("textures");
-  const std::size_t bands = solution.bands.count();
-  put_rows(group, "reflectance", solution.zone_reflectances, bands, "1",
-           "diffuse reflectance of each zone, its mean over the textures there");
-  put_rows(group, "emitted", solution.zone_exitances, bands, "W/m2",
-           "emitted by each zone, its mean over the textures there");
-  if (!solution.mesh.solid_shares().empty())
-    put(group, "solid_share", solution.mesh.solid_shares(), 1, "1",
-        "share of each zone that is there; areas of zones are of that alone");
 }
 
 void write_sums(const Hdf5Group& root, const Solution& solution) {

@@ -21,7 +21,7 @@ constexpr std::uint32_t kRound = 2;
 constexpr double kCross = 0.01;
 /// From one set to the next, in widths of the room.
 constexpr double kStep = 1.15;
-const Rgba kLineColour = rgba_of_srgb(0.63, 1, 0);
+const Rgba line_colour = rgba_of_srgb(0.63, 1, 0);
 
 Rgba colour_of(SideKind kind) {
   const auto& [r, g, b] = style_of(kind).srgb;
@@ -170,7 +170,7 @@ class InspectionArtist {
       const SideId side(s);
       if (mesh_.has_zones(side) && emits(scene_, mesh_, side))
         for_each_cell(side, true, lift_of(side) + gap(),
-                      [&](const auto& corners, ZoneId) { corners_of.add_triangle(corners, kLineColour); });
+                      [&](const auto& corners, ZoneId) { corners_of.add_triangle(corners, line_colour); });
     }
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     const std::vector<std::uint32_t>& corner = corners_of.indices();
@@ -180,7 +180,7 @@ class InspectionArtist {
       const std::array<float, 3>& p = corners_of.vertices()[v].position;
       return Vec3(picture_.origin + Vec3(p[0], p[1], p[2]));
     };
-    for (const auto& [a, b] : edges) lines.add_line(place(a), place(b), kLineColour);
+    for (const auto& [a, b] : edges) lines.add_line(place(a), place(b), line_colour);
     for (const PunctualLight& light : scene_.lights)
       std::visit([&](const auto& l) { draw_cross(l, lines); }, light);
     keep(std::move(lines), objects);
@@ -191,7 +191,7 @@ class InspectionArtist {
     const double reach = kCross * diagonal();
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 arm = reach * Vec3::Unit(axis);
-      lines.add_line(light.position - arm, light.position + arm, kLineColour);
+      lines.add_line(light.position - arm, light.position + arm, line_colour);
     }
   }
   void draw_cross(const DirectionalLight& /*from no place*/, PictureObject& /*lines*/) const {}

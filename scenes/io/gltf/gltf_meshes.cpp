@@ -48,7 +48,7 @@ void read_texture_points(const GltfModel& gltf, const GltfAccessors& accessors,
     const std::string name = fmt::format("TEXCOORD_{}", set);
     const int accessor = attribute(source, name.c_str());
     if (accessor < 0) continue;
-    const std::string pointer = where + "/attributes/" + name;
+    const std::string pointer = fmt::format("{}/attributes/{}", where, name);
     const auto values = accessors.vec2(accessor, pointer);
     std::vector<TexturePoint>& to = points(values.size(), pointer);
     for (std::size_t i = 0; i < values.size(); ++i) to[i].uv[set] = values[i];

@@ -70,29 +70,29 @@ void add_member(const std::string& part, const std::map<std::string, std::string
 }
 
 Json sun_object(const std::string& text) {
-  static const std::map<std::string, std::string> kKeys{{"altitude", "altitude_deg"},
-                                                        {"azimuth", "azimuth_deg"},
-                                                        {"latitude", "latitude_deg"},
-                                                        {"longitude", "longitude_deg"},
-                                                        {"time", "time"},
-                                                        {"lx", "illuminance_lx"},
-                                                        {"color", "color"},
-                                                        {"irradiance", "irradiance"},
-                                                        {"angle", "angle_deg"}};
+  static const std::map<std::string, std::string> keys{{"altitude", "altitude_deg"},
+                                                       {"azimuth", "azimuth_deg"},
+                                                       {"latitude", "latitude_deg"},
+                                                       {"longitude", "longitude_deg"},
+                                                       {"time", "time"},
+                                                       {"lx", "illuminance_lx"},
+                                                       {"color", "color"},
+                                                       {"irradiance", "irradiance"},
+                                                       {"angle", "angle_deg"}};
   Json sun = Json::object();
-  for (const std::string& part : split(text, ',')) add_member(part, kKeys, "--sun", kSunAdvice, sun);
+  for (const std::string& part : split(text, ',')) add_member(part, keys, "--sun", kSunAdvice, sun);
   return sun;
 }
 
 Json sky_object(const std::string& text) {
-  static const std::map<std::string, std::string> kKeys{{"ground", "ground_reflectance"},
-                                                        {"up", "up"},
-                                                        {"north", "north"},
-                                                        {"scale", "scale"},
-                                                        {"rotation", "rotation_deg"},
-                                                        {"color", "color"},
-                                                        {"direct", "direct_normal_W_m2"},
-                                                        {"diffuse", "diffuse_horizontal_W_m2"}};
+  static const std::map<std::string, std::string> keys{{"ground", "ground_reflectance"},
+                                                       {"up", "up"},
+                                                       {"north", "north"},
+                                                       {"scale", "scale"},
+                                                       {"rotation", "rotation_deg"},
+                                                       {"color", "color"},
+                                                       {"direct", "direct_normal_W_m2"},
+                                                       {"diffuse", "diffuse_horizontal_W_m2"}};
   const std::vector<std::string> parts = split(text, ',');
   const std::size_t colon = parts[0].find(':');
   const std::string kind = parts[0].substr(0, colon);
@@ -115,7 +115,7 @@ Json sky_object(const std::string& text) {
     else
       throw InputError("--sky", fmt::format("'{}' has no unit", strength), kSkyAdvice);
   }
-  for (std::size_t i = 1; i < parts.size(); ++i) add_member(parts[i], kKeys, "--sky", kSkyAdvice, sky);
+  for (std::size_t i = 1; i < parts.size(); ++i) add_member(parts[i], keys, "--sky", kSkyAdvice, sky);
   return sky;
 }
 
