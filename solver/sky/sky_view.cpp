@@ -99,7 +99,8 @@ void SkyView::finish() {
 Vec3 SkyView::sample(std::uint32_t place, double u0, double u1) const {
   double inside = 0;
   const std::size_t d = find_interval(&until_[place * (kDirections + 1)], kDirections, u0, inside);
-  const double z = 1 - 2 * (static_cast<double>(d / kColumns) + inside) / static_cast<double>(kRows);
+  const std::size_t row = d / kColumns;
+  const double z = 1 - 2 * (static_cast<double>(row) + inside) / static_cast<double>(kRows);
   const double azimuth =
       2 * pi * (static_cast<double>(d % kColumns) + u1) / static_cast<double>(kColumns) - pi;
   const double r = std::sqrt(std::max(0.0, 1 - z * z));
