@@ -19,14 +19,14 @@ constexpr int kRounds = 2;
 
 /// One round of it; at the poles nothing is lost.
 void share_with_neighbours(const std::vector<float>& from, std::vector<float>& to) {
-  constexpr std::size_t kColumns = SkyView::kColumns;
+  constexpr std::size_t kAcross = SkyView::kColumns;
   for (std::size_t d = 0; d < SkyView::kDirections; ++d) {
-    const std::size_t row = d / kColumns;
-    const std::size_t column = d % kColumns;
-    const float beside = from[row * kColumns + (column + 1) % kColumns] +
-                         from[row * kColumns + (column + kColumns - 1) % kColumns] +
-                         (row > 0 ? from[d - kColumns] : from[d]) +
-                         (row + 1 < SkyView::kRows ? from[d + kColumns] : from[d]);
+    const std::size_t row = d / kAcross;
+    const std::size_t column = d % kAcross;
+    const float beside = from[row * kAcross + (column + 1) % kAcross] +
+                         from[row * kAcross + (column + kAcross - 1) % kAcross] +
+                         (row > 0 ? from[d - kAcross] : from[d]) +
+                         (row + 1 < SkyView::kRows ? from[d + kAcross] : from[d]);
     to[d] = (1 - 4 * kToNeighbours) * from[d] + kToNeighbours * beside;
   }
 }
