@@ -47,7 +47,9 @@ TEST(FacetedShapes, SidesFollowTheSizeBesideThatOfZones) {
     EXPECT_GE(sides, before) << zone_area;
     EXPECT_EQ(sides % 4, 0U);
     const double sagitta = 0.1 * (1 - std::cos(std::numbers::pi / static_cast<double>(sides)));
-    if (sides < 32) EXPECT_LE(sagitta, std::sqrt(zone_area) / 200) << zone_area;
+    if (sides < 32) {
+      EXPECT_LE(sagitta, std::sqrt(zone_area) / 200) << zone_area;
+    }
     before = sides;
   }
   EXPECT_EQ(before, 32U);

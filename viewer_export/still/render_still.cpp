@@ -51,7 +51,7 @@ std::vector<TileState> make_tiles(int width, int height) {
   std::vector<TileState> tiles;
   for (int y = 0; y < height; y += Tile::kSize)
     for (int x = 0; x < width; x += Tile::kSize)
-      tiles.push_back({{x, y, std::min(x + Tile::kSize, width), std::min(y + Tile::kSize, height)}});
+      tiles.push_back({{x, y, std::min(x + Tile::kSize, width), std::min(y + Tile::kSize, height)}, {}});
   return tiles;
 }
 

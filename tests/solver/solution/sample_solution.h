@@ -16,7 +16,8 @@ inline Solution sample_solution(const BandSet& bands) {
   s.room_path = "/rooms/kitchen – north.json";
   s.more_room_paths = {"/rooms/lamps.mgf", "/rooms/chairs\n2.mgf"};
   s.room_hash = "0123456789abcdef";
-  s.read_options = {EmissiveUnits::kWatt, true, 683.5, "overcast:10000lx", "altitude=40,lx=5"};
+  s.read_options = {EmissiveUnits::kWatt, true,          683.5, "overcast:10000lx",
+                    "altitude=40,lx=5",   {400, 700, 10}};
   s.mesh_settings.zone_area = 0.125;
   s.mesh_settings.default_zone_count = 77;
   s.mesh_settings.smallest_angle_deg = 21;
