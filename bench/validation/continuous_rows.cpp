@@ -12,13 +12,15 @@ namespace {
 
 using nlohmann::json;
 using std::numbers::pi;
-/// Rays of one zone solution; most packets leave the open plates at once, so they need more.
+/// Rays of one zone solution at full work; most packets leave the open plates at once, so they need more.
 constexpr double kBoxRays = 1.2e7;
 constexpr double kPlateRays = 8e7;
 /// Zones of one room: with fewer, what their size does to gathered values comes near the standard errors.
+/// Less work takes fewer, as larger errors hide more of it.
 constexpr double kZones = 60000;
-constexpr GatherEffort kAtPoint{256, 2048};
-constexpr GatherEffort kOverFace{1024, 8192};
+constexpr int kShadowRaysInRoom = 256;
+constexpr int kShadowRaysOverWall = 1024;
+constexpr double kRaysPerShadowRay = 8;
 
 /// A box room, one set of parameters per band.
 using Bands = std::vector<const json*>;
@@ -111,7 +113,7 @@ double packets_of(const CodeRoom& room, double rays) {
   return rays * (1 - most);
 }
 
-double zone_area_of(const CodeRoom& room) {
+double zone_area_of(const CodeRoom& room, const Effort& effort) {
   double area = 0;
   for (const Surface& s : room.scene().surfaces)
     for (const Face& f : s.faces) {
@@ -119,7 +121,7 @@ double zone_area_of(const CodeRoom& room) {
       for (const std::uint32_t i : f.outer) corners.push_back(s.positions[i]);
       area += total_area({corners});
     }
-  return area / kZones;
+  return area / (kZones * std::min(1.0, effort.work));
 }
 
 /// Surfaces that a mean value covers: "H_mean on face x0", "H_mean on W1", "H_mean on the luminaire itself",
@@ -146,17 +148,19 @@ void set_plate_point(const ReferenceCase& c, ReferenceValue& v) {
 }
 
 void add_rows(const std::vector<ReferenceCase>& bands, const CodeRoom& room, double rays,
-              std::vector<ValidationRow>& rows) {
+              const Effort& effort, std::vector<ValidationRow>& rows) {
   const std::string& name = bands.front().name;
-  const SolvedRoom solved(room.scene(), room.meshed(zone_area_of(room)), SolveMethod::kShooting,
-                          packets_of(room, rays), name);
+  const SolvedRoom solved(room.scene(), room.meshed(zone_area_of(room, effort)), SolveMethod::kShooting,
+                          packets_of(room, effort.work * rays), name);
   const PointGather gather(solved, seed_of(name));
+  const GatherEffort at_point = gather_effort(kShadowRaysInRoom, kRaysPerShadowRay, effort);
+  const GatherEffort over_face = gather_effort(kShadowRaysOverWall, kRaysPerShadowRay, effort);
   for (std::size_t b = 0; b < bands.size(); ++b)
     for (ReferenceValue v : bands[b].values) {
       if (bands[b].kind == "plates_finite") set_plate_point(bands[b], v);
       const Estimates light = v.point
-                                  ? gather.at(*v.point, v.normal, kAtPoint, b)
-                                  : gather.mean(surfaces_of_mean(solved, bands[b], v.quantity), kOverFace, b);
+                                  ? gather.at(*v.point, v.normal, at_point, b)
+                                  : gather.mean(surfaces_of_mean(solved, bands[b], v.quantity), over_face, b);
       rows.push_back(make_row(bands[b], v, v.point ? "gathered point" : "gathered mean", light, kPointBound));
     }
 }
@@ -185,13 +189,13 @@ std::vector<ValidationRow> evaluate_continuous(const std::vector<ReferenceCase>&
     if (bands.size() != 3) bands.resize(1);
     const ReferenceCase& first = bands.front();
     if (first.kind == "plates_finite") {
-      add_rows(bands, plates_room(first.parameters), effort.work * kPlateRays, rows);
+      add_rows(bands, plates_room(first.parameters), kPlateRays, effort, rows);
     } else if (first.kind == "lroom_continuous") {
-      add_rows(bands, l_shaped_room(first.parameters), effort.work * kBoxRays, rows);
+      add_rows(bands, l_shaped_room(first.parameters), kBoxRays, effort, rows);
     } else {
       Bands parameters;
       for (const ReferenceCase& c : bands) parameters.push_back(&c.parameters);
-      add_rows(bands, box_room(parameters), effort.work * kBoxRays, rows);
+      add_rows(bands, box_room(parameters), kBoxRays, effort, rows);
     }
   }
   return rows;

@@ -12,10 +12,11 @@
 namespace reemit::validation {
 namespace {
 
-/// Rays of one solution.
+/// Rays of one solution at full work.
 constexpr double kEnclosureRays = 1.6e7;
-constexpr GatherEffort kAtEnclosurePoint{256, 4096};
-constexpr GatherEffort kOverSurface{1024, 16384};
+constexpr int kShadowRaysAtEnclosurePoint = 256;
+constexpr int kShadowRaysOverSurface = 1024;
+constexpr double kRaysInEnclosure = 16;
 
 /// A walk is reflected a geometric number of times, rho/(1-rho) on average and about as much by chance: below
 /// a number of walks the mean over a whole room is not known well enough. Shooting knows it almost exactly.
@@ -73,7 +74,8 @@ void add_furnace(const ReferenceCase& c, const Effort& effort, std::vector<Valid
     if (method != SolveMethod::kShooting) continue;
     const PointGather gather(solved, seed_of(c.name));
     for (const Vec3& point : {Vec3(0.3, 0.4, 0), Vec3(0.999, 0.999, 0), Vec3(0.001, 1.999, 0)}) {
-      const Estimates light = gather.at(point, Vec3::UnitZ(), kAtEnclosurePoint);
+      const Estimates light = gather.at(point, Vec3::UnitZ(),
+                                        gather_effort(kShadowRaysAtEnclosurePoint, kRaysInEnclosure, effort));
       add_rows(c, "gathered point, floor at x = " + std::to_string(point.x()).substr(0, 5), kPointBound,
                as_quantity(light), rows);
     }
@@ -109,7 +111,8 @@ void add_variable_furnace(const ReferenceCase& c, const Effort& effort, std::vec
       const Spectrum& rho = room.scene().material_of(room.scene().surfaces[s.index()]).reflectance;
       const bool gathered = method == SolveMethod::kShooting;
       const std::vector<Estimates> light =
-          gathered ? gather.means({s}, kOverSurface) : std::vector<Estimates>();
+          gathered ? gather.means({s}, gather_effort(kShadowRaysOverSurface, kRaysInEnclosure, effort))
+                   : std::vector<Estimates>();
       for (std::size_t b = 0; b < 3; ++b) {
         const double r = rho[static_cast<Eigen::Index>(b)];
         const std::string where = room.scene().surfaces[s.index()].name + ", band " + std::to_string(b);
@@ -210,8 +213,8 @@ void add_concentric(const ReferenceCase& c, const Effort& effort, std::vector<Va
     rows_of(to_string(method), {solved.mean(inner), solved.mean(outer)}, kSolveBound);
     if (method != SolveMethod::kShooting) continue;
     const PointGather gather(solved, seed_of(c.name));
-    constexpr GatherEffort kOverRound{2048, 8192};
-    rows_of("gathered mean", {gather.mean({inner}, kOverRound), gather.mean({outer}, kOverRound)},
+    const GatherEffort over_round = gather_effort(2048, 4, effort);
+    rows_of("gathered mean", {gather.mean({inner}, over_round), gather.mean({outer}, over_round)},
             kPointBound);
   }
 }

@@ -29,10 +29,6 @@ constexpr double kRaysForLight = 8;
 constexpr int kShadowRaysAtPoint = 256;
 constexpr int kShadowRaysOverFace = 1024;
 
-GatherEffort gather_effort(int shadow_rays, double rays_each, const Effort& effort) {
-  return {shadow_rays, shadow_rays * std::max(1, static_cast<int>(rays_each * effort.work))};
-}
-
 double zones_for(const Effort& effort) {
   return kZones * std::min(1.0, effort.work);
 }

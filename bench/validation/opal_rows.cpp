@@ -13,10 +13,6 @@ constexpr double kPanelPackets = 2e6;
 constexpr int kShadowRays = 1024;
 constexpr double kRaysEach = 8;
 
-GatherEffort rays_for(const Effort& effort) {
-  return {kShadowRays, kShadowRays * std::max(1, static_cast<int>(kRaysEach * effort.work))};
-}
-
 /// An opal sheet between two plates that end at mirrors, which make all three endless. Means are those of
 /// fronts, so the sheet is turned over for the second of its sides.
 void add_layers(const ReferenceCase& c, bool sheet_looks_down, const Effort& effort,
@@ -37,10 +33,11 @@ void add_layers(const ReferenceCase& c, bool sheet_looks_down, const Effort& eff
       if (sheet_looks_down != (v.quantity == "H_sheet_bottom")) continue;
       rows.push_back(make_row(c, v, to_string(method), solved.mean(solved.surface(v.quantity)), kSolveBound));
       if (method == SolveMethod::kShooting)
-        rows.push_back(make_row(
-            c, v, "gathered mean",
-            PointGather(solved, seed_of(c.name)).mean({solved.surface(v.quantity)}, rays_for(effort)),
-            kPointBound));
+        rows.push_back(
+            make_row(c, v, "gathered mean",
+                     PointGather(solved, seed_of(c.name))
+                         .mean({solved.surface(v.quantity)}, gather_effort(kShadowRays, kRaysEach, effort)),
+                     kPointBound));
     }
   }
 }
@@ -64,12 +61,14 @@ void add_panel(const ReferenceCase& c, const Effort& effort, std::vector<Validat
       continue;
     }
     const PointGather gather(solved, seed_of(c.name));
-    rows.push_back(
-        make_row(c, v, "gathered point", gather.at(point, Vec3::UnitZ(), rays_for(effort)), kPointBound));
-    const SurfacePoint x = point_on(solved.rays(), point, Vec3::UnitZ());
-    rows.push_back(make_row(c, v, "path tracing",
-                            traced_irradiance(solved.room(), x, rays_for(effort), seed_of(v.id)),
+    rows.push_back(make_row(c, v, "gathered point",
+                            gather.at(point, Vec3::UnitZ(), gather_effort(kShadowRays, kRaysEach, effort)),
                             kPointBound));
+    const SurfacePoint x = point_on(solved.rays(), point, Vec3::UnitZ());
+    rows.push_back(make_row(
+        c, v, "path tracing",
+        traced_irradiance(solved.room(), x, gather_effort(kShadowRays, kRaysEach, effort), seed_of(v.id)),
+        kPointBound));
   }
 }
 

@@ -46,6 +46,10 @@ class AreaSampler {
 
 }  // namespace
 
+GatherEffort gather_effort(int shadow_rays, double rays_each, const Effort& effort) {
+  return {shadow_rays, shadow_rays * std::max(1, static_cast<int>(rays_each * effort.work))};
+}
+
 SurfacePoint point_on(const RayTracer& rays, const Vec3& point, const Vec3& normal) {
   const ZoneMesh& mesh = rays.mesh();
   const Vec3 n = normal.normalized();

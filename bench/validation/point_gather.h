@@ -20,6 +20,9 @@ struct GatherEffort {
   int gather_rays = 1024;  ///< A multiple of light_samples.
 };
 
+/// `rays_each` gather rays for each of the shadow rays, at full work; less work has fewer, one at least.
+GatherEffort gather_effort(int shadow_rays, double rays_each, const Effort& effort);
+
 /// Irradiance by the final gather, as vertices and pixels have it, at given points: direct light plus
 /// cosine-distributed rays that read the zone solution (`close_hit`: see GatherSettings). Replicate r reads
 /// batch r of the SolvedRoom alone and has random numbers of its own, so that the spread of replicates holds

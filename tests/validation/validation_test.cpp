@@ -86,14 +86,14 @@ TEST(Validation, measured_luminaires) {
 TEST(Validation, enclosures) {
   expect_valid("enclosures",
                {"furnace.0.5", "furnace.var", "sphere.0.5", "energy.closed", "conc.spheres", "conc.cyl"},
-               0.15);
+               0.05);
 }
 
 TEST(Validation, continuous_rooms) {
   expect_valid("continuous rooms",
                {"cube1.rho0.5", "goral.R", "goral.G", "goral.B", "ward1990.grey", "cie58.rho0.8",
                 "plates.h0.25", "lroom.rho0.5"},
-               0.3);
+               0.15);
 }
 
 TEST(Validation, mirrors) {
@@ -145,7 +145,7 @@ TEST(ValidationPower, reflectance_2_percent_too_high_is_noticed) {
     cases.erase(std::unique(cases.begin(), cases.end(),
                             [](const ReferenceCase& a, const ReferenceCase& b) { return a.name == b.name; }),
                 cases.end());
-    expect_noticed(family_name, cases, 0.1);
+    expect_noticed(family_name, cases, 0.05);
   }
 }
 

@@ -32,7 +32,7 @@ TEST(SpecularStills, FurnaceIsEvenlyBright) {
     settings.width = 32;
     settings.height = 24;
     settings.integrator = integrator;
-    settings.spp = 64;
+    settings.spp = 16;
     settings.threads = 2;
     const std::atomic<bool> interrupt{false};
     const StillImage image =
