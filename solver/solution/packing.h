@@ -13,7 +13,7 @@ class Packing {
   using Clock = std::chrono::steady_clock;
 
   /// `hurry` becomes true when somebody waits; nobody ever does if it is null.
-  explicit Packing(const std::atomic<bool>* hurry, Clock::duration moment = std::chrono::milliseconds(250))
+  explicit Packing(const std::atomic<bool>* hurry, Clock::duration moment = std::chrono::milliseconds(100))
       : hurry_(hurry), moment_(moment) {}
 
   /// To be asked often: the moment begins when this first sees the hurry.

@@ -65,14 +65,14 @@ void write_exr(const StillImage& image, std::span<const float> rgb, const ToneMa
   constexpr std::array<float, 8> kRec709 = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
   spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), kRec709.data());
   spec.attribute("whiteLuminance", kWhiteLuminance);
-  spec.attribute("compression", "zip");
+  spec.attribute("compression", image.interrupted ? "none" : "zip");
   spec.attribute("oiio:ColorSpace", "Linear");
   describe_image(image, spec);
   spec.attribute("reemit:suggested_display", tone_map.statement());
 
   std::vector<float> pixels(image.pixel_count() * channels.size());
-  for (std::size_t c = 0; c < channels.size(); ++c)
-    for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
+  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
+    for (std::size_t c = 0; c < channels.size(); ++c)
       pixels[pixel * channels.size() + c] =
           channels[c].values[pixel * channels[c].stride + channels[c].offset];
   encode_image("openexr", spec, OIIO::TypeDesc::FLOAT, pixels.data(), file);

@@ -271,6 +271,7 @@ StillImage render_still(const Room& room, const Solution& solution, const Camera
     image = film.finish();
     image.info = std::move(info);
     image.limited_by_zones = rendering.limited_by_zones();
+    image.interrupted = interrupt;
   });
   return image;
 }

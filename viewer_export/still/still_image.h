@@ -13,6 +13,8 @@ struct StillImage {
   ExportInfo info;
   /// True if an error target was missed because of the noise of the zone solution.
   bool limited_by_zones = false;
+  /// Stopped before it was done: somebody waits, so that files of it are not packed (deflated).
+  bool interrupted = false;
   BandSet bands = BandSet::grey();
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
