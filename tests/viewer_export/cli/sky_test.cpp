@@ -39,9 +39,9 @@ TEST(SkyOnTheCommandLine, is_kept_by_the_solution_and_reported_in_lux) {
   EXPECT_NE(solved.err.find("CIE overcast"), std::string::npos) << solved.err;
   const ProgramRun info = run_reemit({"info", (folder / "room.h5").string(), "--json"});
   ASSERT_EQ(info.exit_code, 0) << info.err;
-  const Json json = Json::parse(info.out);
-  EXPECT_NEAR(json.at("outside_sky_illuminance_lx").get<double>(), 10000, 1e-6);
-  const Json& floor = json.at("surfaces").at(0);
+  const Json summary = Json::parse(info.out);
+  EXPECT_NEAR(summary.at("outside_sky_illuminance_lx").get<double>(), 10000, 1e-6);
+  const Json& floor = summary.at("surfaces").at(0);
   const double lux = floor.at("illuminance_lx");
   EXPECT_GT(lux, 100);
   EXPECT_LT(lux, 10000);
