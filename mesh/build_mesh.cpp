@@ -41,7 +41,9 @@ double area_of(const VertexTable& vertices, const RawTriangle& t) {
 void book_areas(const VertexTable& vertices, const std::vector<FacePiece>& pieces, const GroupTriangles& cut,
                 MeshReport& report) {
   std::vector<double> meshed(pieces.size(), 0.0);
-  for (const RawTriangle& t : cut.triangles) meshed[t.piece] += area_of(vertices, t);
+  for (const RawTriangle& t : cut.triangles)
+    for (const std::size_t piece : {t.piece, t.back})
+      if (piece != Keepers::kNobody) meshed[piece] += area_of(vertices, t);
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     SurfaceAreas& areas = report.surfaces[pieces[p].surface.index()];
     areas.meshed += meshed[p];
@@ -80,8 +82,11 @@ class BaseMeshBuilder {
       }
       t.surface = piece.surface;
       t.face = piece.face;
-      t.two_sided = piece.two_sided;
+      t.two_sided = piece.two_sided || raw.back != Keepers::kNobody;
       mesh_.triangles.push_back(t);
+      if (raw.back == Keepers::kNobody) continue;
+      mesh_.backs.resize(mesh_.triangles.size());
+      mesh_.backs.back() = {pieces_[raw.back].surface, pieces_[raw.back].face};
     }
     return std::move(mesh_);
   }
@@ -173,6 +178,7 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const Wor
 
   BaseMesh base = BaseMeshBuilder(vertices, pieces).build(cut.triangles);
   append_patches(scene, shapes, base, report);
+  if (!base.backs.empty()) base.backs.resize(base.triangles.size());
   check_dropped_luminaires(scene, tolerances.weld, report);
   note_faceted(room, scene, report);
   tidy(report.changes);

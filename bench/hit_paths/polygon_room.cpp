@@ -230,21 +230,32 @@ std::optional<double> PolygonRoom::meet(const Part& part, const Vec3& origin, co
 }
 
 /// Where several polygons lie in one plane, a luminaire that shines towards the ray wins, then what turns its
-/// front to it, then the one that was read first.
+/// front to it, then the one that was read first. Of matt ones back to back each has its side, whether
+/// two-sided or not.
 const PolygonRoom::Part& PolygonRoom::winner(std::uint32_t part, const Vec3& point,
                                              const Vec3& direction) const {
+  const auto faces_ray = [&](std::uint32_t i) {
+    return polygons_[parts_[i].polygon].normal.dot(direction) < 0;
+  };
   const auto rank = [&](std::uint32_t i) {
-    const bool faces_ray = polygons_[parts_[i].polygon].normal.dot(direction) < 0;
     const Material& m = *parts_[i].material;
-    const bool shines = m.emits() && (faces_ray || m.emits_both_sides);
-    return std::pair(shines ? 0 : faces_ray || m.two_sided ? 1 : 2, i);
+    const bool shines = m.emits() && (faces_ray(i) || m.emits_both_sides);
+    return std::pair(shines ? 0 : faces_ray(i) || m.two_sided ? 1 : 2, i);
+  };
+  const auto is_matt = [&](std::uint32_t i) {
+    const NonDiffusePart& part = parts_[i].material->non_diffuse;
+    return !parts_[i].material->emits() && !part.reflects_specularly() && !part.transmits_specularly() &&
+           !part.transmits_diffusely();
+  };
+  const auto wins = [&](std::uint32_t i, std::uint32_t other) {
+    if (faces_ray(i) != faces_ray(other) && is_matt(i) && is_matt(other)) return faces_ray(i);
+    return rank(i) < rank(other);
   };
   std::uint32_t best = part;
   for (const std::uint32_t twin : parts_[part].twins) {
     const Polygon& polygon = polygons_[parts_[twin].polygon];
     const Vec3 p = point - polygon.origin;
-    if (is_inside(polygon.loops, {polygon.u.dot(p), polygon.v.dot(p)}) && rank(twin) < rank(best))
-      best = twin;
+    if (is_inside(polygon.loops, {polygon.u.dot(p), polygon.v.dot(p)}) && wins(twin, best)) best = twin;
   }
   return parts_[best];
 }

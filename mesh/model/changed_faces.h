@@ -20,6 +20,7 @@ enum class FaceChange : std::uint8_t {
   kWelded,      ///< A corner was moved onto another, or is gone.
   kFaceted,     ///< Made of a round shape that other faces pass through.
   kCut,         ///< Cut along the contact with another face.
+  kBackToBack,  ///< Shares its place with another face, which has the other side.
 };
 
 /// A change of one face: `face` counts in its surface; those made of round shapes come after all as read.

@@ -23,11 +23,12 @@ struct MeshReport {
   std::size_t degenerate_faces = 0;    ///< Dropped: zero area.
   std::size_t duplicate_faces = 0;     ///< Dropped: same polygon twice.
   std::size_t overlapping_faces =
-      0;                          ///< Lost area to a coplanar face (the emitter wins, else the earlier one).
-  std::size_t flipped_faces = 0;  ///< Turned round because the rest of their closed shell says so.
-  std::size_t nonplanar_faces = 0;    ///< Split into triangles.
-  std::size_t cut_faces = 0;          ///< Cut along the contact with another face.
-  std::vector<std::string> warnings;  ///< With surface names, files and lines.
+      0;  ///< Lost area to a coplanar face (the emitter wins, else the earlier one).
+  std::size_t back_to_back_faces = 0;  ///< Pairs in one plane that keep one side each, somewhere.
+  std::size_t flipped_faces = 0;       ///< Turned round because the rest of their closed shell says so.
+  std::size_t nonplanar_faces = 0;     ///< Split into triangles.
+  std::size_t cut_faces = 0;           ///< Cut along the contact with another face.
+  std::vector<std::string> warnings;   ///< With surface names, files and lines.
   /// Which faces the counts are of, and some more; tidy once the room is meshed. Not kept in solution files.
   std::vector<ChangedFace> changes;
 };

@@ -10,6 +10,7 @@
 
 #include "mesh/geometry/disjoint_sets.h"
 #include "mesh/overlap/near_pieces.h"
+#include "mesh/pieces/back_to_back.h"
 #include "mesh/pieces/convex_region.h"
 #include "mesh/pieces/face_notes.h"
 #include "mesh/pieces/planar_triangulation.h"
@@ -148,7 +149,7 @@ bool OverlapSearch::overlap(std::size_t i, std::size_t j, const PlaneFrame& plan
   return inside(a, inner_point(j)) || inside(b, inner_point(i));
 }
 
-// Which of two overlapping pieces never keeps a spot that the other covers too: see winner_of.
+// Which of two overlapping pieces never keeps a spot that the other covers too: see keepers_of.
 std::optional<std::uint32_t> always_loses(const std::vector<FacePiece>& pieces, std::uint32_t earlier,
                                           std::uint32_t later) {
   if (pieces[earlier].plane.normal.dot(pieces[later].plane.normal) <= 0) return std::nullopt;
@@ -274,8 +275,8 @@ PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FaceP
   return OverlapSearch(scene, pieces, tolerances, vertices).run(step);
 }
 
-std::size_t winner_of(const std::vector<FacePiece>& pieces, const std::vector<std::size_t>& covering,
-                      const Vec3& room_centre) {
+Keepers keepers_of(const Scene& scene, const std::vector<FacePiece>& pieces,
+                   const std::vector<std::size_t>& covering, const Vec3& room_centre) {
   const Vec3& facing = pieces[covering[0]].plane.normal;
   std::optional<std::size_t> same;
   std::optional<std::size_t> opposite;
@@ -283,14 +284,17 @@ std::size_t winner_of(const std::vector<FacePiece>& pieces, const std::vector<st
     auto& best = pieces[i].plane.normal.dot(facing) > 0 ? same : opposite;
     if (!best || (pieces[i].emits && !pieces[*best].emits)) best = i;
   }
-  if (!opposite) return *same;
-  if (pieces[*same].emits == pieces[*opposite].emits) return std::min(*same, *opposite);
+  if (!opposite) return {*same};
+  if (pieces[*same].emits == pieces[*opposite].emits) {
+    const auto [winner, other] = std::minmax(*same, *opposite);
+    return {winner, may_be_back_to_back(scene, pieces[winner], pieces[other]) ? other : Keepers::kNobody};
+  }
   const std::size_t lamp = pieces[*same].emits ? *same : *opposite;
   const std::size_t surface = lamp == *same ? *opposite : *same;
-  if (!pieces[lamp].in_closed_shell) return lamp;
-  if (!pieces[surface].two_sided) return surface;
+  if (!pieces[lamp].in_closed_shell) return {lamp};
+  if (!pieces[surface].two_sided) return {surface};
   const bool shines_inwards = pieces[lamp].plane.height(room_centre) > 0;
-  return shines_inwards ? lamp : surface;
+  return {shines_inwards ? lamp : surface};
 }
 
 }  // namespace reemit

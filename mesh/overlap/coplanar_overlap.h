@@ -45,7 +45,14 @@ PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FaceP
                                      const MeshTolerances& tolerances, const WorkStep& step,
                                      VertexTable& vertices);
 
-/// Which of the pieces that cover a spot of their common plane keeps it: `covering` in ascending order.
+/// Which pieces keep a spot of their common plane.
+struct Keepers {
+  static constexpr std::size_t kNobody = ~std::size_t{0};
+  std::size_t winner = kNobody;  ///< Has both sides, unless another has that behind its front.
+  std::size_t back = kNobody;
+};
+
+/// Which of the pieces that cover a spot of their common plane keep it: `covering` in ascending order.
 /// - Facing the same way, a luminaire wins, else the earlier piece.
 /// - Facing each other, a luminaire wins too if it is an open sheet: it is there to shine, however the other
 /// is wound.
@@ -53,7 +60,9 @@ PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FaceP
 /// Where the
 ///   surface is two-sided, its winding says nothing: the lamp wins if it shines towards the centre of the
 ///   room.
-std::size_t winner_of(const std::vector<FacePiece>& pieces, const std::vector<std::size_t>& covering,
-                      const Vec3& room_centre);
+/// - Facing apart, both stay where may_be_back_to_back; what wins among those that face the same way is
+/// asked.
+Keepers keepers_of(const Scene& scene, const std::vector<FacePiece>& pieces,
+                   const std::vector<std::size_t>& covering, const Vec3& room_centre);
 
 }  // namespace reemit

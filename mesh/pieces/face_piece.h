@@ -45,7 +45,9 @@ struct FacePiece {
   bool two_sided = false;
   bool emits = false;
   bool emits_both_sides = false;
-  bool in_closed_shell = false;  ///< Of its material: every edge has exactly two faces.
+  bool in_closed_shell = false;   ///< Of its material: every edge has exactly two faces.
+  bool outside_of_solid = false;  ///< In a closed shell that looks outwards.
+  bool is_matt = false;  ///< Reflects diffusely and does nothing else with light, the same everywhere.
 
   bool is_triangle() const { return loops.size() == 1 && loops[0].size() == 3; }
   /// Turns the front to the other side.

@@ -7,6 +7,7 @@
 #include <boost/container_hash/hash.hpp>
 #include <fmt/format.h>
 
+#include "mesh/pieces/back_to_back.h"
 #include "mesh/pieces/face_notes.h"
 
 namespace reemit {
@@ -81,6 +82,7 @@ void drop_duplicate_faces(const Scene& scene, std::vector<FacePiece>& pieces, Me
     if (first_of[i] == i) continue;
     const std::size_t first = kept.try_emplace(first_of[i], first_of[i]).first->second;
     const bool opposite = outline_of(pieces[i]).reversed != outline_of(pieces[first]).reversed;
+    if (material(i) != material(first) && may_be_back_to_back(scene, pieces[i], pieces[first])) continue;
     const bool replace = pieces[i].emits && !pieces[first].emits;
     const std::size_t loser = replace ? first : i;
     const std::size_t winner = replace ? i : first;

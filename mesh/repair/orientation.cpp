@@ -122,6 +122,8 @@ class Orientation {
       for (const std::size_t k : shell.pieces) pieces_[k].in_closed_shell = true;
       make_consistent(shell);
       turn_lamp_outwards(shell);
+      if (signed_volume(shell) > 0)
+        for (const std::size_t k : shell.pieces) pieces_[k].outside_of_solid = true;
     }
   }
 

@@ -338,6 +338,9 @@ double PolygonRepair::repair_part(SurfaceId surface, std::uint32_t face, const F
   piece.two_sided = material.two_sided;
   piece.emits = material.emits();
   piece.emits_both_sides = material.emits_both_sides;
+  piece.is_matt = !piece.emits && !scene_.is_textured(scene_.surfaces[surface.index()]) &&
+                  !material.non_diffuse.reflects_specularly() &&
+                  !material.non_diffuse.transmits_specularly() && !material.non_diffuse.transmits_diffusely();
   double deviation = 0;
   if (!finish_plane(piece, part, deviation)) {
     if (part.loops[0].size() > 3) refuse_if_crossed(piece, part);

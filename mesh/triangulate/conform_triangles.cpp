@@ -14,13 +14,13 @@ struct Studded {
 };
 
 // Cuts from the middle vertex of the most crowded side to the corner opposite, until no vertices are left.
-void split(const Studded& s, std::size_t piece, std::vector<RawTriangle>& out) {
+void split(const Studded& s, const RawTriangle& whole, std::vector<RawTriangle>& out) {
   std::size_t k = 0;
   for (std::size_t i = 1; i < 3; ++i)
     if (s.on_side[i].size() > s.on_side[k].size()) k = i;
   const std::vector<std::uint32_t>& side = s.on_side[k];
   if (side.empty()) {
-    out.push_back({s.corner, piece});
+    out.push_back({s.corner, whole.piece, whole.back});
     return;
   }
   const auto middle = static_cast<std::ptrdiff_t>(side.size() / 2);
@@ -30,10 +30,10 @@ void split(const Studded& s, std::size_t piece, std::vector<RawTriangle>& out) {
   const std::uint32_t c = s.corner[(k + 2) % 3];
   split({{a, m, c},
          {std::vector<std::uint32_t>(side.begin(), side.begin() + middle), {}, s.on_side[(k + 2) % 3]}},
-        piece, out);
+        whole, out);
   split({{m, b, c},
          {std::vector<std::uint32_t>(side.begin() + middle + 1, side.end()), s.on_side[(k + 1) % 3], {}}},
-        piece, out);
+        whole, out);
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void conform_triangles(const VertexTable& vertices, double weld, std::vector<Raw
       if (a > b) std::reverse(studded.on_side[k].begin(), studded.on_side[k].end());
       std::erase(studded.on_side[k], t.vertex[(k + 2) % 3]);  // of a needle lower than the weld distance
     }
-    split(studded, t.piece, out);
+    split(studded, t, out);
   }
   triangles = std::move(out);
 }

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -24,9 +25,8 @@ using Segment = std::array<std::uint32_t, 2>;
 
 // A region of a group that no segment cuts.
 struct Region {
-  static constexpr std::size_t kNobody = ~std::size_t{0};
-  std::size_t winner = kNobody;  // the piece that keeps it
-  std::size_t first_loser = 0;   // of the others that cover it, in one list for all regions
+  Keepers keepers;
+  std::size_t first_loser = 0;  // of the others that cover it, in one list for all regions
   std::size_t end_of_losers = 0;
   double area = 0;  // [m2]
 };
@@ -96,7 +96,14 @@ class GroupTriangulation {
   void note(FaceChange change, std::size_t piece) {
     report_.changes.push_back({pieces_[piece].surface, pieces_[piece].face, change});
   }
+  // Of two pieces back to back that keep a spot the one that faces as `loser` does, which it lost it to.
+  std::size_t keeper_against(const Keepers& keepers, std::size_t loser) const {
+    const bool back = keepers.back != Keepers::kNobody &&
+                      pieces_[keepers.back].plane.normal.dot(pieces_[loser].plane.normal) > 0;
+    return back ? keepers.back : keepers.winner;
+  }
   void report_overlaps();
+  void report_back_to_back();
   void report_lamps_turned_away();
 
   double area_of(const std::array<std::uint32_t, 3>& t) const {
@@ -153,11 +160,11 @@ void GroupTriangulation::cover_in_parts(std::size_t g, const GroupOutlines& outl
                   corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]), near);
     for (const std::size_t k : near) {
       const std::size_t p = group.pieces[k];
-      if (p == t.piece || !groups_.hidden.any(p)) continue;
+      if (p == t.piece || p == t.back || !groups_.hidden.any(p)) continue;
       const double area = area_within(outlines[k], corners);
       if (!(area > 0)) continue;
       covered_[p] += area;
-      overlap[pair_of(t.piece, p)] += area;
+      overlap[pair_of(keeper_against({t.piece, t.back}, p), p)] += area;
     }
   }
   // Neighbours that only touch take slivers of rounding from each other.
@@ -215,10 +222,10 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, c
       if (covering.empty()) continue;
       for (std::size_t& k : covering) k = group.pieces[k];
     }
-    regions[r].winner = winner_of(pieces_, covering, room_centre_);
+    const Keepers& keepers = regions[r].keepers = keepers_of(scene_, pieces_, covering, room_centre_);
     regions[r].first_loser = losers.size();
     std::copy_if(covering.begin(), covering.end(), std::back_inserter(losers),
-                 [&](std::size_t p) { return p != regions[r].winner && !is_partial(p); });
+                 [&](std::size_t p) { return p != keepers.winner && p != keepers.back && !is_partial(p); });
     regions[r].end_of_losers = losers.size();
   }
   const auto losers_of = [&](const Region& region) {
@@ -228,16 +235,18 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, c
   for (const std::size_t p : group.pieces) meshed_[p] = covered_[p] = 0;
   for (std::size_t i = 0; i < cut.triangles.size(); ++i) {
     Region& region = regions[cut.region[i]];
-    if (region.winner == Region::kNobody) continue;
+    const auto [winner, back] = region.keepers;
+    if (winner == Keepers::kNobody) continue;
     std::array<std::uint32_t, 3> t{ids[cut.triangles[i][0]], ids[cut.triangles[i][1]],
                                    ids[cut.triangles[i][2]]};
     const double area = area_of(t);
     region.area += area;
     for (const std::size_t p : losers_of(region)) covered_[p] += area;
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    if (pieces_[region.winner].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
-    meshed_[region.winner] += area;
-    out_.push_back({t, region.winner});
+    if (pieces_[winner].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
+    meshed_[winner] += area;
+    if (back != Keepers::kNobody) meshed_[back] += area;
+    out_.push_back({t, winner, back});
   }
   OverlapAreas overlap;
   if (any_partial) cover_in_parts(g, outlines, std::span(out_).subspan(before), overlap);
@@ -247,7 +256,8 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, c
     return false;
   }
   for (const Region& region : regions)
-    for (const std::size_t p : losers_of(region)) overlap[pair_of(region.winner, p)] += region.area;
+    for (const std::size_t p : losers_of(region))
+      overlap[pair_of(keeper_against(region.keepers, p), p)] += region.area;
   for (const auto& [pair, area] : overlap) overlap_[{pair >> 32, pair & 0xffffffff}] = area;
   return true;
 }
@@ -334,9 +344,23 @@ void GroupTriangulation::report_overlaps() {
                          scene_.surfaces[largest[i].second.first.index()].name, largest[i].first,
                          scene_.surfaces[largest[i].second.second.index()].name);
   if (largest.size() > kNamed) names += fmt::format(" and {} more pairs", largest.size() - kNamed);
-  report_.warnings.push_back(
-      fmt::format("{} faces lie in one plane with a face that covers them; {:.4g} m2 were removed: {}",
-                  lost.size(), total, names));
+  report_.warnings.push_back(fmt::format(
+      "{} faces lie in one plane with a face that covers them; {:.4g} m2 were removed: {}. The "
+      "luminaire stays, else the earlier face; matt faces keep one side each if their fronts look "
+      "apart and neither bounds a solid",
+      lost.size(), total, names));
+}
+
+// Faces of pairs that keep one side each.
+void GroupTriangulation::report_back_to_back() {
+  std::set<std::pair<std::size_t, std::size_t>> pairs;
+  for (const RawTriangle& t : out_)
+    if (t.back != Keepers::kNobody) pairs.emplace(t.piece, t.back);
+  report_.back_to_back_faces = pairs.size();
+  for (const auto& [front, back] : pairs) {
+    note(FaceChange::kBackToBack, front);
+    note(FaceChange::kBackToBack, back);
+  }
 }
 
 // A lamp in the plane of a one-sided face that looks the other way lights what is behind that face, which is
@@ -373,6 +397,7 @@ GroupTriangles GroupTriangulation::run(const WorkStep& step) {
     count_cut_pieces(g);
   }
   report_overlaps();
+  report_back_to_back();
   report_lamps_turned_away();
   return {std::move(out_), std::move(covered_)};
 }

@@ -17,6 +17,7 @@ namespace reemit {
 struct RawTriangle {
   std::array<std::uint32_t, 3> vertex;  ///< Into the VertexTable, counter-clockwise from the front.
   std::size_t piece;                    ///< It was cut from.
+  std::size_t back = Keepers::kNobody;  ///< The piece that its back shows, if that is another.
 };
 
 struct GroupTriangles {
@@ -24,8 +25,9 @@ struct GroupTriangles {
   std::vector<double> covered;  ///< By piece: area that went to other pieces of its plane [m2].
 };
 
-/// Triangulates every group with its cuts. Where pieces overlap, one keeps the spot and the others lose it; a
-/// warning says how much. Throws InputError naming the face if its area could not be preserved.
+/// Triangulates every group with its cuts. Where pieces overlap, one keeps the spot, or two back to back, and
+/// the others lose it; a warning says how much. Throws InputError naming the face if its area could not be
+/// preserved.
 GroupTriangles triangulate_groups(const Scene& scene, const std::vector<FacePiece>& pieces,
                                   const PieceGroups& groups, const ContactCuts& cuts,
                                   const MeshTolerances& tolerances, const TriangleQuality& quality,

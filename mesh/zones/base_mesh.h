@@ -26,6 +26,14 @@ struct BaseTriangle {
   bool is_curved() const { return shape != kFlat; }
 };
 
+/// A polygon of a surface.
+struct SurfaceFace {
+  SurfaceId surface;
+  std::uint32_t face = 0;  ///< Of the surface.
+
+  bool operator==(const SurfaceFace&) const = default;
+};
+
 /// The repaired, cut and triangulated room [m]. Plain data: this is what a solution file keeps of the
 /// geometry.
 struct BaseMesh {
@@ -33,6 +41,9 @@ struct BaseMesh {
   std::vector<Vec3> normals;            ///< Unit shading normals.
   std::vector<BaseTriangle> triangles;  ///< Flat ones first, then all patches of each shape in order.
   std::vector<CurvedShape> shapes;
+  /// By triangle, the face that its back shows where two faces lie back to back: that one's front. Not valid:
+  /// the back is that of the triangle's own face. Empty if there is no such pair.
+  std::vector<SurfaceFace> backs;
 };
 
 }  // namespace reemit

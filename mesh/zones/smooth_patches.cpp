@@ -97,11 +97,10 @@ SmoothPatches::SmoothPatches(const ZoneMesh& mesh, double crease_angle_deg) {
 void SmoothPatches::join_edges(const ZoneMesh& mesh, double crease_angle_deg) {
   neighbour_.assign(6 * mesh.triangle_count(), kNone);
   const std::vector<EdgeUse> uses = sorted_edges(mesh.base());
-  const auto surface = [&](std::size_t i) { return mesh.triangle(TriangleId(uses[i].triangle)).surface; };
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     while (end < uses.size() && uses[end].key == uses[begin].key) ++end;
     // A third triangle stands there: light ends on the line, whatever surface it is of.
-    if (end - begin != 2 || surface(begin) != surface(begin + 1)) continue;
+    if (end - begin != 2) continue;
     const EdgeUse& a = uses[begin];
     const EdgeUse& b = uses[begin + 1];
     const EdgeJoint joint(mesh, a, b, crease_angle_deg);
@@ -110,6 +109,8 @@ void SmoothPatches::join_edges(const ZoneMesh& mesh, double crease_angle_deg) {
       const bool b_front = a.forward != b.forward ? a_front : !a_front;
       if (!a_front && !mesh.triangle(TriangleId(a.triangle)).two_sided) continue;
       if (!b_front && !mesh.triangle(TriangleId(b.triangle)).two_sided) continue;
+      if (mesh.surface(TriangleId(a.triangle), a_front) != mesh.surface(TriangleId(b.triangle), b_front))
+        continue;
       if (!joint.is_smooth(a_front, b_front)) continue;
       const std::size_t slot_a = slot(side_of(TriangleId(a.triangle), a_front), a.edge);
       const std::size_t slot_b = slot(side_of(TriangleId(b.triangle), b_front), b.edge);

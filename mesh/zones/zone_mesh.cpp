@@ -23,9 +23,19 @@ void ZoneMesh::add_shapes() {
   if (next != base_.triangles.size()) throw std::invalid_argument("patches without a shape");
 }
 
+void ZoneMesh::check_backs() const {
+  if (base_.backs.empty()) return;
+  if (base_.backs.size() != base_.triangles.size())
+    throw std::invalid_argument("backs of another number of triangles");
+  for (std::size_t t = 0; t < base_.backs.size(); ++t)
+    if (base_.backs[t].surface.valid() && (!base_.triangles[t].two_sided || base_.triangles[t].is_curved()))
+      throw std::invalid_argument("the back of another face on a triangle that is one-sided or curved");
+}
+
 ZoneMesh::ZoneMesh(BaseMesh base, ZoneGroups groups, CellSplits splits)
     : base_(std::move(base)), splits_(std::move(splits)), groups_(std::move(groups)) {
   add_shapes();
+  check_backs();
   triangle_area_.reserve(base_.triangles.size());
   triangle_normal_.reserve(base_.triangles.size());
   for (const BaseTriangle& t : base_.triangles) {
@@ -152,8 +162,8 @@ void ZoneMesh::add_groups() {
     const bool is_first = member_[s] == 0;
     members_area_[place] = triangle_area(triangle_of(side)) + (is_first ? 0 : members_area_[place - 1]);
     const SideId first = members_[first_member_[g]];
-    if (is_front(side) != is_front(first) ||
-        triangle(triangle_of(side)).surface != triangle(triangle_of(first)).surface)
+    if (is_front(side) != is_front(first) || shows_front(side) != shows_front(first) ||
+        surface(side) != surface(first))
       throw std::invalid_argument("group of several surfaces, or of fronts and backs");
   }
   for (std::uint32_t g = 0; g < groups_.count; ++g) zone_side_.push_back(members_[first_member_[g]]);

@@ -23,6 +23,7 @@ namespace reemit {
 class ZoneMesh {
  public:
   /// Throws std::invalid_argument when an index is out of range, patches are not in order, divisions is 0,
+  /// backs are of another number of triangles, or of one that is curved or one-sided,
   /// the zones exceed 2^32-2, a group is empty, mixes surfaces or fronts with backs, or has a side that has
   /// no zones, or splits do not end, are of another number of cells or cut finer than kMostDivisions.
   explicit ZoneMesh(BaseMesh base, ZoneGroups groups = {}, CellSplits splits = {});
@@ -42,6 +43,19 @@ class ZoneMesh {
   bool is_sealed(ZoneId z) const { return is_group(z) && z.index() - cell_zone_count() < groups_.sealed; }
 
   const BaseTriangle& triangle(TriangleId t) const { return base_.triangles[t.index()]; }
+  /// Whether the back shows the front of another face than the front does.
+  bool is_back_to_back(TriangleId t) const {
+    return !base_.backs.empty() && base_.backs[t.index()].surface.valid();
+  }
+  /// The face that a side shows.
+  SurfaceFace face(TriangleId t, bool front) const {
+    if (!front && is_back_to_back(t)) return base_.backs[t.index()];
+    return {triangle(t).surface, triangle(t).face};
+  }
+  SurfaceId surface(TriangleId t, bool front) const { return face(t, front).surface; }
+  SurfaceId surface(SideId side) const { return surface(triangle_of(side), is_front(side)); }
+  /// Whether it shows the front of that face.
+  bool shows_front(SideId side) const { return is_front(side) || is_back_to_back(triangle_of(side)); }
   const Vec3& corner(TriangleId t, int k) const {
     return base_.vertices[triangle(t).vertex[static_cast<std::size_t>(k)]];
   }
@@ -100,7 +114,9 @@ class ZoneMesh {
   /// The zone's parent; of a group, its first member.
   TriangleId zone_triangle(ZoneId z) const { return triangle_of(zone_side_[z.index()]); }
   bool zone_is_front(ZoneId z) const { return is_front(zone_side_[z.index()]); }
-  SurfaceId zone_surface(ZoneId z) const { return triangle(zone_triangle(z)).surface; }
+  SurfaceId zone_surface(ZoneId z) const { return surface(zone_side(z)); }
+  /// Whether the zone lies on the front of its surface, which may be the back of a triangle.
+  bool zone_shows_front(ZoneId z) const { return shows_front(zone_side(z)); }
   double zone_area(ZoneId z) const;  ///< Of what is there of it, where it is a cut-out [m2].
   /// Share of the zone that is there [0,1]: below 1 for cut-outs, whose holes light passes through.
   double solid_share(ZoneId z) const {
@@ -143,6 +159,7 @@ class ZoneMesh {
   ZoneId zone_in_parts(const Side& side, float u, float v) const;
 
   void add_shapes();
+  void check_backs() const;
   void add_cells();
   void add_split_cells(SideId side, std::size_t& next_bit);
   void add_node(SideId side, std::size_t node, std::uint32_t divisions, const ZoneCell& cell,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include "mesh/zones/zone_cost.h"
@@ -59,7 +60,7 @@ class Grouping {
   /// Cuts until there are `most` groups and none costs more than `cost`, or all are single sides.
   void divide(double most, double cost) {
     const auto kind = [&](const Member& m) {
-      return std::pair(mesh_.triangle(triangle_of(m.side)).surface, !is_front(m.side));
+      return std::tuple(mesh_.surface(m.side), !is_front(m.side), !mesh_.shows_front(m.side));
     };
     std::stable_sort(members_.begin(), members_.end(),
                      [&](const Member& a, const Member& b) { return kind(a) < kind(b); });
@@ -160,16 +161,17 @@ class Grouping {
   std::vector<Cut> cuts_;
 };
 
-/// One group for the sealed sides of each surface, fronts and backs apart.
+/// One group for the sealed sides of each surface, fronts and backs apart, and fronts on backs of triangles.
 void group_sealed(const ZoneMesh& mesh, const std::vector<SideUse>& uses, ZoneGroups& groups) {
-  std::vector<std::array<std::uint32_t, 2>> of_surface;  // front, back
+  constexpr std::uint32_t kOwn = ZoneGroups::kOwn;
+  std::vector<std::array<std::uint32_t, 3>> of_surface;  // front, back, front on the back of a triangle
   for (std::size_t s = 0; s < uses.size(); ++s) {
     if (uses[s] != SideUse::kSealed) continue;
     const SideId side(s);
-    const std::size_t surface = mesh.triangle(triangle_of(side)).surface.index();
-    if (surface >= of_surface.size()) of_surface.resize(surface + 1, {ZoneGroups::kOwn, ZoneGroups::kOwn});
-    std::uint32_t& group = of_surface[surface][is_front(side) ? 0 : 1];
-    if (group == ZoneGroups::kOwn) group = groups.count++;
+    const std::size_t surface = mesh.surface(side).index();
+    if (surface >= of_surface.size()) of_surface.resize(surface + 1, {kOwn, kOwn, kOwn});
+    std::uint32_t& group = of_surface[surface][is_front(side) ? 0 : mesh.shows_front(side) ? 2 : 1];
+    if (group == kOwn) group = groups.count++;
     groups.of_side[s] = group;
   }
   groups.sealed = groups.count;

@@ -57,7 +57,7 @@ void LuminaireTable::add_cells(const Room& room) {
   const double metres = rays_->metres_per_unit();
   first_cell_ = areas_.size();
   for (const LuminaireCell& cell : luminaire_cells(room)) {
-    const SurfaceId surface = surfaces_->surface(cell.triangle);
+    const SurfaceId surface = surfaces_->surface(cell.triangle, cell.front);
     std::vector<Vec3> corners;
     for (const Vec3& c : cell.corners) corners.push_back((c - rays_->centre()) / metres);
     const Vec3& front = room.mesh().triangle_normal(cell.triangle);
@@ -79,7 +79,7 @@ void LuminaireTable::radiance_at(std::size_t entry, const Vec3f& target,
   const auto v = static_cast<float>(at.v);
   const RoomTextures& textures = surfaces_->textures();
   textures.radiance(t, u, v, 0, radiance);
-  if (!textures.is_cut_out(surfaces_->surface(t))) return;
+  if (!textures.is_cut_out(surfaces_->surface(t, true))) return;
   const float opacity = textures.opacity(t, u, v);
   for (float& r : radiance) r *= opacity;
 }

@@ -147,7 +147,7 @@ float DirectLight::left_by_lobe(const Arrival& light, const SpecularStep& step,
 }
 
 float DirectLight::found_by_lobe(TriangleId luminaire, float way, float pdf_per_sr) const {
-  return share_of_lobe(table_.emitting_area(surfaces_->surface(luminaire)), way, pdf_per_sr);
+  return share_of_lobe(table_.emitting_area(surfaces_->surface(luminaire, true)), way, pdf_per_sr);
 }
 
 void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first,

@@ -61,8 +61,8 @@ void RadianceField::read_zones(const Solution& solution) {
     part_weight[g % parts_] += static_cast<double>(sums.group_weight[g]);
   const auto read = [&](std::size_t z) {
     const ZoneMesh& mesh = solution.mesh;
-    const double* rho =
-        room_->surfaces().reflectance(ZoneId(z), mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
+    const double* rho = room_->surfaces().reflectance(ZoneId(z), mesh.zone_triangle(ZoneId(z)),
+                                                      mesh.zone_is_front(ZoneId(z)));
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = z * bands_ + b;
       const auto reflectance = static_cast<float>(rho[b]);

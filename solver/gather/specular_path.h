@@ -62,7 +62,7 @@ class SpecularPath {
     surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body_), hit.distance, weight);
     if (!(is_bent_ || pdf_per_sr_ > 0) || !surfaces.emits(hit.triangle, hit.front)) return;
     const float found = (is_bent_ ? 1 : direct.found_by_lobe(hit.triangle, way_, pdf_per_sr_)) *
-                        counted().of(surfaces.surface(hit.triangle));
+                        counted().of(surfaces.surface(hit.triangle, hit.front));
     const SurfacePoint x = surface_point(room_->rays(), hit, along);
     SurfaceModel::PointValues at_point;
     const float* emitted = surfaces.emitted(x, at_point);

@@ -36,7 +36,7 @@ ExitPlace find_exit(const RayTracer& rays, const Vec3f& origin, const Vec3f& dir
       if (!rays.closest(origin, tilted, hit)) continue;
       const Vec3f point = origin + hit.distance * tilted;
       reach[turn] = static_cast<double>(side.dot(point - origin));
-      exit.surfaces.insert(rays.mesh().triangle(hit.triangle).surface);
+      exit.surfaces.insert(rays.mesh().surface(hit.triangle, hit.front));
       if (reach[turn] < nearest) {
         nearest = reach[turn];
         exit.point = rays.in_room(point);

@@ -27,7 +27,7 @@ std::optional<SurfaceId> between(const PacketRoom& transport, const Vec3f& from,
   if (!(distance > RayTracer::kLift) || transport.rays().visible(from, to)) return std::nullopt;
   Hit hit;
   if (!transport.rays().closest(from, way / distance, hit) || hit.distance > distance) return std::nullopt;
-  return transport.mesh().triangle(hit.triangle).surface;
+  return transport.mesh().surface(hit.triangle, hit.front);
 }
 
 /// A face that a light stands on, closer than rays can tell apart.
@@ -53,6 +53,7 @@ std::optional<Contact> contact_of(const PacketRoom& transport, const PunctualLig
     if (face.two_sided && spot != nullptr && spot->direction.cast<float>().dot(contact.normal) < 0) {
       contact.front = false;
       contact.normal = -contact.normal;
+      contact.surface = transport.mesh().surface(hit.triangle, false);
     }
     return contact;
   }
@@ -101,7 +102,8 @@ class OpeningBooks {
   void add(const ProbeRay& probe) {
     ++packets_;
     std::optional<SurfaceId> cutter = between(transport_, probe.origin, mouth_);
-    const SurfaceId met = probe.met ? transport_.mesh().triangle(probe.hit.triangle).surface : SurfaceId();
+    const SurfaceId met =
+        probe.met ? transport_.mesh().surface(probe.hit.triangle, probe.hit.front) : SurfaceId();
     if (contact_ && probe.direction.dot(contact_->normal) < 0) {
       if (probe.met && probe.hit.front == contact_->front && met == contact_->surface &&
           probe.hit.distance < kTouching) {

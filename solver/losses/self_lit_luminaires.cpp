@@ -91,7 +91,7 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const PacketRoom& transport, c
                                                                    flight.first_packet[probe.source]);
     sent[lamp] += power;
     if (!probe.met) return;
-    const std::size_t to = mesh.triangle(probe.hit.triangle).surface.index();
+    const std::size_t to = mesh.surface(probe.hit.triangle, probe.hit.front).index();
     if (emits[to] && lamps.of(to) == lamp) kept[lamp] += power;
   };
   trace_probes(transport, flight, 0, visit, stop);

@@ -50,7 +50,7 @@ void book_matrix_solution(const PacketRoom& transport, const PacketSources& emis
       const double area = factors.zone_area(i);
       powers.absorbed[surface.index()] +=
           area *
-          (1 - transport.surface_model().reflectance(ZoneId(i), surface,
+          (1 - transport.surface_model().reflectance(ZoneId(i), transport.mesh().zone_triangle(ZoneId(i)),
                                                      transport.mesh().zone_is_front(ZoneId(i)))[b]) *
           irradiance(row, column);
       powers.leak(area * radiosity(row, column) * std::max(0.0, 1 - row_sums(row)), factors.leaks().of(i));

@@ -92,7 +92,7 @@ ZonalSystem make_system(const PacketRoom& transport, const FormFactors& factors,
     for (std::size_t b = 0; b < transport.channels().bands(); ++b) {
       system.emitted(z, to_index(b)) = solution.emitted_radiosity(zone, b);
       system.reflectance(z, to_index(b)) = transport.surface_model().reflectance(
-          zone, transport.mesh().zone_surface(zone), transport.mesh().zone_is_front(zone))[b];
+          zone, transport.mesh().zone_triangle(zone), transport.mesh().zone_is_front(zone))[b];
     }
   }
   add_punctual_lights(transport, solution.settings.seed, system);

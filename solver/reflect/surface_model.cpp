@@ -12,6 +12,7 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomT
     : textures_(&textures),
       metres_per_unit_(static_cast<float>(metres_per_unit)),
       bands_(scene.bands.count()),
+      surface_count_(scene.surfaces.size()),
       zero_(bands_, 0.0F) {
   std::vector<bool> emits_both_sides;
   for (const Surface& surface : scene.surfaces) {
@@ -23,6 +24,7 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomT
     emits_both_sides.push_back(m.emits_both_sides);
     for (const bool front : {true, false}) {
       const Spectrum& rho = m.reflectance_of(front);
+      shown_.emplace_back(rows_.size() / 2);
       rows_.push_back({static_cast<std::uint32_t>(rows_.size()), 0});
       reflectance_.insert(reflectance_.end(), rho.begin(), rho.end());
       for (const double x : rho) side_reflectance_.push_back(static_cast<float>(x));
@@ -34,17 +36,37 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomT
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const TriangleId t(i);
     const SurfaceId s = mesh.triangle(t).surface;
-    const std::size_t surface = s.index();
+    const std::size_t surface = mesh.is_back_to_back(t) ? pair_of(s, mesh.surface(t, false)) : s.index();
     surface_.push_back(static_cast<std::uint32_t>(surface));
     const bool emits = surfaces_[surface].emits;
     const bool back = mesh.has_zones(t, false);
     const bool varies = textures.varies_reflectance(s);
     const bool glows = emits && textures.varies_emission(s);
-    const bool back_emits = emits && back && emits_both_sides[surface];
+    const bool back_emits = emits && back && emits_both_sides[s.index()];
     sides_.push_back({true, emits, varies, glows});
     sides_.push_back({back, back_emits, varies && back && textures.varies_back(s), glows && back_emits});
   }
   if (!textures.empty()) add_zone_rows(mesh);
+}
+
+// The row of two surfaces whose faces lie back to back. Neither emits nor is specular (may_be_back_to_back).
+std::size_t SurfaceModel::pair_of(SurfaceId front, SurfaceId back) {
+  const auto [pair, is_new] = pairs_.try_emplace({front, back}, surfaces_.size());
+  if (!is_new) return pair->second;
+  surfaces_.push_back(surfaces_[front.index()]);
+  specular_.push_back(specular_[front.index()]);
+  for (std::size_t b = 0; b < bands_; ++b) emitted_.push_back(emitted_[front.index() * bands_ + b]);
+  for (const SurfaceId s : {front, back}) {
+    const std::size_t row = row_of(s.index(), true);
+    shown_.push_back(s);
+    rows_.push_back({static_cast<std::uint32_t>(rows_.size()), 0});
+    for (std::size_t b = 0; b < bands_; ++b) {
+      reflectance_.push_back(reflectance_[row * bands_ + b]);
+      side_reflectance_.push_back(side_reflectance_[row * bands_ + b]);
+    }
+    largest_reflectance_.push_back(largest_reflectance_[row]);
+  }
+  return pair->second;
 }
 
 void SurfaceModel::add_zone_rows(const ZoneMesh& mesh) {
@@ -52,7 +74,7 @@ void SurfaceModel::add_zone_rows(const ZoneMesh& mesh) {
   zone_radiance_ = std::move(means.radiance);
   if (means.reflectance.empty()) return;
   const auto first = static_cast<std::uint32_t>(rows_.size());
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
+  for (std::size_t r = 0; r < 2 * surface_count_; ++r) {
     const SurfaceId s(r / 2);
     if (textures_->varies_reflectance(s) && (r % 2 == 0 || textures_->varies_back(s)))
       rows_[r] = {first, 0xffffffff};

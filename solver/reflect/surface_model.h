@@ -2,6 +2,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,22 +30,26 @@ class SurfaceModel {
                double metres_per_unit);
 
   std::size_t band_count() const { return bands_; }
-  std::size_t surface_count() const { return surfaces_.size(); }
+  std::size_t surface_count() const { return surface_count_; }
 
-  /// Diffuse reflectance of a zone, which lies on that side of a surface, one number per band [0,1], and the
+  /// Diffuse reflectance of a zone, which lies on that side of a triangle, one number per band [0,1], and the
   /// largest of them; of textures the mean over the zone. Backs that absorb all light are not told apart.
-  const double* reflectance(ZoneId z, SurfaceId s, bool front) const {
-    return &reflectance_[row_of(z, s, front) * bands_];
+  const double* reflectance(ZoneId z, TriangleId t, bool front) const {
+    return &reflectance_[row_of(z, t, front) * bands_];
   }
-  const float* reflectance_float(ZoneId z, SurfaceId s, bool front) const {
-    return &side_reflectance_[row_of(z, s, front) * bands_];
+  const float* reflectance_float(ZoneId z, TriangleId t, bool front) const {
+    return &side_reflectance_[row_of(z, t, front) * bands_];
   }
-  double largest_reflectance(ZoneId z, SurfaceId s, bool front) const {
-    return largest_reflectance_[row_of(z, s, front)];
+  double largest_reflectance(ZoneId z, TriangleId t, bool front) const {
+    return largest_reflectance_[row_of(z, t, front)];
   }
   /// The same of a side of a surface, with textures at their means.
   const double* reflectance(SurfaceId s, bool front) const {
     return &reflectance_[row_of(s.index(), front) * bands_];
+  }
+  /// The same of a side of a triangle.
+  const double* mean_reflectance(TriangleId t, bool front) const {
+    return &reflectance_[row_of(surface_of(t), front) * bands_];
   }
   /// The same of one side of a triangle; zero on backs that absorb.
   const float* reflectance(TriangleId t, bool front) const {
@@ -68,7 +74,8 @@ class SurfaceModel {
                       Lobe(LambertLobe{reflectance(x.triangle, x.front)}));
   }
 
-  SurfaceId surface(TriangleId t) const { return SurfaceId(surface_of(t)); }
+  /// That a side of a triangle shows (ZoneMesh::surface).
+  SurfaceId surface(TriangleId t, bool front) const { return shown_[row_of(surface_of(t), front)]; }
 
   /// Whether any surface of the room has a part that is carried on by rays; whether light crosses any.
   bool any_specular() const { return any_specular_; }
@@ -159,11 +166,12 @@ class SurfaceModel {
 
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   static std::size_t row_of(std::size_t surface, bool front) { return 2 * surface + (front ? 0 : 1); }
-  std::size_t row_of(ZoneId z, SurfaceId s, bool front) const {
-    const Rows& rows = rows_[row_of(s.index(), front)];
+  std::size_t row_of(ZoneId z, TriangleId t, bool front) const {
+    const Rows& rows = rows_[row_of(surface_of(t), front)];
     return std::size_t{rows.first} + (static_cast<std::uint32_t>(z.index()) & rows.mask);
   }
   std::size_t surface_of(TriangleId t) const { return surface_[t.index()]; }
+  std::size_t pair_of(SurfaceId front, SurfaceId back);
   const float* reflectance(TriangleId t, float u, float v, bool front, float footprint,
                            PointValues& here) const {
     if (!side(t, front).reflectance_varies) return reflectance(t, front);
@@ -178,15 +186,20 @@ class SurfaceModel {
   std::size_t bands_;
   bool any_specular_ = false;
   bool any_transmits_ = false;
+  std::size_t surface_count_;
+  // Surfaces, and then one row for every two whose faces lie back to back: so a triangle is of one row, and
+  // no ray asks what it is of.
   std::vector<OfSurface> surfaces_;
-  std::vector<SpecularSurface> specular_;  // by surface
-  std::vector<Rows> rows_;                 // by surface and side
-  std::vector<double> reflectance_;        // by surface and side, then by zone if any varies
+  std::vector<SpecularSurface> specular_;  // as surfaces_
+  std::map<std::pair<SurfaceId, SurfaceId>, std::size_t> pairs_;
+  std::vector<SurfaceId> shown_;     // by surface and side
+  std::vector<Rows> rows_;           // by surface and side
+  std::vector<double> reflectance_;  // by surface and side, then by zone if any varies
   std::vector<double> largest_reflectance_;
   std::vector<float> side_reflectance_;  // as reflectance_
-  std::vector<float> emitted_;           // by surface
+  std::vector<float> emitted_;           // as surfaces_
   std::vector<double> zone_radiance_;    // along the normal, by zone; empty if none varies
-  std::vector<std::uint32_t> surface_;   // of each triangle
+  std::vector<std::uint32_t> surface_;   // of each triangle, a row of surfaces_
   std::vector<Side> sides_;              // by side (mesh/zones/side.h)
   std::vector<float> zero_;
 };

@@ -36,7 +36,7 @@ class Room {
   std::size_t band_count() const { return scene_->bands.count(); }
   /// Diffuse reflectance of a zone, one number per band [0,1].
   const float* zone_reflectance(ZoneId z) const {
-    return surfaces_.reflectance_float(z, mesh_->zone_surface(z), mesh_->zone_is_front(z));
+    return surfaces_.reflectance_float(z, mesh_->zone_triangle(z), mesh_->zone_is_front(z));
   }
 
  private:

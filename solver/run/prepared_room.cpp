@@ -26,7 +26,7 @@ void keep_zone_means(const Room& room, Solution& solution) {
   for (std::size_t i = 0; i < mesh.zone_count(); ++i) {
     const ZoneId z(i);
     const SurfaceId surface = mesh.zone_surface(z);
-    const double* rho = room.surfaces().reflectance(z, surface, mesh.zone_is_front(z));
+    const double* rho = room.surfaces().reflectance(z, mesh.zone_triangle(z), mesh.zone_is_front(z));
     solution.zone_reflectances.insert(solution.zone_reflectances.end(), rho, rho + room.band_count());
     Spectrum exitance = room.surfaces().exitance(z, surface);
     if (!room.surfaces().emits(mesh.zone_triangle(z), mesh.zone_is_front(z))) exitance.setZero();

@@ -83,7 +83,7 @@ class WayOut {
   bool takes_light(const Hit16& hits, int lane, bool crosses, ZoneId& next) {
     const SurfaceModel& surfaces = transport_.surface_model();
     const TriangleId t(hits.triangle[lane]);
-    const double kept = surfaces.reflectance(surfaces.surface(t), hits.front[lane])[band_];
+    const double kept = surfaces.mean_reflectance(t, hits.front[lane])[band_];
     if (!surfaces.is_specular(t, hits.front[lane])) return kept < 1;
     if (surfaces.specular(t).is_rough()) return true;  // no lobe keeps all light
     SpecularStep at_normal(transport_.channels().bands());

@@ -281,8 +281,8 @@ void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std:
           settle();
           surface = s;
         }
-        const double* rho =
-            transport.surface_model().reflectance(ZoneId(z), surface, mesh.zone_is_front(ZoneId(z)));
+        const double* rho = transport.surface_model().reflectance(ZoneId(z), mesh.zone_triangle(ZoneId(z)),
+                                                                  mesh.zone_is_front(ZoneId(z)));
         channels.for_each([&](std::size_t c, std::size_t band) {
           const std::size_t i = z * values + c;
           std::int64_t in = 0;

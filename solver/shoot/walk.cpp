@@ -205,7 +205,8 @@ class WalkTask {
           local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], c, quanta[c]);
         continue;
       }
-      const SurfaceId surface = transport_.mesh().triangle(TriangleId(hits_.triangle[lane])).surface;
+      const TriangleId met(hits_.triangle[lane]);
+      const SurfaceId surface = transport_.surface_model().surface(met, hits_.front[lane]);
       if (!zone[lane].valid()) {
         count_event(books_.events.back_hits);
         for (std::size_t c = 0; c < values; ++c)
@@ -225,8 +226,10 @@ class WalkTask {
                const BitLanes& bits) {
     const auto k = static_cast<std::size_t>(lane);
     const std::int64_t* quanta = &block.power[k * values_];
-    const double* rho = transport_.surface_model().reflectance(zone, surface, hits_.front[lane]);
-    double survival = transport_.surface_model().largest_reflectance(zone, surface, hits_.front[lane]);
+    const SurfaceModel& surfaces = transport_.surface_model();
+    const TriangleId met(hits_.triangle[lane]);
+    const double* rho = surfaces.reflectance(zone, met, hits_.front[lane]);
+    double survival = surfaces.largest_reflectance(zone, met, hits_.front[lane]);
     std::int64_t* absorbed = &absorbed_[surface.index() * values_];
     const float u = low_bytes_to_unit(bits, k);
     const double on = specular_.any() ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;

@@ -73,12 +73,12 @@ std::vector<GroupedMean> gather_sides(const Solution& solution) {
   std::vector<GroupedMean> sides(2 * solution.surface_names.size(), GroupedMean(bands));
   const bool varies = !solution.zone_reflectances.empty();
   const auto side_of = [&](ZoneId z) -> GroupedMean& {
-    return sides[2 * mesh.zone_surface(z).index() + (mesh.zone_is_front(z) ? 0 : 1)];
+    return sides[2 * mesh.zone_surface(z).index() + (mesh.zone_shows_front(z) ? 0 : 1)];
   };
   // Reflectance of a zone over that of its material, which scatter() takes.
   const auto excess = [&](std::size_t i) {
     const ZoneId z(i / bands);
-    const Spectrum& mean = solution.zone_material(z).reflectance_of(mesh.zone_is_front(z));
+    const Spectrum& mean = solution.zone_material(z).reflectance_of(mesh.zone_shows_front(z));
     return solution.zone_reflectances[i] - mean[static_cast<Eigen::Index>(i % bands)];
   };
   const auto add_up = [&](auto&& value_of, auto&& into) {

@@ -31,14 +31,22 @@ std::vector<fs::path> find_room(const Solution& solution, const fs::path& soluti
 bool fits(const Solution& solution, const Scene& scene) {
   if (!(solution.bands == scene.bands) || solution.surface_names.size() != scene.surfaces.size())
     return false;
+  // Shapes may have become faces, which are numbered after those of the room.
+  const auto has_face = [&scene](const SurfaceFace& f) {
+    if (f.surface.index() >= scene.surfaces.size()) return false;
+    const Surface& surface = scene.surfaces[f.surface.index()];
+    return f.face < surface.faces.size() || !surface.shapes.empty();
+  };
   const auto& triangles = solution.mesh.base().triangles;
-  return std::all_of(triangles.begin(), triangles.end(), [&scene](const BaseTriangle& t) {
-    if (t.surface.index() >= scene.surfaces.size()) return false;
-    const Surface& surface = scene.surfaces[t.surface.index()];
-    // Shapes may have become faces, which are numbered after those of the room.
-    return t.is_curved() ? t.face < surface.shapes.size()
-                         : t.face < surface.faces.size() || !surface.shapes.empty();
-  });
+  const auto& backs = solution.mesh.base().backs;
+  return std::all_of(triangles.begin(), triangles.end(),
+                     [&](const BaseTriangle& t) {
+                       if (!t.is_curved()) return has_face({t.surface, t.face});
+                       return t.surface.index() < scene.surfaces.size() &&
+                              t.face < scene.surfaces[t.surface.index()].shapes.size();
+                     }) &&
+         std::all_of(backs.begin(), backs.end(),
+                     [&](const SurfaceFace& f) { return !f.surface.valid() || has_face(f); });
 }
 
 }  // namespace

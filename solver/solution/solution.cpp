@@ -171,7 +171,7 @@ Estimate Solution::irradiance(ZoneId z, std::size_t band) const {
 double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {
   if (!zone_exitances.empty()) return zone_exitances[z.index() * bands.count() + band];
   const Material& material = zone_material(z);
-  if (!material.emits_both_sides && !mesh.zone_is_front(z)) return 0;
+  if (!material.emits_both_sides && !mesh.zone_shows_front(z)) return 0;
   return material.exitance()[to_index(band)];
 }
 

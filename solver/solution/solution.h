@@ -170,7 +170,7 @@ struct Solution {
   /// Diffuse [0,1]; of textures the mean over the zone.
   double zone_reflectance(ZoneId z, std::size_t band) const {
     if (!zone_reflectances.empty()) return zone_reflectances[z.index() * bands.count() + band];
-    return zone_material(z).reflectance_of(mesh.zone_is_front(z))[static_cast<Eigen::Index>(band)];
+    return zone_material(z).reflectance_of(mesh.zone_shows_front(z))[static_cast<Eigen::Index>(band)];
   }
   double emitted_radiosity(ZoneId z,
                            std::size_t band) const;  ///< M_e = pi L_e of the side the zone is on [W/m2].

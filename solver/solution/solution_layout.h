@@ -79,6 +79,7 @@ void transfer_mesh_counts(Archive& archive, Report& report) {
   archive.attribute("flipped_faces", report.flipped_faces);
   archive.attribute("nonplanar_faces", report.nonplanar_faces);
   archive.attribute("cut_faces", report.cut_faces);
+  archive.attribute("back_to_back_faces", report.back_to_back_faces);
 }
 
 /// The values an enumeration can have, in words, as stored.

@@ -200,6 +200,23 @@ CellSplits read_splits(const Hdf5Group& mesh) {
   return splits;
 }
 
+std::vector<SurfaceFace> read_backs(const Hdf5Group& mesh, const Solution& solution,
+                                    const std::vector<BaseTriangle>& triangles) {
+  std::vector<SurfaceFace> backs;
+  if (!mesh.has_dataset("triangle_back_surface")) return backs;
+  const std::uint64_t count = triangles.size();
+  const auto surface = mesh.read<std::uint32_t>("triangle_back_surface", {count});
+  const auto face = mesh.read<std::uint32_t>("triangle_back_face", {count});
+  for (std::size_t t = 0; t < count; ++t) {
+    const SurfaceId shown(surface[t]);
+    require_intact(!shown.valid() || (shown.index() < solution.surface_names.size() &&
+                                      triangles[t].two_sided && !triangles[t].is_curved()),
+                   "back with a surface out of range, or that has no zones");
+    backs.push_back({shown, face[t]});
+  }
+  return backs;
+}
+
 // `zone_count` comes from the size of the sums, which were compared with the size of the file: a damaged
 // number of divisions must not make us allocate zones that are not there.
 ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone_count) {
@@ -248,6 +265,7 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
     base.triangles.push_back(triangle);
   }
   require_intact(zones == zone_count, "fewer zones in the mesh than in the sums");
+  base.backs = read_backs(group, solution, base.triangles);
   AttributeReader counts{group};
   transfer_mesh_counts(counts, solution.mesh_report);
   solution.mesh_report.warnings = group.read_texts("warnings");

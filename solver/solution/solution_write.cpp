@@ -59,6 +59,8 @@ void check_consistent(const Solution& solution) {
             "material with another number of bands");
   for (const BaseTriangle& t : solution.mesh.base().triangles)
     require(t.surface.index() < surfaces, "triangle with a surface out of range");
+  for (const SurfaceFace& back : solution.mesh.base().backs)
+    require(!back.surface.valid() || back.surface.index() < surfaces, "back with a surface out of range");
   require(solution.mesh_report.surfaces.size() == surfaces,
           "one row of the mesh report per surface expected");
   const std::size_t means_of_textures =
@@ -207,6 +209,13 @@ void write_mesh(const Hdf5Group& root, const Solution& solution) {
       "row of /surfaces");
   put(mesh, "triangle_face", column<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::face)), 1, "",
       "polygon of the surface the triangle was cut from");
+  if (!base.backs.empty()) {
+    put(mesh, "triangle_back_surface",
+        column<std::uint32_t>(base.backs, [](const auto& b) { return b.surface.index(); }), 1, "",
+        "row of /surfaces whose front the back is, where two faces lie back to back; 4294967295 = none");
+    put(mesh, "triangle_back_face", column<std::uint32_t>(base.backs, std::mem_fn(&SurfaceFace::face)), 1, "",
+        "polygon of that surface");
+  }
   put(mesh, "triangle_divisions", column<std::uint32_t>(triangles, std::mem_fn(&BaseTriangle::divisions)), 1,
       "", "n: the triangle has n*n cells on each side that has zones");
   const ZoneGroups& groups = solution.mesh.groups();

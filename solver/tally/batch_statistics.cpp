@@ -153,7 +153,7 @@ std::vector<ChannelError> channel_errors(const SurfaceModel& surfaces, const Zon
     for (std::size_t z = chunk * kChunk; z < std::min(zones, (chunk + 1) * kChunk); ++z) {
       const double area = mesh.zone_area(ZoneId(z));
       const double* reflectance =
-          surfaces.reflectance(ZoneId(z), mesh.zone_surface(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
+          surfaces.reflectance(ZoneId(z), mesh.zone_triangle(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
       sums.channels.for_each([&](std::size_t c, std::size_t band) {
         const std::size_t i = z * channels + c;
         const double mean = sums.total(i) / w;

@@ -102,11 +102,14 @@ inline std::vector<Vec3> reversed(std::vector<Vec3> outline) {
   return {outline.rbegin(), outline.rend()};
 }
 
-/// Area of the base triangles of a surface [m2].
+/// Area of the base triangles of a surface, one side, those whose backs show its front among them [m2].
 inline double meshed_area(const ZoneMesh& mesh, SurfaceId s) {
   double sum = 0;
-  for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
-    if (mesh.triangle(TriangleId(i)).surface == s) sum += mesh.triangle_area(TriangleId(i));
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    const TriangleId t(i);
+    if (mesh.surface(t, true) == s) sum += mesh.triangle_area(t);
+    if (mesh.is_back_to_back(t) && mesh.surface(t, false) == s) sum += mesh.triangle_area(t);
+  }
   return sum;
 }
 

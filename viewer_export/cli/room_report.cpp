@@ -57,9 +57,10 @@ double input_area(const MeshReport& report) {
 
 /// {name, count} of every kind of repair the mesh stage made.
 std::vector<std::pair<const char*, std::size_t>> repairs(const MeshReport& report) {
-  return {{"degenerate_faces", report.degenerate_faces},   {"duplicate_faces", report.duplicate_faces},
-          {"overlapping_faces", report.overlapping_faces}, {"flipped_faces", report.flipped_faces},
-          {"nonplanar_faces", report.nonplanar_faces},     {"cut_faces", report.cut_faces}};
+  return {{"degenerate_faces", report.degenerate_faces},    {"duplicate_faces", report.duplicate_faces},
+          {"overlapping_faces", report.overlapping_faces},  {"flipped_faces", report.flipped_faces},
+          {"nonplanar_faces", report.nonplanar_faces},      {"cut_faces", report.cut_faces},
+          {"back_to_back_faces", report.back_to_back_faces}};
 }
 
 std::string sides_text(const Material& material) {

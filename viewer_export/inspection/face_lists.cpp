@@ -28,6 +28,7 @@ constexpr std::array kKinds = {
     Kind{"welded", "repaired: a corner moved onto another, or twice in the outline"},
     Kind{"faceted", "flat instead of round: made of round shapes that other faces pass through"},
     Kind{"cut", "cut along the contact with others"},
+    Kind{"back_to_back", "back to back with another face, which has the other side"},
 };
 constexpr Kind kSealed = {"sealed", "sealed: no light reaches one of their sides"};
 
@@ -48,8 +49,9 @@ FaceList list_sealed(const ZoneMesh& mesh) {
   std::vector<FaceRef> faces;
   for (std::size_t s = 0; s < mesh.side_count(); ++s) {
     if (!is_sealed(mesh, SideId(s))) continue;
-    const BaseTriangle& t = mesh.triangle(triangle_of(SideId(s)));
-    faces.push_back({t.surface, t.face, t.is_curved()});
+    const TriangleId t = triangle_of(SideId(s));
+    const SurfaceFace face = mesh.face(t, is_front(SideId(s)));
+    faces.push_back({face.surface, face.face, mesh.triangle(t).is_curved()});
   }
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());

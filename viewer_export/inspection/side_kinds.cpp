@@ -29,6 +29,8 @@ SideKind kind_of(FaceChange change) {
       return SideKind::kCut;
     case FaceChange::kFaceted:
       return SideKind::kFaceted;
+    case FaceChange::kBackToBack:
+      return SideKind::kUntouched;
     case FaceChange::kDuplicate:
     case FaceChange::kDegenerate:
     case FaceChange::kNonPlanar:
@@ -39,11 +41,10 @@ SideKind kind_of(FaceChange change) {
   return SideKind::kRepaired;
 }
 
-/// What meshing did to the face of a triangle.
-SideKind kind_of(const BaseTriangle& t, std::span<const ChangedFace> changes) {
+/// What meshing did to a face.
+SideKind kind_of(const SurfaceFace& face, std::span<const ChangedFace> changes) {
   SideKind kind = SideKind::kUntouched;
-  if (t.is_curved()) return kind;  // its number is that of a shape
-  for (const ChangedFace& change : changes_of(changes, t.surface, t.face))
+  for (const ChangedFace& change : changes_of(changes, face.surface, face.face))
     kind = std::min(kind, kind_of(change.change));
   return kind;
 }
@@ -72,9 +73,12 @@ std::vector<SideKind> kinds_of_sides(const Scene& scene, const MeshResult& meshe
   const ZoneMesh& mesh = meshed.mesh;
   std::vector<SideKind> kinds(mesh.side_count());
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const SideKind of_face = kind_of(mesh.triangle(TriangleId(t)), meshed.report.changes);
+    SideKind of_face = SideKind::kUntouched;
     for (const bool front : {true, false}) {
       const SideId side = side_of(TriangleId(t), front);
+      // The number of the face of a curved triangle is that of a shape.
+      if (!mesh.triangle(TriangleId(t)).is_curved() && (front || mesh.is_back_to_back(TriangleId(t))))
+        of_face = kind_of(mesh.face(TriangleId(t), front), meshed.report.changes);
       SideKind& kind = kinds[side.index()] = of_face;
       if (is_sealed(mesh, side)) kind = std::min(kind, SideKind::kSealed);
       if (emits(scene, mesh, side)) kind = std::min(kind, SideKind::kLuminaire);

@@ -76,7 +76,7 @@ Panorama look_around(const RayTracer& rays, const RoomAxes& axes, const LitCells
       const Vec3f point = eye + hit.distance * direction;
       sight.cell = surface_cell(point, normal, cell);
       sight.area = lit.cell(point, normal);
-      const SurfaceId surface = rays.mesh().triangle(hit.triangle).surface;
+      const SurfaceId surface = rays.mesh().surface(hit.triangle, hit.front);
       sight.part = 6 * static_cast<std::uint64_t>(surface.index()) + facing(normal);
       sight.lit = lit.is_lit(sight.area, surface);
     }

@@ -14,25 +14,27 @@ namespace {
 constexpr double kLitShare = 1e-6;
 
 struct EdgeUse {
-  std::uint32_t surface, low, high;  // ends of the edge by vertex
+  std::uint32_t surface, back, low, high;  // ends of the edge by vertex
   std::uint32_t triangle;
   bool forward;  // from low to high
-  auto edge() const { return std::tie(surface, low, high); }
+  auto edge() const { return std::tie(surface, back, low, high); }
 };
 
-/// The first triangle of the sheet of each triangle: triangles of one surface that lie on one side of it.
-/// Where three or more meet at an edge, sheets end.
+/// The first triangle of the sheet of each triangle: triangles of one surface, with one behind them, that lie
+/// on one side of it. Where three or more meet at an edge, sheets end.
 std::vector<std::size_t> sheets(const BaseMesh& base) {
   DisjointSets sets(base.triangles.size());
   std::vector<EdgeUse> uses;
   for (std::size_t t = 0; t < base.triangles.size(); ++t) {
     const BaseTriangle& triangle = base.triangles[t];
     if (triangle.is_curved() && t > 0 && base.triangles[t - 1].shape == triangle.shape) sets.join(t - 1, t);
+    const auto back =
+        static_cast<std::uint32_t>((base.backs.empty() ? SurfaceId() : base.backs[t].surface).index());
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = triangle.vertex[k];
       const std::uint32_t b = triangle.vertex[(k + 1) % 3];
-      uses.push_back({static_cast<std::uint32_t>(triangle.surface.index()), std::min(a, b), std::max(a, b),
-                      static_cast<std::uint32_t>(t), a < b});
+      uses.push_back({static_cast<std::uint32_t>(triangle.surface.index()), back, std::min(a, b),
+                      std::max(a, b), static_cast<std::uint32_t>(t), a < b});
     }
   }
   std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {

@@ -45,7 +45,7 @@ TEST_F(Surfaces, KnowWhatEachSideReflects) {
   EXPECT_EQ(surfaces().surface_count(), 3U);
   EXPECT_EQ(surfaces().band_count(), 3U);
   EXPECT_EQ(surfaces().reflectance(SurfaceId(0), true)[1], 0.4);
-  EXPECT_EQ(surfaces().largest_reflectance(ZoneId(0), SurfaceId(1), true), 0.9);
+  EXPECT_EQ(surfaces().largest_reflectance(ZoneId(0), TriangleId(1), true), 0.9);
   EXPECT_EQ(surfaces().reflectance(TriangleId(0), true)[2], 0.6F);
   EXPECT_EQ(surfaces().reflectance(TriangleId(0), false)[2], 0.0F) << "the back of a one-sided face absorbs";
   EXPECT_EQ(surfaces().reflectance(TriangleId(1), false)[0], 0.1F);
