@@ -1,5 +1,6 @@
 // Stills of rooms gathered and path traced, side by side on a sheet, and how far apart the two are:
-// docs/images/mirrors_and_glass.jpg, docs/images/caustics.jpg and their tables in docs/materials.md.
+// docs/images/mirrors_and_glass.jpg, docs/images/caustics.jpg and their tables in docs/materials.md;
+// docs/images/textured_rooms.jpg and its table in docs/gather.md.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -15,6 +16,8 @@
 #include <fmt/format.h>
 
 #include "bench/contact_sheet.h"
+#include "bench/hit_paths/block_comparison.h"
+#include "bench/hit_paths/checked_picture.h"
 #include "bench/program_options.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
@@ -44,6 +47,8 @@ struct Settings {
   std::uint64_t seed = 1;
   int threads = 0;
   ReadOptions read;
+  std::vector<double> eye, look_at, up{0, 1, 0};  // empty: a camera of the room
+  double fov_deg = 45;
 };
 
 /// A mean over independent runs.
@@ -68,14 +73,17 @@ struct Runs {
   std::vector<double> caustic;    // of it what came from luminaires over mirrors, glass and gloss
   std::vector<double> variances;  // of each, the mean square of the pixels' standard errors
   double seconds = 0;             // in all
+  hit_paths::CheckedPicture blocks;
 
   void add(const StillImage& image, int runs) {
     if (radiance.empty()) {
       picture = image;
+      blocks = hit_paths::empty_picture(image.width, image.height, image.bands.count());
       std::fill(picture.radiance.begin(), picture.radiance.end(), 0.0F);
     }
     for (std::size_t i = 0; i < image.radiance.size(); ++i)
       picture.radiance[i] += image.radiance[i] / static_cast<float>(runs);
+    hit_paths::add_still(image, 1, blocks);
     radiance.push_back(mean_over(image.radiance));
     caustic.push_back(mean_over(image.caustic));
     double squares = 0;
@@ -100,13 +108,23 @@ struct View {
   Runs gathered, path_traced;
 };
 
+Vec3 vec(const std::vector<double>& v) {
+  return {v.at(0), v.at(1), v.at(2)};
+}
+
+Camera choose_camera(const Settings& settings, const Room& room) {
+  if (!settings.eye.empty())
+    return {"as given", vec(settings.eye), vec(settings.look_at), vec(settings.up), settings.fov_deg};
+  return room.scene().cameras.empty() ? default_cameras(room).front() : room.scene().cameras.front();
+}
+
 View render(const std::filesystem::path& file, const Settings& settings) {
   const std::atomic<bool> never{false};
   const Scene scene = read_scene(file, settings.read);
   const MeshResult mesh = build_zones(scene);
   const Room room(scene, mesh.mesh);
-  const std::vector<Camera> cameras = scene.cameras.empty() ? default_cameras(room) : scene.cameras;
-  View view{file.stem().string(), cameras.front().name, {}, {}};
+  const Camera camera = choose_camera(settings, room);
+  View view{file.stem().string(), camera.name, {}, {}};
   for (int run = 0; run < settings.runs; ++run) {
     SolverSettings solver;
     solver.packets = settings.packets;
@@ -125,7 +143,7 @@ View render(const std::filesystem::path& file, const Settings& settings) {
       still.threads = settings.threads;
       Runs& runs = is_path ? view.path_traced : view.gathered;
       const auto start = std::chrono::steady_clock::now();
-      runs.add(render_still(walls, solution, cameras.front(), still, {}, never), settings.runs);
+      runs.add(render_still(walls, solution, camera, still, {}, never), settings.runs);
       runs.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
   }
@@ -142,10 +160,19 @@ std::string deviation(const std::vector<double>& gathered, const std::vector<dou
 }
 
 void print(const View& v) {
-  fmt::print("| {} | {} | {} | {} | {:.1f}, {:.1f} | {:.0f}, {:.0f} |\n", v.room, v.camera,
+  const std::vector<hit_paths::BlockDeviation> blocks =
+      hit_paths::compare_pictures(v.gathered.blocks, v.path_traced.blocks);
+  const auto differ = [](const hit_paths::BlockDeviation& block) { return block.differs(); };
+  fmt::print("| {} | {} | {} | {} | {}; {:.1f}; {} | {:.1f}, {:.1f} | {:.0f}, {:.0f} |\n", v.room, v.camera,
              deviation(v.gathered.radiance, v.path_traced.radiance),
-             deviation(v.gathered.caustic, v.path_traced.caustic), 100 * v.gathered.noise(),
+             deviation(v.gathered.caustic, v.path_traced.caustic), blocks.size(),
+             blocks.empty() ? 0 : std::abs(blocks.front().errors()),
+             std::count_if(blocks.begin(), blocks.end(), differ), 100 * v.gathered.noise(),
              100 * v.path_traced.noise(), v.gathered.seconds, v.path_traced.seconds);
+  for (const hit_paths::BlockDeviation& block : blocks)
+    if (block.differs())
+      fmt::print(stderr, "{}: block at {}, {}: {:+.1f} % ({:+.1f} standard errors)\n", v.room, block.x,
+                 block.y, 100 * block.relative(), block.errors());
   std::fflush(stdout);
 }
 
@@ -156,8 +183,8 @@ void write_sheet(const Settings& settings) {
   bench::ContactSheet sheet(settings.columns * room_width + kGap, rows * room_height + kGap, settings.font);
   fmt::print(
       "| room | camera | gathered against path traced, mean of the picture [%] | the same of its caustic "
-      "part [%] "
-      "| noise of a pixel in one run [%] | seconds of all runs |\n|---|---|---|---|---|---|\n");
+      "part [%] | blocks of 16 x 16; largest deviation [standard errors]; beyond 5 and 3 % "
+      "| noise of a pixel in one run [%] | seconds of all runs |\n|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < settings.rooms.size(); ++i) {
     const View view = render(settings.rooms[i], settings);
     print(view);
@@ -195,6 +222,15 @@ int main(int argc, char** argv) {
       .in_range(2, 64)
       .show_default();
   program.add_option("--seed", settings.seed).show_default();
+  bench::ProgramOption eye =
+      program.add_option("--eye", settings.eye, "A view of its own, of all rooms [m]").count(3);
+  bench::ProgramOption look_at = program.add_option("--look-at", settings.look_at, "[m]").count(3).needs(eye);
+  eye.needs(look_at);
+  program.add_option("--up", settings.up).count(3).needs(eye).show_default();
+  program.add_option("--fov", settings.fov_deg, "Vertical [deg]")
+      .in_range(0.1, 179.0)
+      .needs(eye)
+      .show_default();
   program.add_option("--sky", settings.read.sky, "Of all rooms, as reemit solve has it");
   program.add_option("--sun", settings.read.sun, "Likewise");
   program.add_option("--threads", settings.threads, "0 = all cores").show_default();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -41,6 +42,11 @@ ProgramOption& ProgramOption::positive() {
   return *this;
 }
 
+ProgramOption& ProgramOption::count(int values) {
+  known(option_).expected(values);
+  return *this;
+}
+
 ProgramOption& ProgramOption::existing_file() {
   known(option_).check(CLI::ExistingFile);
   return *this;
@@ -62,11 +68,14 @@ ProgramOption& ProgramOption::excludes(const ProgramOption& other) {
 }
 
 struct ProgramOptions::Parser {
-  explicit Parser(const std::string& about) : app(about) {}
-  CLI::App app;
+  explicit Parser(const std::string& about) : whole(std::make_unique<CLI::App>(about)), app(*whole) {}
+  explicit Parser(CLI::App& command) : app(command) {}
+  std::unique_ptr<CLI::App> whole;  // null for a command, which is a part of another
+  CLI::App& app;
 };
 
 ProgramOptions::ProgramOptions(const std::string& about) : parser_(std::make_unique<Parser>(about)) {}
+ProgramOptions::ProgramOptions(std::unique_ptr<Parser> parser) : parser_(std::move(parser)) {}
 ProgramOptions::~ProgramOptions() = default;
 
 template <class T>
@@ -97,6 +106,15 @@ template ProgramOption ProgramOptions::add_option(const std::string&, std::vecto
 
 ProgramOption ProgramOptions::add_flag(const std::string& names, bool& value, const std::string& text) {
   return ProgramOption(parser_->app.add_flag(names, value, text));
+}
+
+ProgramOptions ProgramOptions::add_command(const std::string& name, const std::string& about) {
+  parser_->app.require_subcommand(1);
+  return ProgramOptions(std::make_unique<Parser>(*parser_->app.add_subcommand(name, about)));
+}
+
+bool ProgramOptions::is_given() const {
+  return parser_->app.parsed();
 }
 
 std::optional<int> ProgramOptions::parse(int argc, char** argv) {

@@ -17,6 +17,8 @@ class ProgramOption {
   ProgramOption& in_range(int least, int most);
   ProgramOption& in_range(double least, double most);
   ProgramOption& positive();
+  /// So many values; for vectors.
+  ProgramOption& count(int values);
   ProgramOption& existing_file();
   ProgramOption& one_of(std::initializer_list<std::string> values);
   ProgramOption& needs(const ProgramOption& other);
@@ -43,6 +45,12 @@ class ProgramOptions {
   ProgramOption add_option(const std::string& names, T& value, const std::string& text = "");
   ProgramOption add_flag(const std::string& names, bool& value, const std::string& text);
 
+  /// A command of the program with a command line of its own, one of which has to be given. Valid as long as
+  /// this.
+  ProgramOptions add_command(const std::string& name, const std::string& about);
+  /// Of a command: whether it was given.
+  bool is_given() const;
+
   /// Reads the command line. An exit code if the program shall end: after --help, or after an error, which it
   /// prints.
   std::optional<int> parse(int argc, char** argv);
@@ -52,6 +60,7 @@ class ProgramOptions {
 
  private:
   struct Parser;
+  explicit ProgramOptions(std::unique_ptr<Parser> parser);
   std::unique_ptr<Parser> parser_;
 };
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "bench/program_options.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/hemisphere_gather.h"
@@ -233,26 +233,27 @@ void first_flight(const Settings& settings) {
 
 int main(int argc, char** argv) try {
   Settings settings;
-  CLI::App program("Daylight in a room with a window");
-  program.require_subcommand(1);
-  const auto add_room = [&](CLI::App& command) {
-    command.add_option("room", settings.room)->required();
-    command.add_option("--sky", settings.read.sky);
-    command.add_option("--sun", settings.read.sun);
-    command.add_option("--zones", settings.zones);
+  bench::ProgramOptions program("Daylight in a room with a window");
+  const auto add_room = [&](bench::ProgramOptions& command) {
+    command.add_option("room", settings.room, "Room file").required().existing_file();
+    command.add_option("--sky", settings.read.sky, "As reemit solve has it");
+    command.add_option("--sun", settings.read.sun, "Likewise");
+    command.add_option("--zones", settings.zones).positive().show_default();
   };
-  CLI::App& factors = *program.add_subcommand("factors", "Daylight factors along a line");
+  bench::ProgramOptions factors = program.add_command("factors", "Daylight factors along a line");
   add_room(factors);
-  factors.add_option("--packets", settings.packets);
-  factors.add_option("--rays", settings.rays);
-  factors.add_option("--points", settings.points);
-  factors.add_option("--from", settings.from)->expected(3);
-  factors.add_option("--to", settings.to)->expected(3);
-  factors.add_option("--normal", settings.normal, "Of the surfaces that the line looks down on")->expected(3);
-  CLI::App& flight = *program.add_subcommand("first-flight", "Error of light straight from the sky");
+  factors.add_option("--packets", settings.packets, "Of the zone solution").show_default();
+  factors.add_option("--rays", settings.rays, "Of each point").in_range(32, 1 << 24).show_default();
+  factors.add_option("--points", settings.points).in_range(1, 10000).show_default();
+  factors.add_option("--from", settings.from, "Ends of the line [m]").count(3).show_default();
+  factors.add_option("--to", settings.to).count(3).show_default();
+  factors.add_option("--normal", settings.normal, "Of the surfaces that the line looks down on")
+      .count(3)
+      .show_default();
+  bench::ProgramOptions flight = program.add_command("first-flight", "Error of light straight from the sky");
   add_room(flight);
-  CLI11_PARSE(program, argc, argv);
-  if (factors.parsed())
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
+  if (factors.is_given())
     daylight_factors(settings);
   else
     first_flight(settings);

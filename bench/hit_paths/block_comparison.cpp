@@ -100,11 +100,7 @@ Comparison compare_blocks(const Scene& scene, const Camera& camera, const Compar
   if (settings.stills.empty()) checked = render_checked(scene, camera, settings);
   const std::size_t bands = scene.bands.count();
 
-  // A few values know their spread badly: a block has at least the relative error of the median one.
-  std::vector<double> spreads;
-  for (const CheckedBlock& c : checked.blocks)
-    if (c.mean() > 0) spreads.push_back(c.standard_error() / c.mean());
-  const double least_spread = median(spreads);
+  const double least_spread = median_spread(checked);
 
   Comparison out;
   out.camera = camera.name;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
@@ -19,13 +20,29 @@ namespace {
 
 constexpr int kRenderings = 8;
 
+}  // namespace
+
+double CheckedBlock::mean() const {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double CheckedBlock::standard_error() const {
+  const auto n = static_cast<double>(values.size());
+  const double of_pixels = pixels_error / n;
+  if (values.size() < 2) return of_pixels;
+  double squares = 0;
+  for (const double v : values) squares += (v - mean()) * (v - mean());
+  // A few values may lie close by chance; the noise of pixels is known better.
+  return std::max(std::sqrt(squares / (n * (n - 1))), of_pixels);
+}
+
 CheckedPicture empty_picture(int width, int height, std::size_t bands) {
   CheckedPicture picture{width, height, bands, {}};
   picture.blocks.resize(picture.count() * bands);
   return picture;
 }
 
-void add(const StillImage& image, double factor, CheckedPicture& picture) {
+void add_still(const StillImage& image, double factor, CheckedPicture& picture) {
   const bool has_errors = !image.radiance_stderr.empty();
   for (std::size_t i = 0; i < picture.count(); ++i)
     for (std::size_t b = 0; b < picture.bands; ++b) {
@@ -47,20 +64,14 @@ void add(const StillImage& image, double factor, CheckedPicture& picture) {
     }
 }
 
-}  // namespace
-
-double CheckedBlock::mean() const {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double CheckedBlock::standard_error() const {
-  const auto n = static_cast<double>(values.size());
-  const double of_pixels = pixels_error / n;
-  if (values.size() < 2) return of_pixels;
-  double squares = 0;
-  for (const double v : values) squares += (v - mean()) * (v - mean());
-  // A few values may lie close by chance; the noise of pixels is known better.
-  return std::max(std::sqrt(squares / (n * (n - 1))), of_pixels);
+double median_spread(const CheckedPicture& picture) {
+  std::vector<double> spreads;
+  for (const CheckedBlock& block : picture.blocks)
+    if (block.mean() > 0) spreads.push_back(block.standard_error() / block.mean());
+  if (spreads.empty()) return 0;
+  const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
+  std::nth_element(spreads.begin(), middle, spreads.end());
+  return *middle;
 }
 
 CheckedPicture render_checked(const Scene& scene, const Camera& camera, const ComparisonSettings& settings) {
@@ -82,9 +93,38 @@ CheckedPicture render_checked(const Scene& scene, const Camera& camera, const Co
     still.seed = solver.seed;
     const Solution solution = solve_zones(scene, mesh, solver, {}, never);
     const Room walls(scene, solution.mesh);
-    add(render_still(walls, solution, camera, still, {}, never), 1 + settings.planted_bias, picture);
+    add_still(render_still(walls, solution, camera, still, {}, never), 1 + settings.planted_bias, picture);
   }
   return picture;
+}
+
+std::vector<BlockDeviation> compare_pictures(const CheckedPicture& checked, const CheckedPicture& reference) {
+  const double least = median_spread(checked);
+  const double least_of_reference = median_spread(reference);
+  const auto error = [](const CheckedBlock& block, double least_spread) {
+    return std::max(block.standard_error(), least_spread * block.mean());
+  };
+  std::vector<BlockDeviation> deviations;
+  for (std::size_t i = 0; i < checked.count(); ++i) {
+    BlockDeviation worst;
+    double worst_errors = -1;
+    for (std::size_t b = 0; b < checked.bands; ++b) {
+      const CheckedBlock& c = checked.blocks[i * checked.bands + b];
+      const CheckedBlock& r = reference.blocks[i * checked.bands + b];
+      if (c.mean() == 0 && r.mean() == 0) continue;
+      const BlockDeviation d{static_cast<int>(i) % checked.across() * kBlock,
+                             static_cast<int>(i) / checked.across() * kBlock, c.mean(), r.mean(),
+                             std::hypot(error(c, least), error(r, least_of_reference))};
+      if (std::abs(d.errors()) <= worst_errors) continue;
+      worst_errors = std::abs(d.errors());
+      worst = d;
+    }
+    if (worst_errors >= 0) deviations.push_back(worst);
+  }
+  std::sort(deviations.begin(), deviations.end(), [](const BlockDeviation& a, const BlockDeviation& b) {
+    return std::abs(a.errors()) > std::abs(b.errors());
+  });
+  return deviations;
 }
 
 CheckedPicture read_checked(const std::vector<std::filesystem::path>& files, const BandSet& bands) {
@@ -94,7 +134,7 @@ CheckedPicture read_checked(const std::vector<std::filesystem::path>& files, con
     if (picture.blocks.empty()) picture = empty_picture(image.width, image.height, bands.count());
     if (image.width != picture.width || image.height != picture.height)
       throw std::invalid_argument(file.string() + " is of another size than the pictures before it");
-    add(image, 1, picture);
+    add_still(image, 1, picture);
   }
   return picture;
 }

@@ -9,6 +9,7 @@
 
 namespace reemit::hit_paths {
 
+struct BlockDeviation;
 struct ComparisonSettings;
 
 constexpr int kBlock = 16;  ///< Pixels along an edge of a block.
@@ -34,6 +35,20 @@ struct CheckedPicture {
     return static_cast<std::size_t>(across()) * static_cast<std::size_t>(height / kBlock);
   }
 };
+
+/// Without a picture in it yet.
+CheckedPicture empty_picture(int width, int height, std::size_t bands);
+
+/// Adds one more independent picture of the same view, times a factor.
+void add_still(const StillImage& image, double factor, CheckedPicture& picture);
+
+/// Median over blocks of their relative standard errors: what a block has at least, for a few values know
+/// their spread badly.
+double median_spread(const CheckedPicture& picture);
+
+/// Two pictures of one view, each of several stills, block by block in the worst band: blocks with light, by
+/// falling |errors|.
+std::vector<BlockDeviation> compare_pictures(const CheckedPicture& checked, const CheckedPicture& reference);
 
 /// Renders it as the program does: eight times, each with a zone solution of its own. Only so does their
 /// spread hold the noise of the zones, which the pixels of a block share.

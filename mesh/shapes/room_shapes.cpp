@@ -16,6 +16,7 @@
 #include "mesh/shapes/shape_contacts.h"
 #include "mesh/shapes/tessellate.h"
 #include "mesh/zones/zone_sizing.h"
+#include "scenes/io/common/surface_geometry.h"
 
 namespace reemit {
 namespace {
@@ -131,22 +132,6 @@ std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes, cons
   return pierced;
 }
 
-double faces_area(const Surface& surface, std::size_t first) {
-  double area = 0;
-  for (std::size_t f = first; f < surface.faces.size(); ++f) {
-    const auto loop_area = [&](const std::vector<std::uint32_t>& loop) {
-      Vec3 twice = Vec3::Zero();
-      for (std::size_t i = 1; i + 1 < loop.size(); ++i)
-        twice += (surface.positions[loop[i]] - surface.positions[loop[0]])
-                     .cross(surface.positions[loop[i + 1]] - surface.positions[loop[0]]);
-      return 0.5 * twice.norm();
-    };
-    area += loop_area(surface.faces[f].outer);
-    for (const auto& hole : surface.faces[f].holes) area -= loop_area(hole);
-  }
-  return area;
-}
-
 /// Gives the patches of one shape their corners; those at the same place are one vertex.
 class CornerTable {
  public:
@@ -217,7 +202,8 @@ RoomShapes separate_shapes(const Scene& room, const MeshSettings& settings,
     facets.fewest_sides = facets.count == 0 ? segments[i] : std::min(facets.fewest_sides, segments[i]);
     facets.most_sides = std::max(facets.most_sides, segments[i]);
     facets.round_area += shape_area(all.exact[i]);
-    facets.flat_area += faces_area(surface, first);
+    for (std::size_t f = first; f < surface.faces.size(); ++f)
+      facets.flat_area += face_area(surface, surface.faces[f]);
     ++facets.count;
   }
   return result;

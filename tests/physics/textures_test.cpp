@@ -95,6 +95,17 @@ class TexturedRooms : public testing::Test {
     return watts;
   }
 
+  /// The surfaces whose names start so absorb the same in both rooms, by either method; a difference of
+  /// `noticed` would be seen.
+  static void expect_same_absorption(const Scene& a, const Scene& b, const std::string& name,
+                                     double noticed) {
+    for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
+      const MeanTest watts = absorbed_by(a, name, method, 1);
+      EXPECT_TRUE(test::agree(watts, absorbed_by(b, name, method, 101))) << name;
+      EXPECT_TRUE(watts.would_notice(noticed, watts.mean())) << name;
+    }
+  }
+
   test::TempFolder folder_;
 };
 
@@ -108,14 +119,8 @@ TEST_F(TexturedRooms, CheckeredFloorIsThatOfChecksAsFaces) {
            kHull + R"(, {"name": "check", "material": "floor",
                                          "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})");
   const Scene faces = room(R"("white": {"reflectance": 0.9})", kHull + checks_as_faces("white", "black"));
-  for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
-    const MeanTest a = absorbed_by(textured, "check", method, 1);
-    const MeanTest b = absorbed_by(faces, "check", method, 101);
-    EXPECT_TRUE(test::agree(a, b));
-    EXPECT_TRUE(a.would_notice(0.04, a.mean()));
-    EXPECT_TRUE(
-        test::agree(absorbed_by(textured, "hull", method, 201), absorbed_by(faces, "hull", method, 301)));
-  }
+  expect_same_absorption(textured, faces, "check", 0.04);
+  expect_same_absorption(textured, faces, "hull", 0.04);
 }
 
 TEST_F(TexturedRooms, ZonesHoldTheMeanOfTheImage) {
@@ -246,12 +251,7 @@ TEST_F(TexturedRooms, CutOutLetsAsMuchThroughAsItsHoles) {
       kChambers + R"(, {"name": "sheet", "material": "sheet",
                        "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})");
   const Scene holes = room(R"("sheet": {"reflectance": 0.5})", kChambers + checks_as_faces("sheet", ""));
-  for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
-    const MeanTest a = absorbed_by(cut, "far", method, 1);
-    const MeanTest b = absorbed_by(holes, "far", method, 101);
-    EXPECT_TRUE(test::agree(a, b));
-    EXPECT_TRUE(a.would_notice(0.05, a.mean()));
-  }
+  expect_same_absorption(cut, holes, "far", 0.05);
   // Zones are as large as what is there of them, so irradiance is that of the sheet.
   const Solution s = solve(cut, SolveMethod::kShooting, 1);
   double area = 0;
@@ -271,13 +271,8 @@ TEST_F(TexturedRooms, OpacityOfAHalfIsAClearSheetOfAHalf) {
                                 "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})";
   const Scene thin = room(R"("sheet": {"reflectance": 0.6, "opacity": 0.5})", kChambers + sheet);
   const Scene clear = room(R"("sheet": {"reflectance": 0.3, "transmittance": 0.5})", kChambers + sheet);
-  for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
-    const MeanTest a = absorbed_by(thin, "far", method, 1);
-    EXPECT_TRUE(test::agree(a, absorbed_by(clear, "far", method, 101)));
-    EXPECT_TRUE(a.would_notice(0.05, a.mean()));
-    EXPECT_TRUE(
-        test::agree(absorbed_by(thin, "sheet", method, 201), absorbed_by(clear, "sheet", method, 301)));
-  }
+  expect_same_absorption(thin, clear, "far", 0.05);
+  expect_same_absorption(thin, clear, "sheet", 0.05);
 }
 
 /// What an eye at `eye` sees of a screen of checks that glow; in a black room, so that there is no noise.

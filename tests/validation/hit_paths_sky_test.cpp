@@ -1,18 +1,17 @@
 // Stills under a sky against paths that see it, by its formula, where they leave the room.
-#include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "bench/hit_paths/block_comparison.h"
 #include "scenes/io/scene_reader.h"
 #include "tests/support/temp_folder.h"
+#include "tests/validation/same_picture.h"
 
 namespace reemit::hit_paths {
 namespace {
 
-/// As in hit_paths_test.cpp: odds of a false alarm 6e-7 for each of the comparisons here.
-constexpr double kMostOfPicture = 5;
+/// Largest relative error of a reference: 5 of them notice 2 %.
+constexpr double kMostError = 0.003;
 
 /// A floor, two walls and a box under a sky; what `more` adds stands on the floor.
 Scene court(const test::TempFolder& folder, const std::string& sky, const std::string& more) {
@@ -30,41 +29,23 @@ Scene court(const test::TempFolder& folder, const std::string& sky, const std::s
  "cameras": [{"name": "c", "eye": [3, -3, 2.2], "look_at": [-0.5, 0.8, 0.7], "up": [0, 0, 1], "vertical_fov_deg": 50}]})"));
 }
 
-void expect_same_picture_under(const Scene& scene) {
-  for (const bool by_path : {false, true}) {
-    ComparisonSettings settings;
-    settings.width = 64;
-    settings.height = 48;
-    settings.passes = 256;
-    settings.packets = 600'000;
-    settings.spp = 64;
-    settings.by_path = by_path;
-    const Comparison c = compare_blocks(scene, scene.cameras.at(0), settings);
-    const std::string what = scene.sky->description + (by_path ? ", path traced" : ", gathered");
-    EXPECT_EQ(c.different(), 0U) << what << ": worst block " << c.blocks.at(0).relative() << ", "
-                                 << c.blocks.at(0).errors() << " standard errors";
-    EXPECT_LE(std::abs(c.mean_deviation), kMostOfPicture * c.mean_error)
-        << what << ": " << c.mean_deviation << " +- " << c.mean_error;
-    EXPECT_LT(c.mean_error, 0.003) << what << ": would not notice 2 %";
-  }
-}
-
 TEST(HitPathsUnderASky, clear_with_its_sun) {
   const test::TempFolder folder;
-  expect_same_picture_under(
+  const Scene scene =
       court(folder,
             R"({"type": "clear", "irradiance": [60, 80, 120], "up": "z", "ground_reflectance": 0.25,
       "sun": {"altitude_deg": 35, "azimuth_deg": 200, "irradiance": [500, 450, 380], "angle_deg": 3}})",
-            ""));
+            "");
+  expect_same_picture(scene, scene.sky->description, kMostError);
 }
 
 TEST(HitPathsUnderASky, overcast_over_mirrors_gloss_and_through_panes) {
   const test::TempFolder folder;
-  expect_same_picture_under(
-      court(folder, R"({"type": "overcast", "irradiance": [100, 110, 130], "up": "z"})", R"(,
+  const Scene scene = court(folder, R"({"type": "overcast", "irradiance": [100, 110, 130], "up": "z"})", R"(,
   {"name": "mirror", "material": "mirror", "quad": {"corner": [-1.9, -1.2, 0.2], "u": [0, 1.4, 0], "v": [0, 0, 1.4]}},
   {"name": "plate", "material": "gloss", "quad": {"corner": [-1.5, -1.8, 0.02], "u": [2.4, 0, 0], "v": [0, 1.2, 0]}},
-  {"name": "pane", "material": "pane", "quad": {"corner": [0.9, -1.5, 0.05], "u": [0, 1.5, 0], "v": [0, 0, 1.2]}})"));
+  {"name": "pane", "material": "pane", "quad": {"corner": [0.9, -1.5, 0.05], "u": [0, 1.5, 0], "v": [0, 0, 1.2]}})");
+  expect_same_picture(scene, scene.sky->description, kMostError);
 }
 
 }  // namespace

@@ -12,35 +12,13 @@
 #include "scenes/io/photometry/ies_reader.h"
 #include "scenes/io/scene_reader.h"
 #include "tests/support/temp_folder.h"
+#include "tests/validation/same_picture.h"
 
 namespace reemit::hit_paths {
 namespace {
 
-/// Limits of a whole picture, in standard errors: odds of a false alarm 6e-7 (normal; a picture's reference
-/// has over 10^5 paths) for each of the eight comparisons here. Blocks: kMostErrors and kMostDeviation.
-constexpr double kPictureLimit = 5;
-
-ComparisonSettings quick(bool by_path) {
-  ComparisonSettings settings;
-  settings.width = 64;
-  settings.height = 48;
-  settings.passes = 256;
-  settings.packets = 600'000;
-  settings.spp = 64;
-  settings.by_path = by_path;
-  return settings;
-}
-
-void expect_same_picture(const Scene& scene) {
-  for (const bool by_path : {false, true}) {
-    const Comparison c = compare_blocks(scene, scene.cameras.at(0), quick(by_path));
-    const std::string what = scene.name + (by_path ? ", path traced" : ", gathered");
-    EXPECT_EQ(c.different(), 0U) << what << ": worst block " << c.blocks.at(0).relative() << ", "
-                                 << c.blocks.at(0).errors() << " standard errors";
-    EXPECT_LE(std::abs(c.mean_deviation), kPictureLimit * c.mean_error) << what;
-    EXPECT_LT(c.mean_error, 0.01) << what << ": too weak to tell";
-  }
-}
+/// Largest relative error of a reference.
+constexpr double kMostError = 0.01;
 
 /// A lamp that hangs over a wall, and a plinth whose edge runs along it 4 micrometres inside its ends.
 Scene lamp_with_plinth(const test::TempFolder& folder) {
@@ -59,11 +37,13 @@ Scene lamp_with_plinth(const test::TempFolder& folder) {
 
 TEST(HitPaths, a_plinth_along_a_lamp_does_not_put_it_out) {
   const test::TempFolder folder;
-  expect_same_picture(lamp_with_plinth(folder));
+  const Scene scene = lamp_with_plinth(folder);
+  expect_same_picture(scene, scene.name, kMostError);
 }
 
 TEST(HitPaths, lamps_may_touch_what_is_around_them) {
-  expect_same_picture(touching_lamps_room(107));
+  const Scene scene = touching_lamps_room(107);
+  expect_same_picture(scene, scene.name, kMostError);
 }
 
 const std::filesystem::path kRooms = std::filesystem::path(REEMIT_SOURCE_DIR) / "bench/hit_paths/rooms";
@@ -92,7 +72,8 @@ TEST(HitPaths, intensities_of_files_are_those_of_the_tables) {
 }
 
 TEST(HitPaths, openings_of_measured_luminaires_of_every_shape_light_the_room) {
-  expect_same_picture(read_scene(kRooms / "measured_luminaires.json"));
+  const Scene scene = read_scene(kRooms / "measured_luminaires.json");
+  expect_same_picture(scene, scene.name, kMostError);
 }
 
 TEST(HitPaths, a_bias_of_2_percent_is_noticed) {

@@ -26,13 +26,15 @@ void reverse_loops(Surface& surface) {
 
 }  // namespace
 
+double face_area(const Surface& surface, const Face& face) {
+  double area = loop_area(surface, face.outer);
+  for (const auto& hole : face.holes) area -= loop_area(surface, hole);
+  return std::max(area, 0.0);
+}
+
 double surface_area(const Surface& surface) {
   double area = 0;
-  for (const Face& face : surface.faces) {
-    double face_area = loop_area(surface, face.outer);
-    for (const auto& hole : face.holes) face_area -= loop_area(surface, hole);
-    area += std::max(face_area, 0.0);
-  }
+  for (const Face& face : surface.faces) area += face_area(surface, face);
   for (const CurvedShape& shape : surface.shapes) area += shape_area(shape);
   return area;
 }

@@ -19,6 +19,7 @@ namespace {
 using nlohmann::json;
 using test::expect_input_error;
 using test::GltfBuilder;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -186,6 +187,30 @@ TEST_F(Textures, GreyImagesLeaveOneBandAndColouredOnesDoNot) {
   EXPECT_EQ(native(R"("texture": {"file": "red.ppm"}, "radiance": 1)").bands.count(), 3U);
   const Scene grey = native(R"("texture": {"file": "red.ppm"}, "radiance": 1)", "", "grey");
   EXPECT_EQ(grey.bands.count(), 1U);
+}
+
+TEST_F(Textures, ImagesInSpectralBandsCountByTheirMeans) {
+  test::write_pixmap(folder_ / "t.ppm", 2, 1, {{255, 40, 0}, {30, 60, 255}});
+  const std::string material =
+      R"("reflectance": 0.8, "texture": {"file": "t.ppm", "encoding": "linear"},
+         "radiance": 3, "emission_texture": {"file": "t.ppm", "encoding": "linear"}, "opacity": 0.5)";
+  const Material rgb = native(material).materials.at(0);
+  ReadOptions options;
+  options.bands = {400, 700, 10};
+  const Scene scene = read_scene(folder_ / "room.json", options);
+  const Material& spectral = scene.materials.at(0);
+  EXPECT_FALSE(spectral.textures.reflectance);
+  EXPECT_FALSE(spectral.textures.emission);
+  EXPECT_TRUE(spectral.textures.is_cut_out()) << "opacity has no colour";
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("1 material"), HasSubstr("means only"))));
+  EXPECT_EQ(scene.not_modelled.at("textures_in_spectral_bands"), 1U);
+  ASSERT_EQ(scene.bands.count(), 31U);
+  // The means of the image, 285/510, 100/510 and 255/510, as colours of spectra, in the light of the room.
+  const Eigen::Array3d mean(285 / 510.0, 100 / 510.0, 255 / 510.0);
+  EXPECT_TRUE(Eigen::Array3d(rgb.emitted_radiance).isApprox(3 * mean, 1e-6));
+  EXPECT_TRUE(scene.bands.to_rgb(spectral.emitted_radiance).isApprox(3 * mean, 1e-6));
+  EXPECT_TRUE(scene.bands.to_rgb(spectral.emitted_radiance * spectral.reflectance)
+                  .isApprox(3 * 0.8 * mean * mean, 1e-6));
 }
 
 TEST_F(Textures, TheHashIsThatOfImageAndCoordinates) {
