@@ -11,7 +11,7 @@ namespace reemit::hit_paths {
 namespace {
 
 /// Largest relative error of a reference: 5 of them notice 2 %.
-constexpr double kMostError = 0.003;
+constexpr double kMostSkyError = 0.003;
 
 /// A floor, two walls and a box under a sky; what `more` adds stands on the floor.
 Scene court(const test::TempFolder& folder, const std::string& sky, const std::string& more) {
@@ -36,7 +36,7 @@ TEST(HitPathsUnderASky, clear_with_its_sun) {
             R"({"type": "clear", "irradiance": [60, 80, 120], "up": "z", "ground_reflectance": 0.25,
       "sun": {"altitude_deg": 35, "azimuth_deg": 200, "irradiance": [500, 450, 380], "angle_deg": 3}})",
             "");
-  expect_same_picture(scene, scene.sky->description, kMostError);
+  expect_same_picture(scene, scene.sky->description, kMostSkyError);
 }
 
 TEST(HitPathsUnderASky, overcast_over_mirrors_gloss_and_through_panes) {
@@ -45,7 +45,7 @@ TEST(HitPathsUnderASky, overcast_over_mirrors_gloss_and_through_panes) {
   {"name": "mirror", "material": "mirror", "quad": {"corner": [-1.9, -1.2, 0.2], "u": [0, 1.4, 0], "v": [0, 0, 1.4]}},
   {"name": "plate", "material": "gloss", "quad": {"corner": [-1.5, -1.8, 0.02], "u": [2.4, 0, 0], "v": [0, 1.2, 0]}},
   {"name": "pane", "material": "pane", "quad": {"corner": [0.9, -1.5, 0.05], "u": [0, 1.5, 0], "v": [0, 0, 1.2]}})");
-  expect_same_picture(scene, scene.sky->description, kMostError);
+  expect_same_picture(scene, scene.sky->description, kMostSkyError);
 }
 
 }  // namespace
