@@ -243,9 +243,9 @@ const PolygonRoom::Part& PolygonRoom::winner(std::uint32_t part, const Vec3& poi
     return std::pair(shines ? 0 : faces_ray(i) || m.two_sided ? 1 : 2, i);
   };
   const auto is_matt = [&](std::uint32_t i) {
-    const NonDiffusePart& part = parts_[i].material->non_diffuse;
-    return !parts_[i].material->emits() && !part.reflects_specularly() && !part.transmits_specularly() &&
-           !part.transmits_diffusely();
+    const NonDiffusePart& of_light = parts_[i].material->non_diffuse;
+    return !parts_[i].material->emits() && !of_light.reflects_specularly() &&
+           !of_light.transmits_specularly() && !of_light.transmits_diffusely();
   };
   const auto wins = [&](std::uint32_t i, std::uint32_t other) {
     if (faces_ray(i) != faces_ray(other) && is_matt(i) && is_matt(other)) return faces_ray(i);

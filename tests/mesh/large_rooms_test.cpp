@@ -238,7 +238,7 @@ TEST(LargeRooms, StackOfSquaresIsCutWhereItIsSeen) {
 }
 
 // Rectangles in one plane, some turned down, some luminous: whatever lines are left out, each keeps what the
-// rule of the overlap gives it.
+// rule of the overlap gives it, one side or both.
 TEST(LargeRooms, EveryFaceOfAStackKeepsTheSpotsItWins) {
   struct Rectangle {
     Vec2 low;
@@ -273,12 +273,19 @@ TEST(LargeRooms, EveryFaceOfAStackKeepsTheSpotsItWins) {
     for (std::size_t i = 0; i + 1 < xs.size(); ++i)
       for (std::size_t k = 0; k + 1 < ys.size(); ++k) {
         const Vec2 middle(0.5 * (xs[i] + xs[i + 1]), 0.5 * (ys[k] + ys[k + 1]));
-        std::size_t winner = stack.size();
+        // Of those that look up, of those that look down, and of all.
+        std::array<std::size_t, 3> winner;
+        winner.fill(stack.size());
         for (std::size_t p = 0; p < stack.size(); ++p) {
           if ((middle - stack[p].low).minCoeff() <= 0 || (stack[p].high - middle).minCoeff() <= 0) continue;
-          if (winner == stack.size() || (stack[p].emits && !stack[winner].emits)) winner = p;
+          for (std::size_t* best : {&winner[stack[p].down ? 1 : 0], &winner[2]})
+            if (*best == stack.size() || (stack[p].emits && !stack[*best].emits)) *best = p;
         }
-        if (winner < stack.size()) expected[winner] += (xs[i + 1] - xs[i]) * (ys[k + 1] - ys[k]);
+        if (winner[2] == stack.size()) continue;
+        const double area = (xs[i + 1] - xs[i]) * (ys[k + 1] - ys[k]);
+        expected[winner[2]] += area;
+        const std::size_t other = winner[2] == winner[0] ? winner[1] : winner[0];
+        if (other < stack.size() && !stack[winner[2]].emits) expected[other] += area;  // back to back
       }
     const MeshResult r = build_mesh(room.scene());
     for (std::size_t p = 0; p < stack.size(); ++p) {
