@@ -55,13 +55,6 @@ double worst_error(const BlockSums& s) {
   return worst;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::vector<BlockSums> trace_reference(const Scene& scene, const Camera& camera,
                                        const ComparisonSettings& settings, const CheckedPicture& size) {
   const HitPathTracer tracer(scene, camera, size.width, size.height, settings.photometry);
@@ -145,9 +138,7 @@ Comparison compare_blocks(const Scene& scene, const Camera& camera, const Compar
     out.mean_error = std::hypot(whole.standard_error(), std::sqrt(variance_of_reference)) / sum_of_reference;
   }
   out.reference_error = median(errors);
-  std::sort(out.blocks.begin(), out.blocks.end(), [](const BlockDeviation& a, const BlockDeviation& b) {
-    return std::abs(a.errors()) > std::abs(b.errors());
-  });
+  sort_worst_first(out.blocks);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "bench/hit_paths/block_comparison.h"
 #include "bench/hit_paths/still_file.h"
@@ -64,14 +65,24 @@ void add_still(const StillImage& image, double factor, CheckedPicture& picture) 
     }
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 double median_spread(const CheckedPicture& picture) {
   std::vector<double> spreads;
   for (const CheckedBlock& block : picture.blocks)
     if (block.mean() > 0) spreads.push_back(block.standard_error() / block.mean());
-  if (spreads.empty()) return 0;
-  const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
-  std::nth_element(spreads.begin(), middle, spreads.end());
-  return *middle;
+  return median(std::move(spreads));
+}
+
+void sort_worst_first(std::vector<BlockDeviation>& blocks) {
+  std::sort(blocks.begin(), blocks.end(), [](const BlockDeviation& a, const BlockDeviation& b) {
+    return std::abs(a.errors()) > std::abs(b.errors());
+  });
 }
 
 CheckedPicture render_checked(const Scene& scene, const Camera& camera, const ComparisonSettings& settings) {
@@ -121,9 +132,7 @@ std::vector<BlockDeviation> compare_pictures(const CheckedPicture& checked, cons
     }
     if (worst_errors >= 0) deviations.push_back(worst);
   }
-  std::sort(deviations.begin(), deviations.end(), [](const BlockDeviation& a, const BlockDeviation& b) {
-    return std::abs(a.errors()) > std::abs(b.errors());
-  });
+  sort_worst_first(deviations);
   return deviations;
 }
 

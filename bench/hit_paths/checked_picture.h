@@ -42,9 +42,15 @@ CheckedPicture empty_picture(int width, int height, std::size_t bands);
 /// Adds one more independent picture of the same view, times a factor.
 void add_still(const StillImage& image, double factor, CheckedPicture& picture);
 
+/// The upper one of two middle values; 0 of none.
+double median(std::vector<double> values);
+
 /// Median over blocks of their relative standard errors: what a block has at least, for a few values know
 /// their spread badly.
 double median_spread(const CheckedPicture& picture);
+
+/// By falling |errors|.
+void sort_worst_first(std::vector<BlockDeviation>& blocks);
 
 /// Two pictures of one view, each of several stills, block by block in the worst band: blocks with light, by
 /// falling |errors|.
