@@ -18,7 +18,7 @@ constexpr double kPi = std::numbers::pi;
 /// Beyond this many radii of the sphere around it, a shape weighs as if all of it were in its middle.
 constexpr double kFarRadii = 4;
 /// Least weight of what the formulas say is 0 although a point of it may light x.
-constexpr double kLeast = 1e-9;
+constexpr double kLeastExpected = 1e-9;
 
 bool is_rectangle(const std::vector<Vec3>& c) {
   if (c.size() != 4) return false;
@@ -176,11 +176,11 @@ double AreaLuminaire::expected_irradiance(const Vec3& x, const Vec3& n) const {
   if (height <= -reach_ || faces_away(x)) return 0;
   const double distance2 = to_centre.squaredNorm();
   if (height >= reach_ && distance2 > kFarRadii * kFarRadii * reach_ * reach_)
-    return std::max(expected_far(to_centre, height, distance2), kLeast * area_ / distance2);
+    return std::max(expected_far(to_centre, height, distance2), kLeastExpected * area_ / distance2);
   const double near = expected_near(x, n);
   if (near < 0) return 0;
   // A part just above the horizon must keep a weight even when a formula rounds to 0.
-  const double least = kLeast * std::min(1.0, area_ / std::max(distance2, 1e-30));
+  const double least = kLeastExpected * std::min(1.0, area_ / std::max(distance2, 1e-30));
   double e = std::isfinite(near) ? std::max(near, least) : least;
   if (exponent_ > 0 && flat_) {
     const double cosine = front_.dot(x - centre_) / std::sqrt(distance2);

@@ -64,7 +64,6 @@ class WalkTask {
         channels_(task.transport.channels()),
         values_(channels_.count()),
         rng_(task.settings.seed, RngPurpose::kReflection),
-        batch_(task.batch),
         from_hits_(task.settings.reemission == Reemission::kFromHits),
         stop_(task.stop),
         observer_(task.ray_observer),
@@ -269,7 +268,6 @@ class WalkTask {
   Channels channels_;
   std::size_t values_;  // of each packet
   CounterRng rng_;
-  std::uint32_t batch_;
   bool from_hits_;
   const StopToken* stop_;
   const RayObserver* observer_;

@@ -52,7 +52,6 @@ double open_or_least(double open) {
 SkyLight::SkyLight(const Scene& scene, const ZoneMesh& mesh, const RayTracer& rays,
                    const SurfaceModel& surfaces)
     : sky_(&sky_of(scene)),
-      bands_(&scene.bands),
       mesh_(&mesh),
       rays_(&rays),
       surfaces_(&surfaces),

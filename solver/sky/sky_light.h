@@ -108,7 +108,6 @@ class SkyLight {
   double pdf_per_sr(std::uint32_t place, const Vec3& local) const;
 
   const Sky* sky_;
-  const BandSet* bands_;
   const ZoneMesh* mesh_;
   const RayTracer* rays_;
   const SurfaceModel* surfaces_;

@@ -14,16 +14,16 @@ struct Hdf5MemoryFile::Image {
   std::unique_ptr<void, Free> memory;
   std::size_t size = 0;  // of the memory that grew last, which is that of the file
 
-  static void* allocate(std::size_t size, H5FD_file_image_op_t /*op*/, void* /*image*/) {
-    return std::malloc(size);
+  static void* allocate(std::size_t bytes, H5FD_file_image_op_t /*op*/, void* /*image*/) {
+    return std::malloc(bytes);
   }
-  static void* copy(void* to, const void* from, std::size_t size, H5FD_file_image_op_t /*op*/,
+  static void* copy(void* to, const void* from, std::size_t bytes, H5FD_file_image_op_t /*op*/,
                     void* /*image*/) {
-    return std::memcpy(to, from, size);
+    return std::memcpy(to, from, bytes);
   }
-  static void* reallocate(void* memory, std::size_t size, H5FD_file_image_op_t /*op*/, void* image) {
-    static_cast<Image*>(image)->size = size;
-    return std::realloc(memory, size);
+  static void* reallocate(void* memory, std::size_t bytes, H5FD_file_image_op_t /*op*/, void* image) {
+    static_cast<Image*>(image)->size = bytes;
+    return std::realloc(memory, bytes);
   }
   static herr_t release(void* memory, H5FD_file_image_op_t op, void* image) {
     if (op == H5FD_FILE_IMAGE_OP_FILE_CLOSE)
