@@ -186,7 +186,7 @@ class ZoneMesh {
   std::vector<SideId> zone_side_;    // of each zone; of a group, its first member
   std::vector<GridCell> zone_cell_;  // of each zone that is no group
   CellSplits splits_;
-  std::vector<Node> nodes_;           // one at least, for lanes that need none
+  std::vector<Node> nodes_;  // one at least, for lanes that need none
   ZoneGroups groups_;
   std::vector<std::size_t> first_member_;  // of each group, and the end
   std::vector<SideId> members_;            // by group

@@ -213,8 +213,7 @@ class WalkTask {
       }
       if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       std::vector<std::int64_t>& part = account_of(block.way[lane].part, bounce);
-      for (std::size_t c = 0; c < values; ++c)
-        book(part[zone.index() * values + c], quanta[c], shared_);
+      for (std::size_t c = 0; c < values; ++c) book(part[zone.index() * values + c], quanta[c], shared_);
       reflect(zone, surface, block, lane, bounce, bits);
     }
   }

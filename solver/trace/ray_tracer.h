@@ -49,7 +49,6 @@ struct alignas(64) Hit16 {
   float distance[16];
   bool front[16];      ///< False where the ray left the room.
   bool near_edge[16];  ///< Below edge_share: the hit may be RayTracer::is_at_edge.
-
   TrianglePoints16 points() const { return {triangle, u, v, front}; }
 };
 
@@ -123,8 +122,7 @@ class RayTracer {
   bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hit that is not the back of a one-sided triangle: what a camera sees.
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
-  /// Nearest hits of the first `count` rays, count <= 16. Unlike closest() it does not look twice: the caller
-  /// does, with look_again16 or, cheaper, with full blocks of such rays.
+  /// Nearest hits of the first `count` <= 16 rays. The caller looks twice, with look_again16 or full blocks.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
   /// True if a ray that ended so deserves a second look: it met nothing, the back of a one-sided triangle, or
   /// an edge.
