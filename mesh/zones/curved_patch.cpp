@@ -113,10 +113,13 @@ Vec3 CurvedPatches::normal_at(const Vec3& point) const {
 }
 
 Vec3 CurvedPatches::normal(std::uint32_t patch, double u, double v) const {
-  if (pointed_ && u + v <= 0) {  // the tip has no normal: that of the middle of the patch
-    u = v = 1.0 / 3;
-  }
-  return normal_at(point(patch, u, v));
+  return normal(patch, u, v, point(patch, u, v));
+}
+
+Vec3 CurvedPatches::normal(std::uint32_t patch, double u, double v, const Vec3& at) const {
+  // The tip has no normal: that of the middle of the patch.
+  if (pointed_ && u + v <= 0) return normal_at(point(patch, 1.0 / 3, 1.0 / 3));
+  return normal_at(at);
 }
 
 Barycentric CurvedPatches::octant_place(std::uint32_t patch, const Vec3& direction) const {

@@ -23,6 +23,8 @@ class CurvedPatches {
   Vec3 point(std::uint32_t patch, double u, double v) const;
   /// Unit normal of the front at (u,v).
   Vec3 normal(std::uint32_t patch, double u, double v) const;
+  /// The same where point(patch, u, v) is known.
+  Vec3 normal(std::uint32_t patch, double u, double v, const Vec3& point) const;
 
   struct Place {
     std::uint32_t patch;

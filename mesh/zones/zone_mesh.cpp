@@ -91,6 +91,7 @@ void ZoneMesh::add_cells() {
       }
     }
   }
+  if (nodes_.empty()) nodes_.push_back({0, 0});
   if (next_split != splits_.sides.size() || next_bit != splits_.is_split.size())
     throw std::invalid_argument("splits of sides without cells, or more of them than cells");
 }
@@ -108,14 +109,14 @@ void ZoneMesh::add_node(SideId side, std::size_t node, std::uint32_t divisions, 
   if (next_bit >= splits_.is_split.size()) throw std::invalid_argument("splits that end too early");
   if (splits_.is_split[next_bit++] == 0) {
     const std::size_t first = sides_[side.index()].first_zone.index();
-    nodes_[node] = {static_cast<std::uint32_t>(zone_side_.size() - first), false};
+    nodes_[node] = {static_cast<std::uint32_t>(zone_side_.size() - first), 0};
     zone_side_.push_back(side);
     zone_cell_.push_back({divisions, cell_number(divisions, cell)});
     return;
   }
   if (divisions > kMostDivisions / 2) throw std::invalid_argument("cells that are cut too finely");
   const std::size_t parts = nodes_.size();
-  nodes_[node] = {static_cast<std::uint32_t>(parts), true};
+  nodes_[node] = {static_cast<std::uint32_t>(parts), 1};
   nodes_.resize(parts + kCellParts);
   for (std::uint32_t k = 0; k < kCellParts; ++k)
     add_node(side, parts + k, 2 * divisions, cell_part(cell, k), next_bit);
@@ -124,10 +125,10 @@ void ZoneMesh::add_node(SideId side, std::size_t node, std::uint32_t divisions, 
 ZoneId ZoneMesh::zone_in_parts(const Side& side, float u, float v) const {
   const ZoneCell cell = place_in_triangle(side.divisions, u, v);
   const Node* node = &nodes_[side.nodes + cell_number(side.divisions, cell)];
-  if (node->is_split) {
+  if (node->is_split != 0) {
     InCell x = in_cell(side.divisions, cell, u, v);
     do node = &nodes_[node->at + part_of(x)];
-    while (node->is_split);
+    while (node->is_split != 0);
   }
   return ZoneId(side.first_zone.index() + node->at);
 }

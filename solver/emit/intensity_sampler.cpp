@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "solver/sampling/small_angle.h"
+
 namespace reemit {
 namespace {
 
@@ -52,9 +54,8 @@ double invert_polar(const PolarCell& c, double wanted, double whole) {
   double high = c.width;
   double x = c.width * guess_polar(c, whole > 0 ? std::clamp(wanted / whole, 0.0, 1.0) : 0.5);
   for (int step = 0; step < kMostSteps; ++step) {
-    const double s = std::sin(x);
-    const double cos_x = std::cos(x);
-    const double versine = cos_x > 0 ? s * s / (1 + cos_x) : 1 - cos_x;
+    const auto [s, versine] = sine_and_versine(x);
+    const double cos_x = 1 - versine;
     // The integrals of sin(a + x) and of x sin(a + x), about a.
     const double constant = c.cosine * versine + c.sine * s;
     const double linear = c.cosine * (s - x * cos_x) + c.sine * (x * s - versine);
@@ -92,7 +93,9 @@ double sample_azimuth(const Ring& ring, double u) {
   std::size_t high = last;
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
-    (ring.upto(middle) <= wanted ? low : high) = middle;
+    const bool is_below = ring.upto(middle) <= wanted;
+    low = is_below ? middle : low;
+    high = is_below ? high : middle;
   }
   const double width = lines[low + 1] - lines[low];
   const double f0 = ring.candela(low);
@@ -114,7 +117,10 @@ Vec3 sample_intensity(const IntensityTable& table, double u0, double u1) {
   std::size_t high = lines.size() - 1;
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
-    (table.flux_below(middle) <= wanted ? low : high) = middle;
+    // Which half it is nothing could predict: written so that it becomes no branch.
+    const bool is_below = table.flux_below(middle) <= wanted;
+    low = is_below ? middle : low;
+    high = is_below ? high : middle;
   }
   const double width = lines[low + 1] - lines[low];
   const PolarCell cell{width,

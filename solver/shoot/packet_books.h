@@ -17,7 +17,8 @@ inline void count_event(std::uint64_t& events, std::uint64_t times = 1) {
 /// Roulette keeps the mean of what it makes larger; beyond this factor it is a RareEvents::roulette_jumps.
 inline constexpr double kUsualRoulette = 2;
 
-/// Accounts of one task for ends of packets that many packets share, so that threads do not contend for them.
+/// Accounts of one task for ends of packets that many packets share, and counts, so that threads do not
+/// contend for them.
 /// They reach the books when the object goes.
 class LocalBooks {
  public:
@@ -27,7 +28,11 @@ class LocalBooks {
   ~LocalBooks() {
     for (std::size_t i = 0; i < escaped_.size(); ++i)
       if (escaped_[i] != 0) book(books_.escaped[i], escaped_[i]);
+    if (escapes_ != 0) count_event(books_.events.escapes, escapes_);
+    if (second_looks_ != 0) count_event(books_.events.second_looks, second_looks_);
   }
+
+  void count_second_look() { ++second_looks_; }
 
   /// Power that left the room in direction (x,y,z), booked under the nearest axis.
   void escape(float x, float y, float z, std::size_t channel, std::int64_t quanta) {
@@ -42,12 +47,14 @@ class LocalBooks {
     else
       axis = z < 0 ? 5 : 4;
     escaped_[axis * books_.channels.count() + channel] += quanta;
-    if (channel == 0) count_event(books_.events.escapes);
+    if (channel == 0) ++escapes_;
   }
 
  private:
   BatchBooks& books_;
   std::vector<std::int64_t> escaped_;
+  std::uint64_t escapes_ = 0;
+  std::uint64_t second_looks_ = 0;
 };
 
 /// The part of the light that packets of the first sweep bring, in the order in which their ways change it.

@@ -132,6 +132,8 @@ class PacketRoom {
   ZoneId zone_of(std::uint32_t triangle, float u, float v, bool front) const {
     return mesh_->zone_at(TriangleId(triangle), u, v, front);
   }
+  /// Numbers of the zones of 16 hits, ZoneMesh::kNone where a ray left the room as well.
+  void zones_of(const Hit16& hits, std::uint32_t* zone) const { mesh_->zones_at16(hits.points(), zone); }
 
  private:
   static std::uint32_t lane_bits(int first, int last) { return ((1U << last) - 1) & ~((1U << first) - 1); }

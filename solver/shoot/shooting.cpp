@@ -40,12 +40,13 @@ void find_accounts(const PacketRoom& transport, const Hit16& hits, int count,
                    SweepAccounts::Incident& incident, bool shared, bool second_look, ArrivalPoints* arrivals,
                    const std::uint32_t* bits, BatchBooks& books, Account* accounts) {
   const std::size_t channels = transport.channels().count();
+  std::uint32_t zones[16];
+  transport.zones_of(hits, zones);
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t t = hits.triangle[lane];
     accounts[lane] = {};
-    if (t == RayTracer::kMiss) continue;
-    const ZoneId zone = transport.zone_of(t, hits.u[lane], hits.v[lane], hits.front[lane]);
-    if (!second_look && (!zone.valid() || transport.rays().is_at_edge(t, hits.u[lane], hits.v[lane])))
+    const ZoneId zone(zones[lane]);
+    if (!second_look ? !zone.valid() || transport.rays().is_at_edge(hits, lane) : t == RayTracer::kMiss)
       continue;
     if (zone.valid()) {
       accounts[lane] = {&incident.quanta[zone.index() * channels], shared};
@@ -136,7 +137,7 @@ class SweepTracer {
       const Account& account = accounts_[lane];
       if (account.quanta == nullptr && !second_look) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
-        count_event(books_.events.second_looks);
+        local_.count_second_look();
         continue;
       }
       if (any_specular) specular_.attenuate(block.way[lane], hits_, lane, quanta);
@@ -147,13 +148,16 @@ class SweepTracer {
           arrivals_->add_in_group(account.place, bits_.word[0][lane], account.member, hits_.u[lane],
                                   hits_.v[lane]);
       }
-      for (std::size_t c = 0; c < channels; ++c)
-        if (account.quanta != nullptr)
-          book(account.quanta[c], quanta[c], account.shared);
-        else
+      if (account.quanta == nullptr) {
+        for (std::size_t c = 0; c < channels; ++c)
           local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], c, quanta[c]);
-      if (account.quanta != nullptr && any_specular)
-        specular_.carry_on(block, hits_, lane, number_, carried_);
+        continue;
+      }
+      if (account.shared)
+        for (std::size_t c = 0; c < channels; ++c) book(account.quanta[c], quanta[c]);
+      else
+        for (std::size_t c = 0; c < channels; ++c) account.quanta[c] += quanta[c];
+      if (any_specular) specular_.carry_on(block, hits_, lane, number_, carried_);
     }
     if (holds_beyond_) carried_.move_beyond(*holds_beyond_, held_, carried_before);
   }

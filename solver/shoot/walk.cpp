@@ -179,24 +179,22 @@ class WalkTask {
   /// Traces a block, books where each packet comes to, and keeps those that survive.
   void arrive(PacketBlock& block, std::uint32_t bounce, bool second_look) {
     transport_.rays().closest16(block.rays, block.count, hits_);
-    ZoneId zone[16];
+    std::uint32_t zones[16];
+    transport_.zones_of(hits_, zones);
     const std::vector<std::int64_t>& incident = account_of(LightPart::kDirect, bounce);
-    for (int lane = 0; lane < block.count; ++lane) {
-      if (hits_.triangle[lane] == RayTracer::kMiss) continue;
-      zone[lane] = transport_.zone_of(hits_.triangle[lane], hits_.u[lane], hits_.v[lane], hits_.front[lane]);
-      // With many zones the books are larger than the caches.
-      if (zone[lane].valid()) __builtin_prefetch(&incident[zone[lane].index() * values_], 1);
-    }
+    // With many zones the books are larger than the caches.
+    for (int lane = 0; lane < block.count; ++lane)
+      if (zones[lane] != ZoneMesh::kNone) __builtin_prefetch(&incident[zones[lane] * values_], 1);
     BitLanes bits;
     specular_.draw_bits(rng_, block, bounce, bits);
     // The compiler cannot know that booking leaves the members of this object alone.
     const std::size_t values = values_;
     for (int lane = 0; lane < block.count; ++lane) {
       std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * values];
-      if (!second_look && (!zone[lane].valid() || transport_.rays().is_at_edge(
-                                                      hits_.triangle[lane], hits_.u[lane], hits_.v[lane]))) {
+      const ZoneId zone(zones[lane]);
+      if (!second_look && (!zone.valid() || transport_.rays().is_at_edge(hits_, lane))) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
-        count_event(books_.events.second_looks);
+        local_.count_second_look();
         continue;
       }
       if (hits_.triangle[lane] == RayTracer::kMiss) {
@@ -206,7 +204,7 @@ class WalkTask {
       }
       const TriangleId met(hits_.triangle[lane]);
       const SurfaceId surface = transport_.surface_model().surface(met, hits_.front[lane]);
-      if (!zone[lane].valid()) {
+      if (!zone.valid()) {
         count_event(books_.events.back_hits);
         for (std::size_t c = 0; c < values; ++c)
           book(books_.absorbed_on_backs[surface.index() * values + c], quanta[c]);
@@ -214,9 +212,8 @@ class WalkTask {
       }
       if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       std::vector<std::int64_t>& part = account_of(block.way[lane].part, bounce);
-      for (std::size_t c = 0; c < values; ++c)
-        book(part[zone[lane].index() * values + c], quanta[c], shared_);
-      reflect(zone[lane], surface, block, lane, bounce, bits);
+      for (std::size_t c = 0; c < values; ++c) book(part[zone.index() * values + c], quanta[c], shared_);
+      reflect(zone, surface, block, lane, bounce, bits);
     }
   }
 

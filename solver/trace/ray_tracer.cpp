@@ -15,6 +15,8 @@ namespace {
 constexpr float kEdgeWidth = 2e-6F;
 /// By how much rays are turned for the second look.
 constexpr float kTurn = 3e-6F;
+/// Barycentric coordinates of the middle of a patch.
+constexpr float kMiddle = 1.0F / 3;
 
 void intersect1(RTCScene scene, RTCRayHit& ray) {
 #if RTC_VERSION_MAJOR >= 4
@@ -93,25 +95,27 @@ RayTracer::RayTracer(const ZoneMesh& mesh, const RoomTextures& textures)
 
   flat_count_ = mesh.flat_count();
   corners_.reserve(3 * base.triangles.size());
-  normals_.reserve(base.triangles.size());
+  faces_.reserve(base.triangles.size() + 1);
   for (std::size_t t = 0; t < base.triangles.size(); ++t) {
     for (const std::uint32_t v : base.triangles[t].vertex) corners_.push_back(normalised(base.vertices[v]));
-    normals_.push_back(mesh.triangle_normal(TriangleId(t)).cast<float>());
+    faces_.push_back({mesh.triangle_normal(TriangleId(t)).cast<float>(), -kInfinity});
   }
   Eigen::Affine3d to_normalised = Eigen::Affine3d::Identity();
   to_normalised.scale(1 / metres_per_unit_).translate(-centre_);
-  edge_shares_.assign(base.triangles.size(), -kInfinity);
+  if (faces_.empty()) faces_.push_back({Vec3f::Zero(), -kInfinity});
   for (std::size_t t = 0; t < flat_count_; ++t)
     for (int k = 0; k < 3; ++k) {
       float height = 0;
       into_triangle(TriangleId(t), k, height);
-      edge_shares_[t] = std::max(edge_shares_[t], kEdgeWidth / std::max(height, kEdgeWidth));
+      faces_[t].edge_share = std::max(faces_[t].edge_share, kEdgeWidth / std::max(height, kEdgeWidth));
     }
   std::vector<CurvedShape> shapes;
   for (const CurvedShape& shape : base.shapes) {
     shapes.push_back(transformed(shape, to_normalised));
     shapes_.emplace_back(shapes.back());
   }
+  for (std::size_t t = flat_count_; t < base.triangles.size(); ++t)
+    patch_middles_.push_back(curved_point(TriangleId(t), kMiddle, kMiddle));
   if (!shapes.empty()) feet_ = ShapeFeet(mesh, corners_, shapes);
 
   std::vector<Vec3f> vertices;
@@ -140,14 +144,14 @@ void RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float 
     hit.triangle = TriangleId(primitive);
     hit.u = u;
     hit.v = v;
-    hit.front = normals_[primitive].dot(direction) < 0;
+    hit.front = faces_[primitive].normal.dot(direction) < 0;
     return;
   }
   if (geometry == EmbreeTree::kCutOuts) {
     hit.triangle = TriangleId(cut_outs_->cut_outs()[primitive]);
     hit.u = u;
     hit.v = v;
-    hit.front = normals_[hit.triangle.index()].dot(direction) < 0;
+    hit.front = faces_[hit.triangle.index()].normal.dot(direction) < 0;
     return;
   }
   const Vec3 d = direction.cast<double>();
@@ -157,7 +161,7 @@ void RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float 
     hit.triangle = TriangleId(place.triangle);
     hit.u = place.u;
     hit.v = place.v;
-    hit.front = normals_[place.triangle].dot(direction) < 0;
+    hit.front = faces_[place.triangle].normal.dot(direction) < 0;
     return;
   }
   const Vec3 point = origin.cast<double>() + static_cast<double>(distance) * d;
@@ -204,19 +208,18 @@ void RayTracer::move_off_edges(TriangleId t, float& u, float& v) const {
 Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front) const {
   if (is_curved(t)) {
     // Drawn inwards along the shape, so that the start stays on its side of faces that the shape stands on.
-    constexpr float kMiddle = 1.0F / 3;
-    const float inset = inset_share((curved_point(t, kMiddle, kMiddle) - curved_point(t, u, v)).norm());
+    const float inset = inset_share((patch_middles_[t.index() - flat_count_] - curved_point(t, u, v)).norm());
     const float s = u + inset * (kMiddle - u);
     const float r = v + inset * (kMiddle - v);
-    Vec3 n = curved_normal(t, s, r).cast<double>();
     Vec3 p = curved_point(t, s, r);
+    Vec3 n = shapes_[shape_of(t)].normal(mesh_->triangle(t).patch, s, r, p).cast<float>().cast<double>();
     if (feet_.touches_others(shape_of(t))) {
       p = feet_.clear_of_others(shape_of(t), p);
       n = shapes_[shape_of(t)].normal_at(p);
     }
     return (p + (front ? kLift : -kLift) * n).cast<float>();
   }
-  if (std::min({u, v, 1 - u - v}) < edge_shares_[t.index()]) move_off_edges(t, u, v);
+  if (std::min({u, v, 1 - u - v}) < edge_share(t)) move_off_edges(t, u, v);
   const Vec3f& n = normal(t);
   const Vec3f start =
       lifted(point(t, u, v), front ? n : Vec3f(-n), (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0F);
@@ -291,30 +294,28 @@ void RayTracer::closest16(const Ray16& rays, int count, Hit16& hits) const {
     query.ray.tfar[i] = -kInfinity;
   }
   intersect16(valid, embree_->scene(), query);
-  for (int i = 0; i < count; ++i) {
+  unsigned others = 0;  // of geometries that do not number their parts as the mesh does
+  for (int i = 0; i < 16; ++i) {
     const std::uint32_t t = query.hit.primID[i];
+    const bool is_hit = t != kMiss;
     hits.triangle[i] = t;
-    if (t == kMiss) {
-      hits.u[i] = hits.v[i] = 0;  // callers hand these on without a look
-      hits.front[i] = false;
-      continue;
-    }
-    if (query.hit.geomID[i] != EmbreeTree::kTriangles) {
-      Hit hit;
-      read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i], rays.origin(i),
-               rays.direction(i), hit);
-      hits.triangle[i] = static_cast<std::uint32_t>(hit.triangle.index());
-      hits.u[i] = hit.u;
-      hits.v[i] = hit.v;
-      hits.distance[i] = hit.distance;
-      hits.front[i] = hit.front;
-      continue;
-    }
-    const Vec3f& n = normals_[t];
-    hits.u[i] = query.hit.u[i];
-    hits.v[i] = query.hit.v[i];
+    hits.u[i] = is_hit ? query.hit.u[i] : 0;  // callers hand these on without a look
+    hits.v[i] = is_hit ? query.hit.v[i] : 0;
     hits.distance[i] = query.ray.tfar[i];
-    hits.front[i] = n.x() * rays.dx[i] + n.y() * rays.dy[i] + n.z() * rays.dz[i] < 0;
+    others |= is_hit ? query.hit.geomID[i] ^ EmbreeTree::kTriangles : 0;
+  }
+  read_flat_hits(faces_.data(), rays, hits);
+  for (int i = 0; others != 0 && i < count; ++i) {
+    const std::uint32_t t = query.hit.primID[i];
+    if (t == kMiss || query.hit.geomID[i] == EmbreeTree::kTriangles) continue;
+    Hit hit;
+    read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i], rays.origin(i),
+             rays.direction(i), hit);
+    hits.triangle[i] = static_cast<std::uint32_t>(hit.triangle.index());
+    hits.u[i] = hit.u;
+    hits.v[i] = hit.v;
+    hits.front[i] = hit.front;
+    hits.near_edge[i] = std::min({hit.u, hit.v, 1 - hit.u - hit.v}) < edge_share(hit.triangle);
   }
 }
 
@@ -350,7 +351,7 @@ Vec3f RayTracer::second_direction(const Vec3f& direction, std::uint32_t triangle
     float height = 0;
     const Vec3f inwards = into_triangle(TriangleId(triangle), k, height);
     // Across the edge as the ray sees it, however flat it comes.
-    const Vec3f across = direction.cross(inwards.cross(normals_[triangle]));
+    const Vec3f across = direction.cross(inwards.cross(faces_[triangle].normal));
     const float length = across.norm();
     if (length > 0) turn += (across.dot(inwards) < 0 ? -1 : 1) / length * across;
   }
@@ -382,6 +383,7 @@ void RayTracer::look_again16(const Ray16& rays, int count, Hit16& hits) const {
     hits.v[i] = again.v[k];
     hits.distance[i] = again.distance[k];
     hits.front[i] = again.front[k];
+    hits.near_edge[i] = again.near_edge[k];
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "mesh/zones/zone_mesh.h"
 #include "solver/texture/room_textures.h"
+#include "solver/trace/flat_hits.h"
 #include "solver/trace/shape_feet.h"
 
 namespace reemit {
@@ -41,11 +42,14 @@ struct alignas(64) Ray16 {
   Vec3f direction(int lane) const { return {dx[lane], dy[lane], dz[lane]}; }
 };
 
-struct Hit16 {
+/// What 16 rays met. Lanes beyond the count of rays are as those of rays that left the room.
+struct alignas(64) Hit16 {
   std::uint32_t triangle[16];  ///< RayTracer::kMiss where the ray left the room.
-  float u[16], v[16];
+  float u[16], v[16];          ///< 0 where the ray left the room.
   float distance[16];
-  bool front[16];  ///< False where the ray left the room.
+  bool front[16];      ///< False where the ray left the room.
+  bool near_edge[16];  ///< Below edge_share: the hit may be RayTracer::is_at_edge.
+  TrianglePoints16 points() const { return {triangle, u, v, front}; }
 };
 
 /// Owner of the ray-tracing structure over the base triangles and curved shapes. Rays live in a normalised
@@ -79,10 +83,10 @@ class RayTracer {
 
   Vec3f corner(TriangleId t, int k) const { return corners_[3 * t.index() + static_cast<std::size_t>(k)]; }
   /// Unit normal of the front of a flat triangle, or in the middle of a curved patch.
-  const Vec3f& normal(TriangleId t) const { return normals_[t.index()]; }
+  const Vec3f& normal(TriangleId t) const { return faces_[t.index()].normal; }
   /// Unit normal of the front at (u,v).
   Vec3f normal(TriangleId t, float u, float v) const {
-    return is_curved(t) ? curved_normal(t, u, v) : normals_[t.index()];
+    return is_curved(t) ? curved_normal(t, u, v) : normal(t);
   }
   bool is_curved(TriangleId t) const { return t.index() >= flat_count_; }
   Vec3f point(TriangleId t, float u, float v) const {
@@ -118,8 +122,7 @@ class RayTracer {
   bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hit that is not the back of a one-sided triangle: what a camera sees.
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
-  /// Nearest hits of the first `count` rays, count <= 16. Unlike closest() it does not look twice: the caller
-  /// does, with look_again16 or, cheaper, with full blocks of such rays.
+  /// Nearest hits of the first `count` <= 16 rays. The caller looks twice, with look_again16 or full blocks.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
   /// True if a ray that ended so deserves a second look: it met nothing, the back of a one-sided triangle, or
   /// an edge.
@@ -129,11 +132,14 @@ class RayTracer {
   /// True if (u,v) is so near an edge of a flat triangle that rounding decides which of the faces that meet
   /// there a ray seems to meet first.
   bool is_at_edge(std::uint32_t triangle, float u, float v) const {
-    return std::min({u, v, 1 - u - v}) < edge_shares_[triangle] && edges_near(triangle, u, v) != 0;
+    return std::min({u, v, 1 - u - v}) < faces_[triangle].edge_share && edges_near(triangle, u, v) != 0;
+  }
+  bool is_at_edge(const Hit16& hits, int lane) const {
+    return hits.near_edge[lane] && edges_near(hits.triangle[lane], hits.u[lane], hits.v[lane]) != 0;
   }
   /// Smallest barycentric coordinate below which a point of the triangle may be at an edge; nothing is below
   /// that of a curved patch.
-  float edge_share(TriangleId t) const { return edge_shares_[t.index()]; }
+  float edge_share(TriangleId t) const { return faces_[t.index()].edge_share; }
   /// Second look at the doubtful ones of `hits`.
   void look_again16(const Ray16& rays, int count, Hit16& hits) const;
   /// Direction of the second look at a ray that ended so; (u,v) say nothing if it met nothing. A ray that
@@ -182,10 +188,10 @@ class RayTracer {
   double metres_per_unit_ = 1;
   Vec3 centre_{0, 0, 0};
   std::vector<Vec3f> corners_;
-  std::vector<Vec3f> normals_;
-  std::vector<float> edge_shares_;
+  std::vector<FacePlane> faces_;  // one at least
   std::size_t flat_count_ = 0;
   std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
+  std::vector<Vec3> patch_middles_;    // of curved patches
   ShapeFeet feet_;
   std::unique_ptr<EmbreeTree> embree_;
 };

@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +92,42 @@ TEST(CellSplits, EveryPointBelongsToThePartItLiesIn) {
       EXPECT_NEAR(points[z], expected, 6 * std::sqrt(expected) + 6) << "zone " << z;
     }
   }
+}
+
+TEST(CellSplits, ZonesOf16PointsAreThoseOfEach) {
+  // Cut cells beside whole ones, sides without zones, lanes without a triangle, points on edges and corners.
+  for (const bool is_split : {false, true}) {
+    const ZoneMesh mesh = is_split ? split_mesh(3, 4, 5) : ZoneMesh(two_triangles(3, 1));
+    std::mt19937 random(23);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    for (int block = 0; block < 2000; ++block) {
+      std::uint32_t triangle[16];
+      float u[16];
+      float v[16];
+      bool front[16];
+      for (int lane = 0; lane < 16; ++lane) {
+        triangle[lane] = random() % 8 == 0 ? ZoneMesh::kNone : static_cast<std::uint32_t>(random() % 2);
+        front[lane] = random() % 2 == 0;
+        const auto on_grid = [&](float x) { return random() % 4 == 0 ? std::round(12 * x) / 12 : x; };
+        u[lane] = on_grid(uniform(random));
+        v[lane] = (1 - u[lane]) * on_grid(uniform(random));
+      }
+      std::uint32_t zone[16];
+      mesh.zones_at16({triangle, u, v, front}, zone);
+      for (int lane = 0; lane < 16; ++lane) {
+        const ZoneId expected = triangle[lane] == ZoneMesh::kNone
+                                    ? ZoneId()
+                                    : mesh.zone_at(TriangleId(triangle[lane]), u[lane], v[lane], front[lane]);
+        ASSERT_EQ(ZoneId(zone[lane]), expected) << "at " << u[lane] << ", " << v[lane];
+      }
+    }
+  }
+  std::uint32_t zone[16];
+  const std::vector<std::uint32_t> none(16, ZoneMesh::kNone);
+  const float zeros[16] = {};
+  const bool front[16] = {};
+  ZoneMesh(BaseMesh()).zones_at16({none.data(), zeros, zeros, front}, zone);
+  for (const std::uint32_t z : zone) EXPECT_EQ(z, ZoneMesh::kNone);
 }
 
 TEST(CellSplits, ZonesCoverEverySideOnce) {

@@ -113,7 +113,9 @@ TEST(RayTracer, BlocksOfSixteenEqualSingleRays) {
       EXPECT_EQ(hit.triangle.index(), hits.triangle[i]);
       EXPECT_EQ(hit.front, hits.front[i]);
       EXPECT_NEAR(hit.distance, hits.distance[i], 1e-5);
+      EXPECT_EQ(scene.is_at_edge(hits, i), scene.is_at_edge(hits.triangle[i], hits.u[i], hits.v[i]));
     }
+    for (int i = 13; i < 16; ++i) EXPECT_EQ(hits.triangle[i], RayTracer::kMiss);
   }
   EXPECT_GT(misses, 50);  // the box is open on one side
 }
