@@ -57,7 +57,7 @@ CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, 
     parts_[p].all = shooter.shoot(static_cast<std::uint32_t>(packets / static_cast<double>(parts)),
                                   static_cast<std::uint32_t>(p), stop);
   tbb::parallel_for(std::size_t{0}, parts,
-                    [&](std::size_t p) { parts_[p] = of_part(std::move(parts_[p].all)); });
+                    [&](std::size_t p) { parts_[p] = of_part(std::move(parts_[p].all), stop); });
 }
 
 CausticMap::Photons CausticMap::of_pilot(CausticPhotons photons) const {
@@ -69,13 +69,17 @@ CausticMap::Photons CausticMap::of_pilot(CausticPhotons photons) const {
   return result;
 }
 
-CausticMap::Photons CausticMap::of_part(CausticPhotons photons) const {
+CausticMap::Photons CausticMap::of_part(CausticPhotons photons, const StopToken* stop) const {
   Photons result{std::move(photons), {}, {}, {}};
   result.radius.resize(result.all.size());
+  result.beside_wall.resize(result.all.size());
   tbb::parallel_for(std::size_t{0}, result.all.size(), [&](std::size_t i) {
-    result.radius[i] = radius_at(result.all.normals[i], result.all.places[i]);
+    if (stop != nullptr && stop->requested()) return;  // with a radius of 0 it is not counted
+    const Vec3f& normal = result.all.normals[i];
+    const Vec3f& place = result.all.places[i];
+    result.radius[i] = radius_at(normal, place);
+    result.beside_wall[i] = is_beside_wall(normal, place, result.radius[i]) ? 1 : 0;
   });
-  find_walls(result);
   std::array<std::vector<std::uint32_t>, kLevels> of_level;
   for (std::uint32_t i = 0; i < result.radius.size(); ++i) {
     std::size_t level = 0;
@@ -106,21 +110,16 @@ float CausticMap::radius_at(const Vec3f& normal, const Vec3f& place) const {
   return kLargestRadius;
 }
 
-void CausticMap::find_walls(Photons& photons) const {
+bool CausticMap::is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const {
   constexpr int kDirections = 8;
-  const RayTracer& rays = room_->rays();
-  photons.beside_wall.assign(photons.all.size(), 0);
-  tbb::parallel_for(std::size_t{0}, photons.all.size(), [&](std::size_t i) {
-    const Vec3f& normal = photons.all.normals[i];
-    const Frame frame(normal);
-    const float radius = photons.radius[i];
-    const Vec3f from = photons.all.places[i] + kLift * radius * normal;
-    for (int k = 0; k < kDirections && photons.beside_wall[i] == 0; ++k) {
-      const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
-      const Vec3f to = from + radius * frame.to_world({std::cos(phi), std::sin(phi), 0});
-      if (!rays.visible(from, to)) photons.beside_wall[i] = 1;
-    }
-  });
+  const Frame frame(normal);
+  const Vec3f from = place + kLift * radius * normal;
+  for (int k = 0; k < kDirections; ++k) {
+    const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
+    const Vec3f to = from + radius * frame.to_world({std::cos(phi), std::sin(phi), 0});
+    if (!room_->rays().visible(from, to)) return true;
+  }
+  return false;
 }
 
 bool CausticMap::is_inside_triangle(const SurfacePoint& x, float radius) const {
@@ -193,7 +192,7 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
       count += static_cast<double>(per_unit);
       of_radii += static_cast<double>(per_unit) * static_cast<double>(radius);
     });
-  if (found.empty()) return;
+  if (!(count > 0)) return;
   const float face = !walled && is_inside_triangle(x, largest)
                          ? 1
                          : share_on_face(x, place, static_cast<float>(of_radii / count), turn);

@@ -56,13 +56,13 @@ class CausticMap {
     std::array<PhotonGrid, kLevels> grids;
   };
   Photons of_pilot(CausticPhotons photons) const;
-  Photons of_part(CausticPhotons photons) const;
-  void find_walls(Photons& photons) const;
+  Photons of_part(CausticPhotons photons, const StopToken* stop) const;
   static float radius_of(std::size_t level) { return kLargestRadius / static_cast<float>(1U << level); }
   static bool counts(const Photons& photons, std::uint32_t i, const Vec3f& normal, const Vec3f& place,
                      float radius);
 
   float radius_at(const Vec3f& normal, const Vec3f& place) const;
+  bool is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const;
   bool is_inside_triangle(const SurfacePoint& x, float radius) const;
   float share_on_face(const SurfacePoint& x, const Vec3f& place, float radius, float turn) const;
 
