@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -49,58 +50,76 @@ CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, 
         static_cast<double>(density[s]) * std::numbers::pi * kTypicalRadius * kTypicalRadius;
     left_to_rays_[s] = static_cast<float>(kTypicalRays / (kTypicalRays + photons));
   }
-  pilot_ = in_grids(shooter.shoot(static_cast<std::uint32_t>(kPilotShare * packets), kPilotBatch, stop));
+  pilot_ = of_pilot(shooter.shoot(static_cast<std::uint32_t>(kPilotShare * packets), kPilotBatch, stop));
   pilot_target_ = static_cast<float>(kPilotShare * kPhotons);
   parts_.resize(parts);
   for (std::size_t p = 0; p < parts; ++p)
     parts_[p].all = shooter.shoot(static_cast<std::uint32_t>(packets / static_cast<double>(parts)),
                                   static_cast<std::uint32_t>(p), stop);
-  tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t p) {
-    parts_[p] = in_grids(std::move(parts_[p].all));
-    find_walls(parts_[p]);
-  });
+  tbb::parallel_for(std::size_t{0}, parts,
+                    [&](std::size_t p) { parts_[p] = of_part(std::move(parts_[p].all), stop); });
 }
 
-CausticMap::Photons CausticMap::in_grids(CausticPhotons photons) {
-  Photons result{std::move(photons), {}, {}};
+CausticMap::Photons CausticMap::of_pilot(CausticPhotons photons) const {
+  Photons result{std::move(photons), {}, {}, {}};
+  std::vector<std::uint32_t> all(result.all.size());
+  std::iota(all.begin(), all.end(), 0U);
   for (std::size_t level = 0; level < kLevels; ++level)
-    result.grids[level] = PhotonGrid(result.all.places, 2 * radius_of(level));
+    result.grids[level] = PhotonGrid(result.all.places, all, 2 * radius_of(level));
   return result;
 }
 
-bool CausticMap::counts(const Photons& photons, std::uint32_t i, const SurfacePoint& x, const Vec3f& place,
-                        float radius) {
-  constexpr float kFlat = 0.15F;
-  return photons.all.normals[i].dot(x.normal) > kSameSide &&
-         std::fabs((photons.all.places[i] - place).dot(x.normal)) < kFlat * radius;
+CausticMap::Photons CausticMap::of_part(CausticPhotons photons, const StopToken* stop) const {
+  Photons result{std::move(photons), {}, {}, {}};
+  result.radius.resize(result.all.size());
+  result.beside_wall.resize(result.all.size());
+  tbb::parallel_for(std::size_t{0}, result.all.size(), [&](std::size_t i) {
+    if (stop != nullptr && stop->requested()) return;  // with a radius of 0 it is not counted
+    const Vec3f& normal = result.all.normals[i];
+    const Vec3f& place = result.all.places[i];
+    result.radius[i] = radius_at(normal, place);
+    result.beside_wall[i] = is_beside_wall(normal, place, result.radius[i]) ? 1 : 0;
+  });
+  std::array<std::vector<std::uint32_t>, kLevels> of_level;
+  for (std::uint32_t i = 0; i < result.radius.size(); ++i) {
+    std::size_t level = 0;
+    while (level + 1 < kLevels && radius_of(level + 1) >= result.radius[i]) ++level;
+    of_level[level].push_back(i);
+  }
+  for (std::size_t level = 0; level < kLevels; ++level)
+    result.grids[level] = PhotonGrid(result.all.places, of_level[level], 2 * radius_of(level));
+  return result;
 }
 
-float CausticMap::radius_at(const SurfacePoint& x, const Vec3f& place) const {
+bool CausticMap::counts(const Photons& photons, std::uint32_t i, const Vec3f& normal, const Vec3f& place,
+                        float radius) {
+  constexpr float kFlat = 0.15F;
+  return photons.all.normals[i].dot(normal) > kSameSide &&
+         std::fabs((photons.all.places[i] - place).dot(normal)) < kFlat * radius;
+}
+
+float CausticMap::radius_at(const Vec3f& normal, const Vec3f& place) const {
   for (std::size_t level = kLevels; level-- > 0;) {
     const float radius = radius_of(level);
     float found = 0;
     pilot_.grids[level].visit(place, radius, [&](std::uint32_t i, float d2) {
-      if (counts(pilot_, i, x, place, radius)) found += 2 * (1 - d2 / (radius * radius));
+      if (counts(pilot_, i, normal, place, radius)) found += 2 * (1 - d2 / (radius * radius));
     });
     if (found >= pilot_target_) return radius * std::sqrt(pilot_target_ / found);
   }
   return kLargestRadius;
 }
 
-void CausticMap::find_walls(Photons& photons) const {
+bool CausticMap::is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const {
   constexpr int kDirections = 8;
-  const RayTracer& rays = room_->rays();
-  photons.beside_wall.assign(photons.all.size(), 0);
-  tbb::parallel_for(std::size_t{0}, photons.all.size(), [&](std::size_t i) {
-    const Vec3f& normal = photons.all.normals[i];
-    const Frame frame(normal);
-    const Vec3f from = photons.all.places[i] + kLift * kLargestRadius * normal;
-    for (int k = 0; k < kDirections && photons.beside_wall[i] == 0; ++k) {
-      const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
-      const Vec3f to = from + kLargestRadius * frame.to_world({std::cos(phi), std::sin(phi), 0});
-      if (!rays.visible(from, to)) photons.beside_wall[i] = 1;
-    }
-  });
+  const Frame frame(normal);
+  const Vec3f from = place + kLift * radius * normal;
+  for (int k = 0; k < kDirections; ++k) {
+    const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
+    const Vec3f to = from + radius * frame.to_world({std::cos(phi), std::sin(phi), 0});
+    if (!room_->rays().visible(from, to)) return true;
+  }
+  return false;
 }
 
 bool CausticMap::is_inside_triangle(const SurfacePoint& x, float radius) const {
@@ -149,27 +168,34 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
   SurfacePoint x = at;
   x.normal = side_normal(rays, at);  // not that of the shading
   const Vec3f place = rays.point(x.triangle, x.u, x.v);
-  const float radius = radius_at(x, place);
-  std::size_t level = 0;
-  while (level + 1 < kLevels && radius_of(level + 1) >= radius) ++level;
   const std::size_t bands = room_->band_count();
   const auto metres = static_cast<float>(rays.metres_per_unit());
-  const Vec3f above = kLift * radius * x.normal;
   bool walled = false;
-  std::vector<float> found;  // by band
-  photons.grids[level].visit(place, radius, [&](std::uint32_t i, float d2) {
-    if (!counts(photons, i, x, place, radius)) return;
-    if (photons.beside_wall[i] != 0) {
-      walled = true;
-      if (!rays.visible(place + above, photons.all.places[i] + above)) return;
-    }
-    if (found.empty()) found.assign(bands, 0.0F);
-    const float share = whole ? 1 : 1 - left_to_rays(photons.all.luminaires[i]);
-    const float per_m2 = share * kernel(d2, radius) / (metres * metres);
-    for (std::size_t b = 0; b < bands; ++b) found[b] += per_m2 * photons.all.power[i * bands + b];
-  });
-  if (found.empty()) return;
-  const float face = !walled && is_inside_triangle(x, radius) ? 1 : share_on_face(x, place, radius, turn);
+  float largest = 0;               // radius of photons found
+  double count = 0, of_radii = 0;  // of them, as the kernel weighs them, and of their radii
+  std::vector<float> found;        // by band
+  for (std::size_t level = 0; level < kLevels; ++level)
+    photons.grids[level].visit(place, radius_of(level), [&](std::uint32_t i, float d2) {
+      const float radius = photons.radius[i];
+      if (d2 >= radius * radius || !counts(photons, i, x.normal, place, radius)) return;
+      if (photons.beside_wall[i] != 0) {
+        walled = true;
+        const Vec3f above = kLift * radius * x.normal;
+        if (!rays.visible(place + above, photons.all.places[i] + above)) return;
+      }
+      if (found.empty()) found.assign(bands, 0.0F);
+      const float share = whole ? 1 : 1 - left_to_rays(photons.all.luminaires[i]);
+      const float per_unit = share * kernel(d2, radius);
+      const float per_m2 = per_unit / (metres * metres);
+      for (std::size_t b = 0; b < bands; ++b) found[b] += per_m2 * photons.all.power[i * bands + b];
+      largest = std::max(largest, radius);
+      count += static_cast<double>(per_unit);
+      of_radii += static_cast<double>(per_unit) * static_cast<double>(radius);
+    });
+  if (!(count > 0)) return;
+  const float face = !walled && is_inside_triangle(x, largest)
+                         ? 1
+                         : share_on_face(x, place, static_cast<float>(of_radii / count), turn);
   for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * brdf(b) * found[b] / face;
 }
 

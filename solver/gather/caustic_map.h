@@ -17,10 +17,12 @@ namespace reemit {
 /// seldom, and then too much of it. What of a luminaire's light is left to gather rays is a share fixed for
 /// its surface, the balance heuristic at a typical radius [VG95, GKDS12]; the two add up to all of it.
 ///
-/// The kernel is Epanechnikov's. Its radius is set by photons that are not counted themselves, so that about
-/// kPhotons lie in it, within kLargestRadius; a caustic is blurred by as much, and no light is gained or lost
-/// but where it changes over less than the radius. Where a face ends, or something stands on it, the part of
-/// the kernel beyond is taken out of the area, and photons beyond are not counted.
+/// The kernel is Epanechnikov's. Each photon has a radius of its own [SIL86 5.3], set at its place by photons
+/// that are not counted themselves, so that about kPhotons lie in it, within kLargestRadius: a caustic is
+/// blurred by as much, and a photon spreads the power that it has, no more and no less. With a radius of the
+/// point that is asked about, dark points would reach far into the bright edge beside them, and nothing make
+/// up for it. Where a face ends, or something stands on it, the part of the kernel beyond is taken out of the
+/// area, and photons beyond are not counted.
 class CausticMap {
  public:
   static constexpr int kPhotons = 160;             ///< In the radius, of all parts together.
@@ -48,17 +50,19 @@ class CausticMap {
   static constexpr std::size_t kLevels = 6;  // radii halve from one to the next
   struct Photons {
     CausticPhotons all;
-    std::vector<std::uint8_t>
-        beside_wall;  ///< By photon: something stands on the face within the largest radius.
+    std::vector<float> radius;              ///< By photon; empty for those that set radii.
+    std::vector<std::uint8_t> beside_wall;  ///< By photon: something stands on the face within its radius.
+    /// Of the photons of all radii down to half that of the level; of those that set radii, of all.
     std::array<PhotonGrid, kLevels> grids;
   };
-  static Photons in_grids(CausticPhotons photons);
-  void find_walls(Photons& photons) const;
+  Photons of_pilot(CausticPhotons photons) const;
+  Photons of_part(CausticPhotons photons, const StopToken* stop) const;
   static float radius_of(std::size_t level) { return kLargestRadius / static_cast<float>(1U << level); }
-  static bool counts(const Photons& photons, std::uint32_t i, const SurfacePoint& x, const Vec3f& place,
+  static bool counts(const Photons& photons, std::uint32_t i, const Vec3f& normal, const Vec3f& place,
                      float radius);
 
-  float radius_at(const SurfacePoint& x, const Vec3f& place) const;
+  float radius_at(const Vec3f& normal, const Vec3f& place) const;
+  bool is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const;
   bool is_inside_triangle(const SurfacePoint& x, float radius) const;
   float share_on_face(const SurfacePoint& x, const Vec3f& place, float radius, float turn) const;
 

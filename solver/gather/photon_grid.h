@@ -12,8 +12,9 @@ namespace reemit {
 class PhotonGrid {
  public:
   PhotonGrid() = default;
-  /// `cell` > 0: edge of a cell, twice the largest radius that will be asked for.
-  PhotonGrid(const std::vector<Vec3f>& places, float cell);
+  /// Of the points `numbers` among the places. `cell` > 0: edge of a cell, twice the largest radius that will
+  /// be asked for.
+  PhotonGrid(const std::vector<Vec3f>& places, const std::vector<std::uint32_t>& numbers, float cell);
 
   /// Calls use(point number, squared distance) for every point within `radius` <= cell/2 of a place, in the
   /// same order each time.
