@@ -19,6 +19,7 @@
 #include "bench/hit_paths/block_comparison.h"
 #include "bench/hit_paths/checked_picture.h"
 #include "bench/program_options.h"
+#include "bench/vector_option.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
@@ -108,13 +109,10 @@ struct View {
   Runs gathered, path_traced;
 };
 
-Vec3 vec(const std::vector<double>& v) {
-  return {v.at(0), v.at(1), v.at(2)};
-}
-
 Camera choose_camera(const Settings& settings, const Room& room) {
   if (!settings.eye.empty())
-    return {"as given", vec(settings.eye), vec(settings.look_at), vec(settings.up), settings.fov_deg};
+    return {"as given", bench::vector_of(settings.eye), bench::vector_of(settings.look_at),
+            bench::vector_of(settings.up), settings.fov_deg};
   return room.scene().cameras.empty() ? default_cameras(room).front() : room.scene().cameras.front();
 }
 
@@ -159,16 +157,18 @@ std::string deviation(const std::vector<double>& gathered, const std::vector<dou
                      100 * std::hypot(g.stderr_of_value, p.stderr_of_value) / p.value);
 }
 
-void print(const View& v) {
+/// `path_per_gathered`: samples of a path-traced still over those of a gathered one.
+void print(const View& v, double path_per_gathered) {
   const std::vector<hit_paths::BlockDeviation> blocks =
       hit_paths::compare_pictures(v.gathered.blocks, v.path_traced.blocks);
   const auto differ = [](const hit_paths::BlockDeviation& block) { return block.differs(); };
-  fmt::print("| {} | {} | {} | {} | {}; {:.1f}; {} | {:.1f}, {:.1f} | {:.0f}, {:.0f} |\n", v.room, v.camera,
-             deviation(v.gathered.radiance, v.path_traced.radiance),
+  const double path_noise = 100 * v.path_traced.noise();
+  fmt::print("| {} | {} | {} | {} | {}; {:.1f}; {} | {:.1f}, {:.1f}, {:.1f} | {:.0f}, {:.0f} |\n", v.room,
+             v.camera, deviation(v.gathered.radiance, v.path_traced.radiance),
              deviation(v.gathered.caustic, v.path_traced.caustic), blocks.size(),
              blocks.empty() ? 0 : std::abs(blocks.front().errors()),
-             std::count_if(blocks.begin(), blocks.end(), differ), 100 * v.gathered.noise(),
-             100 * v.path_traced.noise(), v.gathered.seconds, v.path_traced.seconds);
+             std::count_if(blocks.begin(), blocks.end(), differ), 100 * v.gathered.noise(), path_noise,
+             path_noise * std::sqrt(path_per_gathered), v.gathered.seconds, v.path_traced.seconds);
   for (const hit_paths::BlockDeviation& block : blocks)
     if (block.differs())
       fmt::print(stderr, "{}: block at {}, {}: {:+.1f} % ({:+.1f} standard errors)\n", v.room, block.x,
@@ -184,10 +184,11 @@ void write_sheet(const Settings& settings) {
   fmt::print(
       "| room | camera | gathered against path traced, mean of the picture [%] | the same of its caustic "
       "part [%] | blocks of 16 x 16; largest deviation [standard errors]; beyond 5 and 3 % "
-      "| noise of a pixel in one run [%] | seconds of all runs |\n|---|---|---|---|---|---|---|\n");
+      "| noise of a pixel in one run: gathered, path traced, path traced with as many samples as gathered "
+      "(by the square root) [%] | seconds of all runs |\n|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < settings.rooms.size(); ++i) {
     const View view = render(settings.rooms[i], settings);
-    print(view);
+    print(view, static_cast<double>(settings.path_spp) / static_cast<double>(settings.spp));
     const int left = static_cast<int>(i) % settings.columns * room_width + kGap;
     const int top = static_cast<int>(i) / settings.columns * room_height;
     const ToneMap tone_map = bench::tone_map_of(view.path_traced.picture);

@@ -17,6 +17,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bench/program_options.h"
+#include "bench/vector_option.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/hemisphere_gather.h"
@@ -39,10 +40,6 @@ struct Settings {
   std::vector<double> from{2, 0.85, 0.25}, to{2, 0.85, 5.75}, normal{0, 1, 0};
   int points = 12;
 };
-
-Vec3 vec(const std::vector<double>& v) {
-  return {v.at(0), v.at(1), v.at(2)};
-}
 
 MeshResult zones_of(const Scene& scene, int count) {
   MeshSettings mesh;
@@ -102,8 +99,9 @@ void daylight_factors(const Settings& settings) {
   };
   for (int p = 0; p < settings.points; ++p) {
     const double t = (p + 0.5) / settings.points;
-    const Vec3 place = vec(settings.from) + t * (vec(settings.to) - vec(settings.from));
-    const SurfacePoint x = surface_below(room, place, vec(settings.normal));
+    const Vec3 place = bench::vector_of(settings.from) +
+                       t * (bench::vector_of(settings.to) - bench::vector_of(settings.from));
+    const SurfacePoint x = surface_below(room, place, bench::vector_of(settings.normal));
     const auto run = [&](int r, int what) {
       const PointSampler sampler(99, RngPurpose::kProbe, static_cast<std::uint64_t>(p), r, 20);
       std::vector<float> arrived(bands, 0.0F);
@@ -130,7 +128,7 @@ void daylight_factors(const Settings& settings) {
     fmt::print(
         "| {:.2f} | {:.2f} {:.2f} {:.2f} | {:.4g} +- {:.1g} | {:.4g} +- {:.1g} | {:.4g} +- {:.1g} | {:+.1f} "
         "|\n",
-        (at - vec(settings.from)).norm(), at.x(), at.y(), at.z(), straight.value, straight.error,
+        (at - bench::vector_of(settings.from)).norm(), at.x(), at.y(), at.z(), straight.value, straight.error,
         straight.value + gathered.value, std::hypot(straight.error, gathered.error),
         straight.value + traced.value, std::hypot(straight.error, traced.error),
         (gathered.value - traced.value) / std::hypot(gathered.error, traced.error));
