@@ -6,6 +6,7 @@ Usage: every_way.py PROGRAM ROOM... [--solve-only ROOM...]
 Values are the business of other tests, which need far more light. This one is for builds with sanitizers, where that
 would take long: with few packets every part of the code is reached all the same. All runs must succeed.
 """
+import argparse
 import json
 import pathlib
 import sys
