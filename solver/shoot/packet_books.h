@@ -18,8 +18,7 @@ inline void count_event(std::uint64_t& events, std::uint64_t times = 1) {
 inline constexpr double kUsualRoulette = 2;
 
 /// Accounts of one task for ends of packets that many packets share, and counts, so that threads do not
-/// contend for them.
-/// They reach the books when the object goes.
+/// contend for them. They reach the books when the object goes.
 class LocalBooks {
  public:
   explicit LocalBooks(BatchBooks& books) : books_(books), escaped_(books.escaped.size()) {}
