@@ -46,6 +46,7 @@ struct RenderOptions {
   CameraOptions camera;
   PixelSize size;  ///< 0x0: as the camera says.
   StillSettings still;
+  std::optional<bool> smooth;  ///< Unset: gathered pictures without an error target.
   ToneMapSettings tone_map;
   OutputStyle style;
 
@@ -147,21 +148,21 @@ class Renderer {
   void report(const Job& job, const StillImage& image, const WrittenImage& written, double seconds) {
     const std::string integrator = to_string(options_.still.integrator);
     if (options_.style.json) {
-      nlohmann::ordered_json picture{
-          {"file", job.file.string()},         {"camera", job.camera.name},
-          {"width_px", image.width},           {"height_px", image.height},
-          {"integrator", integrator},          {"samples_per_pixel", mean_samples(image)},
-          {"error", known_error(image.info)},  {"seconds", seconds},
-          {"peak_memory_bytes", peak_memory()}};
+      nlohmann::ordered_json picture{{"file", job.file.string()},  {"camera", job.camera.name},
+                                     {"width_px", image.width},    {"height_px", image.height},
+                                     {"integrator", integrator},   {"samples_per_pixel", mean_samples(image)},
+                                     {"smoothed", image.smoothed}, {"error", known_error(image.info)},
+                                     {"seconds", seconds},         {"peak_memory_bytes", peak_memory()}};
       add_zones(picture, image.info.zones);
       if (written.tone_mapped) picture["exposure_ev"] = written.tone_map.exposure_ev();
       pictures_.push_back(std::move(picture));
       return;
     }
     print_result(fmt::format(
-        "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel, noise {}, zones {}, {}{:.2f} s\n",
+        "{}: camera {}, {}x{} px, {}, {:.4g} samples per pixel{}, noise {}, zones {}, {}{:.2f} s\n",
         job.file.string(), job.camera.name, image.width, image.height, integrator, mean_samples(image),
-        percent_text(known_error(image.info)), zones_text(image.info.zones),
+        image.smoothed ? ", smoothed" : "", percent_text(known_error(image.info)),
+        zones_text(image.info.zones),
         written.tone_mapped ? fmt::format("exposure {:+.2f} EV, ", written.tone_map.exposure_ev()) : "",
         seconds));
   }
@@ -216,6 +217,8 @@ ExitCode run_render(RenderOptions options) {
 
   options.still.width = options.size.width;
   options.still.height = options.size.height;
+  options.still.smooth = options.smooth.value_or(options.still.integrator == Integrator::kGather &&
+                                                 options.still.error_target == 0);
   Renderer renderer(options, room, solution);
   std::size_t done = 0;
   while (done < jobs.size() && !renderer.interrupted()) renderer.render(jobs[done++]);
@@ -295,6 +298,11 @@ void add_quality_options(CLI::App& render, RenderOptions& options) {
   add_seed_and_threads(render, options.still.seed, options.still.threads);
 
   render.option_defaults()->group("Picture");
+  add_choice_option<std::optional<bool>>(
+      render, "--smooth", options.smooth, {{"auto", std::nullopt}, {"on", true}, {"off", false}},
+      "Take the grain out: every pixel becomes a mean of pixels around it that are the\n"
+      "same within their noise; auto: of gathered pictures, unless --error asks for\n"
+      "pixels that are sampled until they are good, which counts the noise before it");
   add_choice_option<PixelFilter>(render, "--filter", options.still.filter,
                                  {{"box", PixelFilter::kBox}, {"tent", PixelFilter::kTent}}, "Pixel filter");
   add_parsed_option(render, "--exposure", options.tone_map.exposure_ev, parse_number, "EV",

@@ -101,6 +101,20 @@ double Film::squared_error(std::size_t pixel, std::size_t band) const {
   return replicate_mean(pixel, band).squared_error;
 }
 
+StillHalves Film::halves() const {
+  const bool is_whole = std::all_of(begun_.begin(), begun_.end(),
+                                    [&](std::size_t n) { return n == replicates_ && n % 2 == 0; });
+  if (!is_whole) return {};
+  StillHalves halves;
+  const float share = 2.0F / static_cast<float>(replicates_);
+  for (std::size_t h = 0; h < halves.size(); ++h) {
+    halves[h].assign(image_.direct.size(), 0.0F);
+    for (std::size_t r = h; r < replicates_; r += 2)
+      for (std::size_t k = 0; k < halves[h].size(); ++k) halves[h][k] += share * means_[r][k];
+  }
+  return halves;
+}
+
 StillImage Film::finish() {
   const bool have_errors = std::find(begun_.begin(), begun_.end(), 1) == begun_.end();
   for (std::size_t r = replicates_; r < 3; ++r) means_[r].resize(image_.direct.size());

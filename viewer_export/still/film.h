@@ -66,6 +66,10 @@ class Film {
   /// Size, bands and the layers that hold means already: direct, caustic, albedo, samples.
   const StillImage& image() const { return image_; }
 
+  /// The picture by the even and by the odd replicates, which read different parts of the zone solution where
+  /// it has parts; empty where a pixel has not begun an even number of replicates.
+  StillHalves halves() const;
+
   /// Makes the layers and hands the picture over. Replicates that have not begun do not count, and there are
   /// no errors where a pixel has fewer than two. The film is empty afterwards.
   StillImage finish();

@@ -15,6 +15,7 @@
 #include "scenes/model/error.h"
 #include "scenes/model/stop_token.h"
 #include "viewer_export/output/refinement.h"
+#include "viewer_export/still/smoothing.h"
 #include "viewer_export/still/tile_renderer.h"
 
 namespace reemit {
@@ -268,8 +269,11 @@ StillImage render_still(const Room& room, const Solution& solution, const Camera
     if (rendering.has_zone_values())
       info.settings.emplace_back("interrupted", "tiles that were not reached hold zone values");
     if (!interrupt) info.zones = renderer.zone_bias(solution, film);
+    const bool smooth = settings.smooth && settings.integrator != Integrator::kZones;
+    const StillHalves halves = smooth ? film.halves() : StillHalves();
     image = film.finish();
     image.info = std::move(info);
+    if (!halves[0].empty()) smooth_still(image, halves, settings.error_floor);
     image.limited_by_zones = rendering.limited_by_zones();
     image.interrupted = interrupt;
   });

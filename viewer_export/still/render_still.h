@@ -38,7 +38,9 @@ struct StillSettings {
   /// `floor` above as a share of the picture's mean radiance [0, 1]: keeps black pixels from asking for more
   /// than anyone can see.
   double error_floor = 0.01;
-  int most_spp = 16384;    ///< Camera rays per pixel at which an error target is given up.
+  int most_spp = 16384;  ///< Camera rays per pixel at which an error target is given up.
+  /// Take the grain out afterwards (smooth_still); error_target counts what is there before. Not of kZones.
+  bool smooth = false;
   double close_hit = 1.0;  ///< GatherSettings::close_hit.
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = all cores. The picture does not depend on it.

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -13,6 +14,8 @@ struct StillImage {
   ExportInfo info;
   /// True if an error target was missed because of the noise of the zone solution.
   bool limited_by_zones = false;
+  /// Pixels are means of pixels around them (smooth_still).
+  bool smoothed = false;
   /// Stopped before it was done: somebody waits, so that files of it are not packed (deflated).
   bool interrupted = false;
   BandSet bands = BandSet::grey();
@@ -36,6 +39,10 @@ struct StillImage {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
 };
+
+/// The radiance of a still from two disjoint halves of its replicates [W/(m2 sr)], laid out as
+/// StillImage::radiance: their mean is the picture.
+using StillHalves = std::array<std::vector<float>, 2>;
 
 /// Throws std::invalid_argument when a layer's size does not fit the picture.
 void check_consistent(const StillImage& image);

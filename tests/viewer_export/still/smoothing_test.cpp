@@ -1,0 +1,186 @@
+#include "viewer_export/still/smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include "viewer_export/still/film.h"
+
+namespace reemit {
+namespace {
+
+constexpr int kWidth = 96;
+constexpr int kHeight = 64;
+constexpr double kNoise = 0.3;  // of one replicate, relative
+constexpr double kFloor = 0.01;
+
+double noise_of_picture() {
+  return kNoise / std::sqrt(static_cast<double>(Film::kReplicates));
+}
+
+/// What a picture shows: irradiance over pi and reflectance at a pixel.
+struct Seen {
+  double light = 1;
+  double albedo = 0.5;
+  Vec3 normal{0, 0, 1};
+  double depth = 2;
+};
+
+struct Noisy {
+  StillImage image;
+  StillHalves halves;
+};
+
+/// A still of eight replicates with normal noise; two thirds of the light are direct.
+template <class Pixel>
+Noisy noisy_picture(Pixel&& seen_at) {
+  Film film(BandSet::grey(), kWidth, kHeight, Film::kReplicates);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (std::size_t r = 0; r < Film::kReplicates; ++r) {
+        const Seen seen = seen_at(x, y);
+        const auto radiance =
+            static_cast<float>(seen.albedo * seen.light * std::max(0.0, 1 + kNoise * normal(random)));
+        const float direct = radiance * 2 / 3;
+        const float indirect = radiance - direct;
+        const auto albedo = static_cast<float>(seen.albedo);
+        film.add(static_cast<std::size_t>(y * kWidth + x), r,
+                 {.direct = &direct,
+                  .indirect = &indirect,
+                  .albedo = &albedo,
+                  .normal = seen.normal,
+                  .depth = seen.depth,
+                  .seen = 1,
+                  .samples = 1});
+      }
+  Noisy noisy;
+  noisy.halves = film.halves();
+  noisy.image = film.finish();
+  return noisy;
+}
+
+/// Relative deviation from the truth, rms over the pixels with first <= x < last.
+template <class Pixel>
+double rms_error(const StillImage& image, Pixel&& seen_at, int first = 0, int last = kWidth) {
+  double sum = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = first; x < last; ++x) {
+      const Seen seen = seen_at(x, y);
+      const auto radiance = static_cast<double>(image.radiance[static_cast<std::size_t>(y * kWidth + x)]);
+      sum += std::pow(radiance / (seen.albedo * seen.light) - 1, 2);
+    }
+  return std::sqrt(sum / (kHeight * (last - first)));
+}
+
+/// A checkered floor under light that falls off to one side.
+Seen checkered(int x, int y) {
+  return {.light = 1 + 0.01 * x, .albedo = (x / 3 + y / 3) % 2 == 0 ? 0.2 : 0.7};
+}
+
+TEST(Smoothing, takes_the_grain_out_and_leaves_textures) {
+  Noisy noisy = noisy_picture(checkered);
+  ASSERT_NEAR(rms_error(noisy.image, checkered), noise_of_picture(), 0.05 * noise_of_picture());
+  smooth_still(noisy.image, noisy.halves, kFloor);
+  EXPECT_NO_THROW(check_consistent(noisy.image));
+  EXPECT_TRUE(noisy.image.smoothed);
+  const double left = rms_error(noisy.image, checkered);
+  EXPECT_LT(left, noise_of_picture() / 5);
+  // Blocks of 256 noisy pixels cannot tell how well a mean fits to better than this; what is stated is above.
+  EXPECT_GT(noisy.image.info.error, 0.9 * left);
+  EXPECT_LT(noisy.image.info.error, 2 * left);
+}
+
+/// Sum over the picture over the true one, in its standard errors of the unsmoothed picture.
+double deviation_of_total(const StillImage& image, double factor) {
+  double found = 0;
+  double expected = 0;
+  double variance = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const Seen seen = checkered(x, y);
+      found += factor * static_cast<double>(image.radiance[static_cast<std::size_t>(y * kWidth + x)]);
+      expected += seen.albedo * seen.light;
+      variance += std::pow(seen.albedo * seen.light * noise_of_picture(), 2);
+    }
+  return (found - expected) / std::sqrt(variance);
+}
+
+// 4 standard errors: a false alarm once in 16,000 seeds. A bias of 2 % is 10 of them.
+TEST(Smoothing, keeps_the_light_of_the_picture) {
+  Noisy noisy = noisy_picture(checkered);
+  smooth_still(noisy.image, noisy.halves, kFloor);
+  EXPECT_LT(std::abs(deviation_of_total(noisy.image, 1)), 4);
+  EXPECT_GT(std::abs(deviation_of_total(noisy.image, 1.02)), 4);
+}
+
+TEST(Smoothing, keeps_the_border_of_a_shadow) {
+  const auto shadow = [](int x, int /*y*/) { return Seen{.light = x < kWidth / 2 ? 1.0 : 0.4}; };
+  Noisy noisy = noisy_picture(shadow);
+  smooth_still(noisy.image, noisy.halves, kFloor);
+  // At the border itself, one pixel to each side: a mean over both sides would be off by 40 %.
+  EXPECT_LT(rms_error(noisy.image, shadow, kWidth / 2 - 1, kWidth / 2 + 1), 0.6 * noise_of_picture());
+}
+
+TEST(Smoothing, does_not_cross_edges_of_things) {
+  // Less apart than the noise, so that only normals, or depths, tell them apart.
+  for (const bool by_normal : {true, false}) {
+    const auto sides = [by_normal](int x, int /*y*/) {
+      Seen seen{.light = 1};
+      if (x < kWidth / 2) return seen;
+      seen.light = 1.05;
+      if (by_normal)
+        seen.normal = {1, 0, 0};
+      else
+        seen.depth = 3;
+      return seen;
+    };
+    Noisy noisy = noisy_picture(sides);
+    smooth_still(noisy.image, noisy.halves, kFloor);
+    const int at = kWidth / 2;
+    double left = 0;
+    double right = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      left += static_cast<double>(noisy.image.radiance[static_cast<std::size_t>(y * kWidth + at - 1)]);
+      right += static_cast<double>(noisy.image.radiance[static_cast<std::size_t>(y * kWidth + at)]);
+    }
+    // The means of 64 pixels, which smoothing makes of some 500 on their side: 0.5 % noise each.
+    EXPECT_NEAR(right / left, 1.05, 0.03) << (by_normal ? "normals" : "depths");
+  }
+}
+
+TEST(Smoothing, layers_add_up) {
+  Noisy noisy = noisy_picture(checkered);
+  smooth_still(noisy.image, noisy.halves, kFloor);
+  const StillImage& image = noisy.image;
+  for (std::size_t k = 0; k < image.radiance.size(); ++k) {
+    EXPECT_NEAR(image.direct[k] + image.indirect[k], image.radiance[k], 1e-6F * image.radiance[k]);
+    EXPECT_NEAR(image.direct[k], image.radiance[k] * 2 / 3, 0.02F * image.radiance[k]);
+  }
+}
+
+TEST(Smoothing, same_bits_on_any_number_of_threads) {
+  Noisy one = noisy_picture(checkered);
+  Noisy two = noisy_picture(checkered);
+  tbb::task_arena(1).execute([&] { smooth_still(one.image, one.halves, kFloor); });
+  tbb::task_arena(2).execute([&] { smooth_still(two.image, two.halves, kFloor); });
+  EXPECT_EQ(one.image.radiance, two.image.radiance);
+  EXPECT_EQ(one.image.radiance_stderr, two.image.radiance_stderr);
+  EXPECT_EQ(one.image.info.error, two.image.info.error);
+}
+
+TEST(Smoothing, leaves_a_picture_whose_noise_nobody_knows) {
+  Noisy noisy = noisy_picture(checkered);
+  noisy.image.radiance_stderr.clear();
+  const std::vector<float> before = noisy.image.radiance;
+  smooth_still(noisy.image, noisy.halves, kFloor);
+  EXPECT_EQ(noisy.image.radiance, before);
+  EXPECT_FALSE(noisy.image.smoothed);
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,76 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "viewer_export/still/still_image.h"
+#include "viewer_export/still/still_planes.h"
+
+namespace reemit {
+
+/// Means of the pixels of some rows of a still over the pixels around them that are the same within their
+/// noise: non-local means with two buffers ([RKZ12] sec. 4), bounded by normal and depth. What is found of a
+/// pixel does not depend on which rows it is looked at with.
+class SimilarPixels {
+ public:
+  static constexpr int kWindow = 8;  ///< Pixels to each side that a pixel is averaged over.
+
+  /// Rows first .. last-1. Both must outlive it.
+  SimilarPixels(const StillPlanes& planes, const StillImage& image, int first, int last);
+
+  /// Before anything is read.
+  void average();
+
+  /// Of the half `h`, averaged by what the other half chose: irradiance (layer 0), its direct (1) and
+  /// caustic part (2).
+  float mean(std::size_t h, std::size_t layer, std::size_t band, std::size_t p) const {
+    return sum_[h][(layer * planes_.bands + band) * size_ + p] / weight_[h][p];
+  }
+  /// Square of the standard error of the mean of both halves, of noise that pixels do not share.
+  float variance(std::size_t band, std::size_t p) const {
+    float sum = 0;
+    for (std::size_t h = 0; h < 2; ++h)
+      sum += squares_[h][band * size_ + p] / (weight_[h][p] * weight_[h][p]);
+    return 0.25F * sum;
+  }
+  /// Share of a pixel's own value in its mean.
+  float own_share(std::size_t p) const { return 0.5F * (1 / weight_[0][p] + 1 / weight_[1][p]); }
+
+ private:
+  struct Area {
+    int x0, y0, x1, y1;
+    std::size_t width() const { return static_cast<std::size_t>(x1 - x0); }
+    std::size_t at(int x, int y) const {
+      return static_cast<std::size_t>(y - y0) * width() + static_cast<std::size_t>(x - x0);
+    }
+  };
+
+  void add_offset(int dx, int dy);
+
+  void add_own();
+
+  void add_value(std::size_t h, std::size_t p, std::size_t q, float w);
+
+  /// Squared difference of pixels over what noise explains, mean over bands ([RKZ12] eq. 3).
+  void find_differences(std::size_t h, int dx, int dy, const Area& area);
+
+  /// Means of the differences over patches: rows, then columns. Added up anew for every pixel, so that they
+  /// do not depend on where a stripe begins.
+  void average_patches(std::size_t h, const Area& area);
+
+  /// Distance of what two pixels see, by normal and depth.
+  float distance_of_things(std::size_t p, std::size_t q, int dx, int dy) const;
+
+  void add_row(int y, int dx, int dy, const Area& area);
+
+  const StillPlanes& planes_;
+  const StillImage& image_;
+  int first_, last_;
+  std::size_t size_;
+  std::size_t layers_;
+  std::array<std::vector<float>, 2> weight_, squares_, sum_;
+  std::vector<float> differences_, rows_;
+  std::array<std::vector<float>, 2> patches_;
+};
+
+}  // namespace reemit
