@@ -273,7 +273,7 @@ StillImage render_still(const Room& room, const Solution& solution, const Camera
     const StillHalves halves = smooth ? film.halves() : StillHalves();
     image = film.finish();
     image.info = std::move(info);
-    if (!halves[0].empty()) smooth_still(image, halves, settings.error_floor);
+    if (!halves[0].empty()) smooth_still(image, halves, settings.error_floor, stop);
     image.limited_by_zones = rendering.limited_by_zones();
     image.interrupted = interrupt;
   });

@@ -108,7 +108,7 @@ double misplaced(const StillImage& image, const Smoothed& smoothed, std::size_t 
 
 }  // namespace
 
-void smooth_still(StillImage& image, const StillHalves& halves, double error_floor) {
+void smooth_still(StillImage& image, const StillHalves& halves, double error_floor, const StopToken& stop) {
   if (image.radiance_stderr.empty()) return;
   const std::size_t bands = image.bands.count();
   try {
@@ -116,12 +116,14 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
     Smoothed smoothed(image);
     const int stripes = (image.height + kRows - 1) / kRows;
     tbb::parallel_for(0, stripes, [&](int s) {
+      if (stop.requested()) return;
       const int first = s * kRows;
       const int last = std::min(image.height, first + kRows);
       SimilarPixels stripe(planes, image, first, last);
       stripe.average();
       smoothed.take(stripe, planes, image, first, last);
     });
+    if (stop.requested()) return;
     image.info.error = 0;
     for (std::size_t b = 0; b < bands; ++b) {
       const std::vector<double> scales = pixel_scales(smoothed, bands, b, error_floor);

@@ -1,4 +1,5 @@
 #pragma once
+#include "scenes/model/stop_token.h"
 #include "viewer_export/still/still_image.h"
 
 namespace reemit {
@@ -11,9 +12,9 @@ namespace reemit {
 /// The standard error is that of the means; noise that neighbours share (of the zone solution) is measured by
 /// the difference of the smoothed halves over the picture. Where blocks of 16 x 16 pixels show that the means
 /// are off by more than noise explains, that is added. Their rms is image.info.error afterwards.
-/// `error_floor`: as of StillSettings. Leaves a picture without standard errors as it is. Runs in the
-/// arena of the caller, the same bits on any number of threads. Throws ResourceError when what it needs does
-/// not fit into memory.
-void smooth_still(StillImage& image, const StillHalves& halves, double error_floor);
+/// `error_floor`: as of StillSettings. Leaves a picture without standard errors as it is, and any once `stop`
+/// is requested. Runs in the arena of the caller, the same bits on any number of threads. Throws
+/// ResourceError when what it needs does not fit into memory.
+void smooth_still(StillImage& image, const StillHalves& halves, double error_floor, const StopToken& stop);
 
 }  // namespace reemit

@@ -136,6 +136,23 @@ TEST_F(Pipeline, RendersWithAllIntegrators) {
   }
 }
 
+TEST_F(Pipeline, SmoothsGatheredPicturesUnlessTold) {
+  solve_small_room(folder_, "room.h5");
+  const auto is_smoothed = [&](std::vector<std::string> options) {
+    std::vector<std::string> command{"render", path("room.h5"),  "--camera", "front",
+                                     "-o",     path("room.exr"), "--json"};
+    command.insert(command.end(), options.begin(), options.end());
+    return json::parse(output_of(command))["pictures"][0]["smoothed"].get<bool>();
+  };
+  EXPECT_TRUE(is_smoothed({}));
+  EXPECT_FALSE(is_smoothed({"--smooth", "off"}));
+  EXPECT_FALSE(is_smoothed({"--error", "20%"}));
+  EXPECT_TRUE(is_smoothed({"--error", "20%", "--smooth", "on"}));
+  EXPECT_FALSE(is_smoothed({"--integrator", "path"}));
+  EXPECT_TRUE(is_smoothed({"--integrator", "path", "--smooth", "on"}));
+  EXPECT_FALSE(is_smoothed({"--integrator", "zones", "--smooth", "on"}));
+}
+
 TEST_F(Pipeline, RendersAllCamerasIntoAFolder) {
   solve_small_room(folder_, "room.h5");
   const json report = json::parse(output_of({"render", path("room.h5"), "--camera", "all", "--spp", "1",

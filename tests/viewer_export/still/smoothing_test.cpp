@@ -1,6 +1,7 @@
 #include "viewer_export/still/smoothing.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
 
@@ -64,6 +65,11 @@ Noisy noisy_picture(Pixel&& seen_at) {
   return noisy;
 }
 
+void smooth(Noisy& noisy, bool stopped = false) {
+  const std::atomic<bool> flag = stopped;
+  smooth_still(noisy.image, noisy.halves, kFloor, StopToken(flag));
+}
+
 /// Relative deviation from the truth, rms over the pixels with first <= x < last.
 template <class Pixel>
 double rms_error(const StillImage& image, Pixel&& seen_at, int first = 0, int last = kWidth) {
@@ -85,7 +91,7 @@ Seen checkered(int x, int y) {
 TEST(Smoothing, takes_the_grain_out_and_leaves_textures) {
   Noisy noisy = noisy_picture(checkered);
   ASSERT_NEAR(rms_error(noisy.image, checkered), noise_of_picture(), 0.05 * noise_of_picture());
-  smooth_still(noisy.image, noisy.halves, kFloor);
+  smooth(noisy);
   EXPECT_NO_THROW(check_consistent(noisy.image));
   EXPECT_TRUE(noisy.image.smoothed);
   const double left = rms_error(noisy.image, checkered);
@@ -113,7 +119,7 @@ double deviation_of_total(const StillImage& image, double factor) {
 // 4 standard errors: a false alarm once in 16,000 seeds. A bias of 2 % is 10 of them.
 TEST(Smoothing, keeps_the_light_of_the_picture) {
   Noisy noisy = noisy_picture(checkered);
-  smooth_still(noisy.image, noisy.halves, kFloor);
+  smooth(noisy);
   EXPECT_LT(std::abs(deviation_of_total(noisy.image, 1)), 4);
   EXPECT_GT(std::abs(deviation_of_total(noisy.image, 1.02)), 4);
 }
@@ -121,7 +127,7 @@ TEST(Smoothing, keeps_the_light_of_the_picture) {
 TEST(Smoothing, keeps_the_border_of_a_shadow) {
   const auto shadow = [](int x, int /*y*/) { return Seen{.light = x < kWidth / 2 ? 1.0 : 0.4}; };
   Noisy noisy = noisy_picture(shadow);
-  smooth_still(noisy.image, noisy.halves, kFloor);
+  smooth(noisy);
   // At the border itself, one pixel to each side: a mean over both sides would be off by 40 %.
   EXPECT_LT(rms_error(noisy.image, shadow, kWidth / 2 - 1, kWidth / 2 + 1), 0.6 * noise_of_picture());
 }
@@ -140,7 +146,7 @@ TEST(Smoothing, does_not_cross_edges_of_things) {
       return seen;
     };
     Noisy noisy = noisy_picture(sides);
-    smooth_still(noisy.image, noisy.halves, kFloor);
+    smooth(noisy);
     const int at = kWidth / 2;
     double left = 0;
     double right = 0;
@@ -155,7 +161,7 @@ TEST(Smoothing, does_not_cross_edges_of_things) {
 
 TEST(Smoothing, layers_add_up) {
   Noisy noisy = noisy_picture(checkered);
-  smooth_still(noisy.image, noisy.halves, kFloor);
+  smooth(noisy);
   const StillImage& image = noisy.image;
   for (std::size_t k = 0; k < image.radiance.size(); ++k) {
     EXPECT_NEAR(image.direct[k] + image.indirect[k], image.radiance[k], 1e-6F * image.radiance[k]);
@@ -166,18 +172,26 @@ TEST(Smoothing, layers_add_up) {
 TEST(Smoothing, same_bits_on_any_number_of_threads) {
   Noisy one = noisy_picture(checkered);
   Noisy two = noisy_picture(checkered);
-  tbb::task_arena(1).execute([&] { smooth_still(one.image, one.halves, kFloor); });
-  tbb::task_arena(2).execute([&] { smooth_still(two.image, two.halves, kFloor); });
+  tbb::task_arena(1).execute([&] { smooth(one); });
+  tbb::task_arena(2).execute([&] { smooth(two); });
   EXPECT_EQ(one.image.radiance, two.image.radiance);
   EXPECT_EQ(one.image.radiance_stderr, two.image.radiance_stderr);
   EXPECT_EQ(one.image.info.error, two.image.info.error);
+}
+
+TEST(Smoothing, leaves_a_picture_that_somebody_waits_for) {
+  Noisy noisy = noisy_picture(checkered);
+  const std::vector<float> before = noisy.image.radiance;
+  smooth(noisy, true);
+  EXPECT_EQ(noisy.image.radiance, before);
+  EXPECT_FALSE(noisy.image.smoothed);
 }
 
 TEST(Smoothing, leaves_a_picture_whose_noise_nobody_knows) {
   Noisy noisy = noisy_picture(checkered);
   noisy.image.radiance_stderr.clear();
   const std::vector<float> before = noisy.image.radiance;
-  smooth_still(noisy.image, noisy.halves, kFloor);
+  smooth(noisy);
   EXPECT_EQ(noisy.image.radiance, before);
   EXPECT_FALSE(noisy.image.smoothed);
 }
