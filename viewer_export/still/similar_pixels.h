@@ -21,8 +21,10 @@ class SimilarPixels {
   /// Before anything is read.
   void average();
 
+  // In what follows p counts the pixels from the first row on.
+
   /// Of the half `h`, averaged by what the other half chose: irradiance (layer 0), its direct (1) and
-  /// caustic part (2).
+  /// caustic part (2), as StillPlanes::irradiance.
   float mean(std::size_t h, std::size_t layer, std::size_t band, std::size_t p) const {
     return sum_[h][(layer * planes_.bands + band) * size_ + p] / weight_[h][p];
   }
@@ -37,6 +39,7 @@ class SimilarPixels {
   float own_share(std::size_t p) const { return 0.5F * (1 / weight_[0][p] + 1 / weight_[1][p]); }
 
  private:
+  /// Pixels that have a neighbour at the offset looked at, in rows whose patches are needed.
   struct Area {
     int x0, y0, x1, y1;
     std::size_t width() const { return static_cast<std::size_t>(x1 - x0); }
@@ -45,10 +48,10 @@ class SimilarPixels {
     }
   };
 
+  /// Adds to every pixel its neighbour at this offset, as far as both are the same.
   void add_offset(int dx, int dy);
-
   void add_own();
-
+  /// Pixel q of the picture to the sums of p, with weight w.
   void add_value(std::size_t h, std::size_t p, std::size_t q, float w);
 
   /// Squared difference of pixels over what noise explains, mean over bands ([RKZ12] eq. 3).
