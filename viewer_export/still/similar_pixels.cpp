@@ -15,13 +15,12 @@ constexpr float kDepthScale = 0.02F;   ///< Relative difference of depth that do
 
 }  // namespace
 
-SimilarPixels::SimilarPixels(const StillPlanes& planes, const StillImage& image, int first, int last)
+SimilarPixels::SimilarPixels(const StillPlanes& planes, int first, int last)
     : planes_(planes),
-      image_(image),
       first_(first),
       last_(last),
       size_(static_cast<std::size_t>(planes.width) * static_cast<std::size_t>(last - first)),
-      layers_(image.caustic.empty() ? 2 : 3) {
+      layers_(planes.caustic.empty() ? 2 : 3) {
   for (std::size_t h = 0; h < 2; ++h) {
     weight_[h].assign(size_, 0.0F);
     squares_[h].assign(planes.bands * size_, 0.0F);
@@ -53,22 +52,27 @@ void SimilarPixels::add_offset(int dx, int dy) {
 }
 
 void SimilarPixels::add_own() {
-  for (std::size_t h = 0; h < 2; ++h)
-    for (std::size_t p = 0; p < size_; ++p) {
-      weight_[h][p] += 1;
-      add_value(h, p, planes_.at(0, first_) + p, 1);
-    }
+  row_weight_.assign(size_, 1.0F);
+  for (std::size_t h = 0; h < 2; ++h) add_values(h, 0, planes_.at(0, first_), size_);
 }
 
-void SimilarPixels::add_value(std::size_t h, std::size_t p, std::size_t q, float w) {
+void SimilarPixels::add_values(std::size_t h, std::size_t p, std::size_t q, std::size_t count) {
+  const float* w = row_weight_.data();
+  const auto add_plane = [&](std::vector<float>& sums, std::size_t plane, const float* values) {
+    float* sum = &sums[plane * size_ + p];
+    for (std::size_t i = 0; i < count; ++i) sum[i] += w[i] * values[i];
+  };
+  float* weight = &weight_[h][p];
+  for (std::size_t i = 0; i < count; ++i) weight[i] += w[i];
   const std::size_t n = planes_.pixels();
   const std::size_t bands = planes_.bands;
   for (std::size_t b = 0; b < bands; ++b) {
-    sum_[h][b * size_ + p] += w * planes_.irradiance[h][b * n + q];
-    squares_[h][b * size_ + p] += w * w * planes_.variance[b * n + q];
-    const float to_irradiance = w / planes_.scale[b * n + q];
-    sum_[h][(bands + b) * size_ + p] += to_irradiance * image_.direct[q * bands + b];
-    if (layers_ == 3) sum_[h][(2 * bands + b) * size_ + p] += to_irradiance * image_.caustic[q * bands + b];
+    add_plane(sum_[h], b, &planes_.irradiance[h][b * n + q]);
+    add_plane(sum_[h], bands + b, &planes_.direct[b * n + q]);
+    if (layers_ == 3) add_plane(sum_[h], 2 * bands + b, &planes_.caustic[b * n + q]);
+    const float* variance = &planes_.variance[b * n + q];
+    float* squares = &squares_[h][b * size_ + p];
+    for (std::size_t i = 0; i < count; ++i) squares[i] += w[i] * w[i] * variance[i];
   }
 }
 
@@ -137,22 +141,26 @@ float SimilarPixels::distance_of_things(std::size_t p, std::size_t q, int dx, in
 }
 
 void SimilarPixels::add_row(int y, int dx, int dy, const Area& area) {
-  for (int x = area.x0; x < area.x1; ++x) {
-    const std::size_t k = area.at(x, y);
-    if (!(std::min(patches_[0][k], patches_[1][k]) < kFarthest)) continue;
-    const std::size_t from = planes_.at(x, y);
-    const std::size_t q = planes_.at(x + dx, y + dy);
-    const float things = distance_of_things(from, q, dx, dy);
-    if (!(things < kFarthest)) continue;
-    const std::size_t p = from - planes_.at(0, first_);
-    for (std::size_t h = 0; h < 2; ++h) {
-      const float distance = std::max({0.0F, patches_[1 - h][k], things});
-      if (!(distance < kFarthest)) continue;
+  const std::size_t from = planes_.at(area.x0, y);
+  const std::size_t q = planes_.at(area.x0 + dx, y + dy);
+  const std::size_t patch = area.at(area.x0, y);
+  row_things_.resize(area.width());
+  row_weight_.resize(area.width());
+  bool any = false;
+  for (std::size_t i = 0; i < area.width(); ++i) {
+    const bool near = std::min(patches_[0][patch + i], patches_[1][patch + i]) < kFarthest;
+    row_things_[i] = near ? distance_of_things(from + i, q + i, dx, dy) : kFarthest;
+    any = any || row_things_[i] < kFarthest;
+  }
+  if (!any) return;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const float* other = &patches_[1 - h][patch];
+    for (std::size_t i = 0; i < area.width(); ++i) {
+      const float distance = std::min(kFarthest, std::max({0.0F, other[i], row_things_[i]}));
       const float near = 1 - distance / kFarthest;
-      const float w = near * near * near * near;
-      weight_[h][p] += w;
-      add_value(h, p, q, w);
+      row_weight_[i] = near * near * near * near;
     }
+    add_values(h, from - planes_.at(0, first_), q, area.width());
   }
 }
 

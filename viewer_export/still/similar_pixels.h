@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "viewer_export/still/still_image.h"
 #include "viewer_export/still/still_planes.h"
 
 namespace reemit {
@@ -15,8 +14,8 @@ class SimilarPixels {
  public:
   static constexpr int kWindow = 8;  ///< Pixels to each side that a pixel is averaged over.
 
-  /// Rows first .. last-1. Both must outlive it.
-  SimilarPixels(const StillPlanes& planes, const StillImage& image, int first, int last);
+  /// Rows first .. last-1. The planes must outlive it.
+  SimilarPixels(const StillPlanes& planes, int first, int last);
 
   /// Before anything is read.
   void average();
@@ -51,8 +50,8 @@ class SimilarPixels {
   /// Adds to every pixel its neighbour at this offset, as far as both are the same.
   void add_offset(int dx, int dy);
   void add_own();
-  /// Pixel q of the picture to the sums of p, with weight w.
-  void add_value(std::size_t h, std::size_t p, std::size_t q, float w);
+  /// `count` pixels of the picture from q on to the sums from p on, with the weights of row_weight_.
+  void add_values(std::size_t h, std::size_t p, std::size_t q, std::size_t count);
 
   /// Squared difference of pixels over what noise explains, mean over bands ([RKZ12] eq. 3).
   void find_differences(std::size_t h, int dx, int dy, const Area& area);
@@ -67,12 +66,11 @@ class SimilarPixels {
   void add_row(int y, int dx, int dy, const Area& area);
 
   const StillPlanes& planes_;
-  const StillImage& image_;
   int first_, last_;
   std::size_t size_;
   std::size_t layers_;
   std::array<std::vector<float>, 2> weight_, squares_, sum_;
-  std::vector<float> differences_, rows_;
+  std::vector<float> differences_, rows_, row_things_, row_weight_;
   std::array<std::vector<float>, 2> patches_;
 };
 

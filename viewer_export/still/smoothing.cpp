@@ -119,7 +119,7 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
       if (stop.requested()) return;
       const int first = s * kRows;
       const int last = std::min(image.height, first + kRows);
-      SimilarPixels stripe(planes, image, first, last);
+      SimilarPixels stripe(planes, first, last);
       stripe.average();
       smoothed.take(stripe, planes, image, first, last);
     });

@@ -19,6 +19,8 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
   const std::size_t n = image.pixel_count();
   for (std::size_t h = 0; h < 2; ++h) irradiance[h].resize(bands * n);
   scale.resize(bands * n);
+  direct.resize(bands * n);
+  caustic.resize(image.caustic.size());
   variance.resize(bands * n);
   depth.resize(n);
   for (std::size_t b = 0; b < bands; ++b) {
@@ -27,6 +29,8 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
       const std::size_t to = b * n + p;
       scale[to] = std::max(image.albedo[k], kLeastAlbedo);
       for (std::size_t h = 0; h < 2; ++h) irradiance[h][to] = halves[h][k] / scale[to];
+      direct[to] = image.direct[k] / scale[to];
+      if (!caustic.empty()) caustic[to] = image.caustic[k] / scale[to];
       const float error = image.radiance_stderr[k] / scale[to];
       variance[to] = 2 * error * error;  // of a half
     }
