@@ -16,7 +16,8 @@
 namespace reemit {
 namespace {
 
-constexpr int kRows = 16;  ///< Of a stripe, and the size of a block.
+constexpr int kStripe = 16;  ///< Rows that are averaged in one go.
+constexpr int kBlock = 16;   ///< Pixels to a side of a block.
 
 /// What a picture becomes, in the layout of StillImage, and what its errors are made of.
 struct Smoothed {
@@ -85,66 +86,75 @@ double shared_noise(const Smoothed& smoothed, std::size_t bands, std::size_t ban
   return explained > 0 ? std::max(1.0, found / explained) : 1.0;
 }
 
+/// Calls do_pixel(index) for the pixels of the block that begins at (x0,y0).
+template <class DoPixel>
+void for_pixels_of_block(const StillImage& image, int x0, int y0, DoPixel&& do_pixel) {
+  for (int y = y0; y < std::min(image.height, y0 + kBlock); ++y)
+    for (int x = x0; x < std::min(image.width, x0 + kBlock); ++x)
+      do_pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+               static_cast<std::size_t>(x));
+}
+
 /// Relative mean square by which the means of a block are off beyond noise; 0 where noise explains it.
 double misplaced(const StillImage& image, const Smoothed& smoothed, std::size_t band,
                  const std::vector<double>& scales, int x0, int y0) {
   const std::size_t bands = image.bands.count();
   double sum = 0;
   double count = 0;
-  for (int y = y0; y < std::min(image.height, y0 + kRows); ++y)
-    for (int x = x0; x < std::min(image.width, x0 + kRows); ++x, ++count) {
-      const std::size_t p =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
-      const std::size_t k = p * bands + band;
-      const double scale = scales[p] * scales[p];
-      const double noise = std::pow(static_cast<double>(image.radiance_stderr[k]), 2);
-      const double off = static_cast<double>(smoothed.radiance[k]) - static_cast<double>(image.radiance[k]);
-      const double expected = noise * (1 - 2 * static_cast<double>(smoothed.own_share[p])) +
-                              static_cast<double>(smoothed.variance[k]);
-      sum += scale * (off * off - expected);
-    }
+  for_pixels_of_block(image, x0, y0, [&](std::size_t p) {
+    const std::size_t k = p * bands + band;
+    const double scale = scales[p] * scales[p];
+    const double noise = std::pow(static_cast<double>(image.radiance_stderr[k]), 2);
+    const double off = static_cast<double>(smoothed.radiance[k]) - static_cast<double>(image.radiance[k]);
+    const double expected = noise * (1 - 2 * static_cast<double>(smoothed.own_share[p])) +
+                            static_cast<double>(smoothed.variance[k]);
+    sum += scale * (off * off - expected);
+    ++count;
+  });
   return std::max(0.0, sum / count);
+}
+
+/// Adds to the variances of a band what pixels share and what means are off; returns the relative error, rms
+/// over the picture.
+double complete_errors(const StillImage& image, Smoothed& smoothed, std::size_t band, double error_floor) {
+  const std::size_t bands = image.bands.count();
+  const std::vector<double> scales = pixel_scales(smoothed, bands, band, error_floor);
+  const double shared = shared_noise(smoothed, bands, band, scales);
+  double squares = 0;
+  for (int y0 = 0; y0 < image.height; y0 += kBlock)
+    for (int x0 = 0; x0 < image.width; x0 += kBlock) {
+      const double off = misplaced(image, smoothed, band, scales, x0, y0);
+      for_pixels_of_block(image, x0, y0, [&](std::size_t p) {
+        float& variance = smoothed.variance[p * bands + band];
+        const double scale2 = scales[p] * scales[p];
+        const double total = shared * static_cast<double>(variance) + (scale2 > 0 ? off / scale2 : 0);
+        squares += total * scale2;
+        variance = static_cast<float>(total);
+      });
+    }
+  return std::sqrt(squares / static_cast<double>(image.pixel_count()));
 }
 
 }  // namespace
 
 void smooth_still(StillImage& image, const StillHalves& halves, double error_floor, const StopToken& stop) {
   if (image.radiance_stderr.empty()) return;
-  const std::size_t bands = image.bands.count();
   try {
     const StillPlanes planes(image, halves);
     Smoothed smoothed(image);
-    const int stripes = (image.height + kRows - 1) / kRows;
+    const int stripes = (image.height + kStripe - 1) / kStripe;
     tbb::parallel_for(0, stripes, [&](int s) {
       if (stop.requested()) return;
-      const int first = s * kRows;
-      const int last = std::min(image.height, first + kRows);
+      const int first = s * kStripe;
+      const int last = std::min(image.height, first + kStripe);
       SimilarPixels stripe(planes, first, last);
       stripe.average();
       smoothed.take(stripe, planes, image, first, last);
     });
     if (stop.requested()) return;
     image.info.error = 0;
-    for (std::size_t b = 0; b < bands; ++b) {
-      const std::vector<double> scales = pixel_scales(smoothed, bands, b, error_floor);
-      const double shared = shared_noise(smoothed, bands, b, scales);
-      double squares = 0;
-      for (int y0 = 0; y0 < image.height; y0 += kRows)
-        for (int x0 = 0; x0 < image.width; x0 += kRows) {
-          const double off = misplaced(image, smoothed, b, scales, x0, y0);
-          for (int y = y0; y < std::min(image.height, y0 + kRows); ++y)
-            for (int x = x0; x < std::min(image.width, x0 + kRows); ++x) {
-              const std::size_t p = planes.at(x, y);
-              float& variance = smoothed.variance[p * bands + b];
-              const double scale2 = scales[p] * scales[p];
-              const double total = shared * static_cast<double>(variance) + (scale2 > 0 ? off / scale2 : 0);
-              squares += total * scale2;
-              variance = static_cast<float>(total);
-            }
-        }
-      image.info.error =
-          std::max(image.info.error, std::sqrt(squares / static_cast<double>(image.pixel_count())));
-    }
+    for (std::size_t b = 0; b < image.bands.count(); ++b)
+      image.info.error = std::max(image.info.error, complete_errors(image, smoothed, b, error_floor));
     for (std::size_t k = 0; k < image.radiance.size(); ++k) {
       const float caustic = image.caustic.empty() ? 0.0F : smoothed.caustic[k];
       image.indirect[k] = std::max(0.0F, smoothed.radiance[k] - smoothed.direct[k] - caustic);
