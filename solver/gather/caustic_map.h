@@ -21,8 +21,8 @@ namespace reemit {
 /// that are not counted themselves, so that about kPhotons lie in it, within kLargestRadius: a caustic is
 /// blurred by as much, and a photon spreads the power that it has, no more and no less. With a radius of the
 /// point that is asked about, dark points would reach far into the bright edge beside them, and nothing make
-/// up for it. Where a face ends, or something stands on it, the part of the kernel beyond is taken out of the
-/// area, and photons beyond are not counted.
+/// up for it. Where a face ends, or something stands on it, photons beyond are not counted, and a gain of the
+/// photon and one of the point make up for the part of the kernel that is lost there.
 class CausticMap {
  public:
   static constexpr int kPhotons = 160;             ///< In the radius, of all parts together.
@@ -52,6 +52,7 @@ class CausticMap {
     CausticPhotons all;
     std::vector<float> radius;              ///< By photon; empty for those that set radii.
     std::vector<std::uint8_t> beside_wall;  ///< By photon: something stands on the face within its radius.
+    std::vector<float> gain;                ///< By photon: gain_at_end of its place.
     /// Of the photons of all radii down to half that of the level; of those that set radii, of all.
     std::array<PhotonGrid, kLevels> grids;
   };
@@ -63,8 +64,8 @@ class CausticMap {
 
   float radius_at(const Vec3f& normal, const Vec3f& place) const;
   bool is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const;
-  bool is_inside_triangle(const SurfacePoint& x, float radius) const;
-  float share_on_face(const SurfacePoint& x, const Vec3f& place, float radius, float turn) const;
+  bool is_inside_triangle(TriangleId triangle, const Vec3f& place, float radius) const;
+  float gain_at_end(const Vec3f& normal, const Vec3f& place, float radius, float turn) const;
 
   const Room* room_ = nullptr;
   std::vector<float> left_to_rays_;  // by surface

@@ -21,6 +21,7 @@ constexpr std::uint32_t kMostSteps = 1024;
 void append(CausticPhotons& all, const CausticPhotons& more) {
   all.places.insert(all.places.end(), more.places.begin(), more.places.end());
   all.normals.insert(all.normals.end(), more.normals.begin(), more.normals.end());
+  all.triangles.insert(all.triangles.end(), more.triangles.begin(), more.triangles.end());
   all.luminaires.insert(all.luminaires.end(), more.luminaires.begin(), more.luminaires.end());
   all.power.insert(all.power.end(), more.power.begin(), more.power.end());
 }
@@ -119,6 +120,7 @@ void CausticShooter::follow(const Vec3f& origin, const Vec3f& direction, std::ui
     if (bent && std::any_of(reflectance, reflectance + bands, [](float rho) { return rho > 0; })) {
       result.places.push_back(from + hit.distance * along);
       result.normals.push_back(x.normal);
+      result.triangles.push_back(hit.triangle);
       result.luminaires.push_back(luminaire);
       result.power.insert(result.power.end(), power.begin(), power.end());
     }

@@ -14,6 +14,7 @@ struct CausticPhotons {
   std::vector<Vec3f> places;          ///< Normalised.
   std::vector<Vec3f> normals;         ///< Unit, of the side that was met.
   std::vector<float> power;           ///< [photon * bands + band] [W]
+  std::vector<TriangleId> triangles;  ///< That was met.
   std::vector<SurfaceId> luminaires;  ///< That they come from; not valid for lights without area.
 
   std::size_t size() const { return places.size(); }

@@ -20,6 +20,14 @@ class PhotonGrid {
   /// same order each time.
   template <class Use>
   void visit(const Vec3f& place, float radius, const Use& use) const {
+    visit_while(place, radius, [&use](std::uint32_t number, float d2) {
+      use(number, d2);
+      return true;
+    });
+  }
+  /// The same as long as `use` returns true.
+  template <class Use>
+  void visit_while(const Vec3f& place, float radius, const Use& use) const {
     if (table_.empty()) return;
     const float r2 = radius * radius;
     std::array<std::int64_t, 3> low{};
@@ -31,7 +39,9 @@ class PhotonGrid {
       for (std::size_t slot = slot_of(key); table_[slot].end != 0; slot = (slot + 1) & (table_.size() - 1)) {
         if (table_[slot].key != key) continue;
         for (std::uint32_t i = table_[slot].begin; i < table_[slot].end; ++i)
-          if (const float d2 = (points_[i].place - place).squaredNorm(); d2 < r2) use(points_[i].number, d2);
+          if (const float d2 = (points_[i].place - place).squaredNorm();
+              d2 < r2 && !use(points_[i].number, d2))
+            return;
         break;
       }
     }
