@@ -27,6 +27,7 @@ struct VertexEffort {
   std::uint64_t packets;
   int gather_rays;
   int light_samples;
+  bool smooth = false;
 };
 
 /// Packets that the zones need when their mean is all there is.
@@ -110,8 +111,11 @@ class VertexCurves {
     const bool leave_out = options_.quick;
     if (level + (leave_out ? 1 : 0) < kAveragePackets.size())
       measure("zones averaged", seed, level, {kAveragePackets[level], 0, 0});
-    if (level + (leave_out ? 1 : 0) < kVertexEfforts.size())
-      measure("gathered", seed, level, kVertexEfforts[level]);
+    if (level + (leave_out ? 1 : 0) >= kVertexEfforts.size()) return;
+    VertexEffort effort = kVertexEfforts[level];
+    measure("gathered", seed, level, effort);
+    effort.smooth = true;
+    measure("gathered and smoothed", seed, level, effort);
   }
 
  private:
@@ -131,12 +135,21 @@ class VertexCurves {
     const Room walls(room_.scene, solution.mesh);
     const VertexRings rings(walls.surfaces(), solution, false);
     vertex_count_ = rings.size();
+    std::vector<VertexKey> keys;
+    std::map<VertexKey, int> uses;
+    for (std::size_t v = 0; v < rings.size(); ++v) {
+      keys.push_back(
+          key_of(rings.positions()[v], rings.normals()[v], mesh_.mesh.zone_surface(rings.begin(v)->zone)));
+      ++uses[keys.back()];
+    }
     std::vector<std::size_t> chosen;
     for (std::size_t v = 0; v < rings.size(); v += static_cast<std::size_t>(room_.vertex_stride)) {
+      // Along the foot of a thing the floor has a vertex on either side, one of them dark.
+      if (uses[keys[v]] > 1) continue;
       const ZoneId zone = rings.begin(v)->zone;
       chosen.push_back(v);
       norm_.weight.push_back(rings.area(v));
-      keys_.push_back(key_of(rings.positions()[v], rings.normals()[v], mesh_.mesh.zone_surface(zone)));
+      keys_.push_back(keys[v]);
       for (std::size_t b = 0; b < room_.scene.bands.count(); ++b)
         emitted_.push_back(static_cast<float>(solution.emitted_radiosity(zone, b) / std::numbers::pi));
     }
@@ -179,6 +192,7 @@ class VertexCurves {
     if (!vertices.average_zones) {
       vertices.gather_rays = effort.gather_rays;
       vertices.light_samples = effort.light_samples;
+      vertices.smooth = effort.smooth;
     }
     MeshResult own_mesh = mesh_;
     VertexData data;

@@ -35,7 +35,8 @@ struct ExportOptions {
   std::vector<std::filesystem::path> outputs;  ///< At least one; all hold the same values.
   VertexSettings vertex;
   bool form_factors = false;
-  bool photometric = false;  ///< Write lx and cd/m2 instead of W/m2 and W/(m2 sr).
+  bool photometric = false;    ///< Write lx and cd/m2 instead of W/m2 and W/(m2 sr).
+  std::optional<bool> smooth;  ///< Unset: gathered vertices without an error target.
   ToneMapSettings tone_map;
   OutputStyle style;
 };
@@ -49,6 +50,7 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
                                 {"values", options.vertex.average_zones ? "zones" : "gather"},
                                 {"vertices", data.vertex_count()},
                                 {"triangles", data.triangles.size()},
+                                {"smoothed", data.smoothed},
                                 {"error", known_error(data.info)},
                                 {"seconds", seconds}};
     add_zones(json, data.info.zones);
@@ -58,9 +60,9 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
   std::string names;
   for (const std::filesystem::path& output : options.outputs)
     names += (names.empty() ? "" : ", ") + output.string();
-  print_result(fmt::format("{}: {} vertices, {} triangles, noise {}, zones {}, {:.2f} s\n", names,
-                           data.vertex_count(), data.triangles.size(), percent_text(known_error(data.info)),
-                           zones_text(data.info.zones), seconds));
+  print_result(fmt::format("{}: {} vertices, {} triangles{}, noise {}, zones {}, {:.2f} s\n", names,
+                           data.vertex_count(), data.triangles.size(), data.smoothed ? ", smoothed" : "",
+                           percent_text(known_error(data.info)), zones_text(data.info.zones), seconds));
 }
 
 /// Refuses unknown formats, files that cannot be written and one file given twice before the work.
@@ -181,6 +183,10 @@ void add_export_command(CLI::App& program, Action& action) {
   form_factors->excludes(add_integer_option(command, "--light-samples", options->vertex.light_samples, 1,
                                             65536, "Shadow rays per vertex, rounded up")
                              ->excludes(error));
+  form_factors->excludes(add_choice_option<std::optional<bool>>(
+      command, "--smooth", options->smooth, {{"auto", std::nullopt}, {"on", true}, {"off", false}},
+      "Take noise out: every vertex becomes a fit to those around it that agree within\n"
+      "their noise; auto: gathered vertices without --error"));
   form_factors->excludes(
       command.add_flag("--all-zones", options->vertex.all_zones,
                        "Keep the backs of surfaces that no light reached and that do not emit"));
@@ -193,7 +199,12 @@ void add_export_command(CLI::App& program, Action& action) {
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);
   add_progress_options(command, options->style);
-  command.callback([options, &action] { action = [options] { return run_export(*options); }; });
+  command.callback([options, &action] {
+    const bool is_gathered = !options->vertex.average_zones;
+    options->vertex.smooth =
+        options->smooth.value_or(is_gathered && options->vertex.error_target == 0) && is_gathered;
+    action = [options] { return run_export(*options); };
+  });
 }
 
 }  // namespace reemit::cli

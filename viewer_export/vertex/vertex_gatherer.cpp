@@ -71,6 +71,35 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
   for (std::size_t v = first; v < last; ++v) store(v, means + (v - first) * values_per_vertex(), data);
 }
 
+VertexLayers VertexGatherer::new_layers() const {
+  VertexLayers layers(has_caustics_ ? 3 : 2);
+  for (VertexLayer& layer : layers) {
+    for (std::vector<float>& half : layer.half) half.resize(rings_.size() * bands_);
+    layer.variance.resize(rings_.size() * bands_);
+  }
+  return layers;
+}
+
+void VertexGatherer::take_apart(std::size_t first, std::size_t last, const float* means,
+                                VertexLayers& layers) const {
+  for (std::size_t v = first; v < last; ++v, means += values_per_vertex())
+    for (std::size_t l = 0; l < layers.size(); ++l)
+      for (std::size_t b = 0; b < bands_; ++b) {
+        const double scale = l == 0 ? 1 : std::numbers::pi;  // direct light is kept as irradiance
+        const auto value = [&](std::size_t r) {
+          return scale * static_cast<double>(means[r * values_per_replicate() + l * bands_ + b]);
+        };
+        const std::size_t k = v * bands_ + b;
+        for (std::size_t h = 0; h < 2; ++h) {
+          double sum = 0;
+          for (std::size_t r = h; r < kReplicates; r += 2) sum += value(r);
+          layers[l].half[h][k] = static_cast<float>(2 * sum / kReplicates);
+        }
+        layers[l].variance[k] =
+            static_cast<float>(2 * mean_of_replicates(kReplicates, field_.parts(), value).squared_error);
+      }
+}
+
 std::optional<ZoneBias> VertexGatherer::zone_bias(const VertexData& data, double rays) const {
   std::vector<double> power(bands_, 0.0);  // reflected radiance times area
   SurfaceModel::PointValues at_vertex;

@@ -7,6 +7,7 @@
 #include "solver/gather/replicate_gather.h"
 #include "solver/solution/zone_bias.h"
 #include "viewer_export/vertex/vertex_data.h"
+#include "viewer_export/vertex/vertex_layers.h"
 #include "viewer_export/vertex/vertex_radiance.h"
 #include "viewer_export/vertex/vertex_ring.h"
 
@@ -35,6 +36,8 @@ class VertexGatherer {
   const RadianceField& field() const { return field_; }
   /// Self-emitted radiance of the surface a vertex belongs to, one number per band [W/(m2 sr)].
   const float* emitted(std::size_t v, SurfaceModel::PointValues& here) const;
+  /// Share of the light on the other side that comes through at a vertex; null where none does.
+  const Spectrum* diffuse_transmittance(std::size_t v) const;
   /// Replicates of one vertex take this many numbers in `means` below.
   std::size_t values_per_vertex() const { return kReplicates * values_per_replicate(); }
 
@@ -45,6 +48,10 @@ class VertexGatherer {
   /// the values of these vertices in `data`.
   void gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
               VertexData& data) const;
+  /// Empty layers of all vertices, for the next.
+  VertexLayers new_layers() const;
+  /// Takes the light that reaches the side of vertices first .. last-1 apart; `means` as gather left them.
+  void take_apart(std::size_t first, std::size_t last, const float* means, VertexLayers& layers) const;
 
   /// What the zones do to the gathered values of `data`, relative as VertexSettings::error_target: at places
   /// beside vertices all over the room, with about two per cent of the `rays` that the values took.
@@ -54,8 +61,6 @@ class VertexGatherer {
   SurfacePoint point_beside(std::size_t v, const std::array<float, 2>& u) const;
   std::size_t values_per_side() const { return (has_caustics_ ? 3 : 2) * bands_; }
   std::size_t values_per_replicate() const { return (is_translucent_ ? 2 : 1) * values_per_side(); }
-  /// Share of the light on the other side that comes through at a vertex; null where none does.
-  const Spectrum* diffuse_transmittance(std::size_t v) const;
   void store(std::size_t v, const float* means, VertexData& data) const;
 
   const Room& room_;

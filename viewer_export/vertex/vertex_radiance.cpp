@@ -17,6 +17,7 @@
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_refinement.h"
 #include "viewer_export/vertex/vertex_ring.h"
+#include "viewer_export/vertex/vertex_smoothing.h"
 
 namespace reemit {
 namespace {
@@ -131,7 +132,7 @@ VertexData make_vertices(const Scene& scene, const Solution& solution, const Ver
   return data;
 }
 
-void describe(const Scene& scene, const Solution& solution, const VertexSettings& settings,
+void describe(const Scene& scene, const Solution& solution, const VertexSettings& settings, bool smoothed,
               ExportInfo& info) {
   info.program_version = solution.program_version;
   info.room = scene.source.empty() ? scene.name : scene.source;
@@ -140,6 +141,7 @@ void describe(const Scene& scene, const Solution& solution, const VertexSettings
   if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
   info.settings.emplace_back("vertex values", settings.average_zones ? "zone averages" : "final gather");
   if (settings.average_zones) return;
+  if (smoothed) info.settings.emplace_back("smoothed", "over vertices that agree within their noise");
   info.settings.emplace_back("gather rays", static_cast<std::uint64_t>(settings.gather_rays));
   info.settings.emplace_back("light samples", static_cast<std::uint64_t>(settings.light_samples));
   info.settings.emplace_back("gather seed", settings.seed);
@@ -176,12 +178,13 @@ VertexData gather_vertices(const Room& room, const Solution& solution, const Ver
     } else {
       VertexRefinement refinement(gatherer, rings, settings, progress, interrupt, data);
       refinement.run();
+      if (settings.smooth) smooth_vertices(gatherer, rings, refinement.layers(), StopToken(interrupt), data);
       if (!interrupt)
         data.info.zones = gatherer.zone_bias(data, static_cast<double>(rings.size()) * settings.gather_rays);
     }
     data.info.error = relative_error(gatherer, rings, data);
   });
-  describe(scene, solution, settings, data.info);
+  describe(scene, solution, settings, data.smoothed, data.info);
   return data;
 }
 

@@ -14,6 +14,8 @@ struct VertexSettings {
   /// Take the area-weighted mean of the zones around a vertex instead of gathering there: quick, but as
   /// coarse as the zones.
   bool average_zones = false;
+  /// Take the noise out of what was gathered (smooth_vertices). With an error target that is reached before.
+  bool smooth = false;
   /// Keep the backs of surfaces that no light reached and that do not emit.
   bool all_zones = false;
   int gather_rays = 512;    ///< Per vertex, rounded up [1, 1048576].

@@ -61,6 +61,7 @@ VertexRefinement::VertexRefinement(const VertexGatherer& gatherer, const VertexR
       progress_(progress),
       interrupt_(interrupt),
       data_(data),
+      layers_(settings.smooth ? gatherer.new_layers() : VertexLayers()),
       chunks_((rings.size() + kChunk - 1) / kChunk) {}
 
 int VertexRefinement::most_points(const VertexSettings& settings) {
@@ -86,6 +87,7 @@ void VertexRefinement::run_once() {
   for_chunks([&](std::size_t c) {
     std::vector<float> means((last(c) - first(c)) * gatherer_.values_per_vertex(), 0.0F);
     gatherer_.gather(first(c), last(c), block, means.data(), data_);
+    gatherer_.take_apart(first(c), last(c), means.data(), layers_);
   });
 }
 
@@ -102,6 +104,9 @@ void VertexRefinement::run_to_target() {
     points += block.count;
     if (interrupt_ || !choose_active(parts)) break;
   }
+  for_chunks([&](std::size_t c) {
+    gatherer_.take_apart(first(c), last(c), &means[first(c) * gatherer_.values_per_vertex()], layers_);
+  });
   data_.limited_by_zones = !interrupt_ && relative_error(gatherer_, rings_, data_) > settings_.error_target &&
                            std::any_of(parts.begin(), parts.end(), std::mem_fn(&RefinedPart::is_stalled));
 }

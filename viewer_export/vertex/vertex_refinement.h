@@ -28,6 +28,8 @@ class VertexRefinement {
 
   /// Gathers all vertices, with the samples asked for or until the error target is reached.
   void run();
+  /// What was gathered, taken apart, if vertices are to be smoothed; else empty.
+  const VertexLayers& layers() const { return layers_; }
 
  private:
   void run_once();
@@ -45,6 +47,7 @@ class VertexRefinement {
   const VertexProgressCallback& progress_;
   const std::atomic<bool>& interrupt_;
   VertexData& data_;
+  VertexLayers layers_;  // empty unless vertices are to be smoothed
   std::size_t chunks_;
   double share_done_ = 0;
   std::mutex progress_mutex_;

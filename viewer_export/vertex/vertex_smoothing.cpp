@@ -1,0 +1,377 @@
+#include "viewer_export/vertex/vertex_smoothing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "solver/reflect/lambert.h"
+#include "viewer_export/output/smoothing_errors.h"
+#include "viewer_export/vertex/vertex_neighbours.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::size_t kHops = 5;  ///< Edges to each side that are looked at: some 90 vertices.
+/// Vertices that have the errors of their means looked at together.
+constexpr std::size_t kGroup = 64;
+
+/// The vertices around one, nearer ones first, with their places in its tangent plane.
+struct Surrounding {
+  std::vector<std::uint32_t> vertices;        ///< The vertex itself first.
+  std::array<std::size_t, kHops + 1> upto{};  ///< How many are within so many edges.
+  std::vector<double> x, y;
+};
+
+/// Finds surroundings; one for each thread.
+class Surroundings {
+ public:
+  Surroundings(const VertexRings& rings, const VertexNeighbours& neighbours)
+      : rings_(rings), neighbours_(neighbours), seen_in_(rings.size(), 0) {}
+
+  const Surrounding& of(std::size_t v) {
+    /// Least cosine to the normal of the vertex.
+    constexpr double kSameWay = 0.8;
+    found_.vertices.assign(1, static_cast<std::uint32_t>(v));
+    ++visit_;
+    seen_in_[v] = visit_;
+    found_.upto[0] = 1;
+    const Vec3& normal = rings_.normals()[v];
+    std::size_t next = 0;
+    for (std::size_t hop = 1; hop <= kHops; ++hop) {
+      for (const std::size_t end = found_.vertices.size(); next < end; ++next)
+        for (const std::uint32_t q : neighbours_.of(found_.vertices[next])) {
+          if (seen_in_[q] == visit_) continue;
+          seen_in_[q] = visit_;
+          if (rings_.normals()[q].dot(normal) > kSameWay) found_.vertices.push_back(q);
+        }
+      found_.upto[hop] = found_.vertices.size();
+    }
+    const Vec3 along = normal.unitOrthogonal();
+    const Vec3 across = normal.cross(along);
+    found_.x.clear();
+    found_.y.clear();
+    for (const std::uint32_t q : found_.vertices) {
+      const Vec3 d = rings_.positions()[q] - rings_.positions()[v];
+      found_.x.push_back(d.dot(along));
+      found_.y.push_back(d.dot(across));
+    }
+    return found_;
+  }
+
+ private:
+  const VertexRings& rings_;
+  const VertexNeighbours& neighbours_;
+  Surrounding found_;
+  std::uint64_t visit_ = 0;
+  std::vector<std::uint64_t> seen_in_;  // by vertex: the visit that found it last
+};
+
+/// How values around a vertex make up that at the vertex of a smooth function fitted to them: a polynomial of
+/// the place whose coefficients these are.
+struct FitWeights {
+  Eigen::Matrix<double, 6, 1> c = Eigen::Matrix<double, 6, 1>::Zero();
+
+  static Eigen::Matrix<double, 6, 1> terms(double x, double y) {
+    Eigen::Matrix<double, 6, 1> t;
+    t << 1, x, y, x * x, x * y, y * y;
+    return t;
+  }
+  double at(double x, double y) const { return c.dot(terms(x, y)); }
+  /// Sum of the squares of all weights, and the weight of the vertex itself.
+  double constant() const { return c[0]; }
+};
+
+/// Of the first `count` of a surrounding: a surface of second order where there are enough, else a plane, or
+/// where points have none, their mean.
+FitWeights fit_weights(const Surrounding& around, std::size_t count) {
+  constexpr std::size_t kForPlane = 5;
+  constexpr std::size_t kForSecondOrder = 12;
+  constexpr double kThin = 1e-6;  // of the moments of points that determine no such function
+  double size = 0;
+  for (std::size_t i = 0; i < count; ++i) size = std::max(size, std::hypot(around.x[i], around.y[i]));
+  Eigen::Matrix<double, 6, 6> moments = Eigen::Matrix<double, 6, 6>::Zero();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto t = FitWeights::terms(around.x[i] / size, around.y[i] / size);
+    moments += t * t.transpose();
+  }
+  FitWeights weights;
+  for (const int terms : {6, 3}) {
+    if (!(size > 0) || count < (terms == 6 ? kForSecondOrder : kForPlane)) continue;
+    const Eigen::LDLT<Eigen::MatrixXd> solver(moments.topLeftCorner(terms, terms));
+    if (!(solver.vectorD().minCoeff() > kThin * static_cast<double>(count))) continue;
+    weights.c.head(terms) = solver.solve(Eigen::VectorXd::Unit(terms, 0));
+    for (int k = 1; k < terms; ++k) weights.c[k] /= k < 3 ? size : size * size;
+    return weights;
+  }
+  weights.c[0] = 1 / static_cast<double>(count);
+  return weights;
+}
+
+/// Fits over surroundings of so many edges to each side, from none to kHops.
+constexpr std::size_t kFits = kHops + 1;
+
+/// A fit as weights of the first vertices of a surrounding.
+struct Fit {
+  std::vector<float> weight;
+  float constant = 1;  ///< FitWeights::constant
+};
+
+void find_fit(const Surrounding& around, std::size_t hops, Fit& fit) {
+  const FitWeights weights = fit_weights(around, around.upto[hops]);
+  fit.constant = static_cast<float>(weights.constant());
+  fit.weight.resize(around.upto[hops]);
+  for (std::size_t i = 0; i < fit.weight.size(); ++i)
+    fit.weight[i] = static_cast<float>(weights.at(around.x[i], around.y[i]));
+}
+
+/// Fits of a layer: judged at all vertices, then chosen, then kept.
+class LayerFits {
+ public:
+  LayerFits(const VertexLayer& layer, std::size_t vertices, std::size_t bands)
+      : layer_(layer),
+        bands_(bands),
+        squared_error_(vertices * kFits),
+        best_(vertices),
+        variance_(vertices * bands),
+        covariance_(vertices * bands) {
+    for (std::vector<float>& of_half : half_) of_half.resize(vertices * bands);
+  }
+
+  /// By how much the fits over `hops` edges to one half miss the values of the other, less the noise of
+  /// these.
+  void judge(std::size_t v, std::size_t hops, const Surrounding& around, const Fit& fit) {
+    float sum = 0;
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const std::size_t own = v * bands_ + b;
+      const float first = value(0, b, around, fit) - layer_.half[1][own];
+      const float second = value(1, b, around, fit) - layer_.half[0][own];
+      sum += 0.5F * (first * first + second * second) - layer_.variance[own];
+    }
+    squared_error_[v * kFits + hops] = sum;
+  }
+  /// Chooses the fit whose errors are least in the nearer part of the surrounding, those of vertices as noisy
+  /// as those next to it or more in units of their own noise. Where there is no noise values stay: in full
+  /// shadow no replicate differs from 0.
+  void choose(std::size_t v, const Surrounding& around) {
+    float typical_noise = 0;
+    for (std::size_t i = 0; i < around.upto[1]; ++i)
+      typical_noise += noise(around.vertices[i]) / static_cast<float>(around.upto[1]);
+    if (typical_noise == 0) return;
+    std::array<double, kFits> error{};
+    for (std::size_t i = 0; i < around.upto[kJudged]; ++i) {
+      const std::size_t q = around.vertices[i];
+      const float weight = 1 / (typical_noise + noise(q));
+      for (std::size_t hops = 0; hops < kFits; ++hops)
+        error[hops] += static_cast<double>(weight * squared_error_[q * kFits + hops]);
+    }
+    best_[v] = static_cast<std::uint8_t>(std::min_element(error.begin(), error.end()) - error.begin());
+  }
+  std::size_t chosen(std::size_t v) const { return best_[v]; }
+  void keep(std::size_t v, const Surrounding& around, const Fit& fit) {
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const std::size_t own = v * bands_ + b;
+      for (std::size_t h = 0; h < 2; ++h) half_[h][own] = value(h, b, around, fit);
+      float variance = 0;
+      for (std::size_t i = 0; i < fit.weight.size(); ++i)
+        variance += fit.weight[i] * fit.weight[i] * layer_.variance[around.vertices[i] * bands_ + b];
+      variance_[own] = 0.5F * variance;
+      covariance_[own] = 0.5F * fit.constant * layer_.variance[own];
+    }
+  }
+
+  float half(std::size_t h, std::size_t v, std::size_t band) const { return half_[h][v * bands_ + band]; }
+  /// Of the mean of both halves, of noise that vertices do not share.
+  float variance(std::size_t v, std::size_t band) const { return variance_[v * bands_ + band]; }
+  /// Of that mean with the value as gathered.
+  float covariance(std::size_t v, std::size_t band) const { return covariance_[v * bands_ + band]; }
+
+ private:
+  static constexpr std::size_t kJudged = 3;  ///< Edges to each side within which fits are judged.
+
+  float value(std::size_t h, std::size_t band, const Surrounding& around, const Fit& fit) const {
+    float sum = 0;
+    for (std::size_t i = 0; i < fit.weight.size(); ++i)
+      sum += fit.weight[i] * layer_.half[h][around.vertices[i] * bands_ + band];
+    return sum;
+  }
+  /// Variance of a half, all bands together.
+  float noise(std::size_t v) const {
+    const float* own = &layer_.variance[v * bands_];
+    return std::accumulate(own, own + bands_, 0.0F);
+  }
+
+  const VertexLayer& layer_;
+  std::size_t bands_;
+  std::vector<float> squared_error_;        // by vertex and fit: an estimate, which may be below 0
+  std::vector<std::uint8_t> best_;          // by vertex: edges of the fit that is chosen
+  std::array<std::vector<float>, 2> half_;  // by vertex and band, as the following
+  std::vector<float> variance_, covariance_;
+};
+
+/// What becomes of all vertices, as VertexData has them.
+struct SmoothVertices {
+  explicit SmoothVertices(const VertexData& data)
+      : radiance(data.radiance.size()),
+        irradiance(data.irradiance.size()),
+        direct(data.radiance.size()),
+        caustic(data.caustic_radiance.size()) {}
+
+  SmoothedValues radiance;
+  std::vector<float> irradiance, direct, caustic;
+};
+
+class Smoothing {
+ public:
+  Smoothing(const VertexGatherer& gatherer, const VertexRings& rings, const VertexLayers& layers,
+            const StopToken& stop)
+      : gatherer_(gatherer),
+        rings_(rings),
+        bands_(gatherer.field().band_count()),
+        neighbours_(rings.size(), rings.triangles()) {
+    tbb::enumerable_thread_specific<Surroundings> surroundings(
+        [this] { return Surroundings(rings_, neighbours_); });
+    const auto for_vertices = [&](auto&& function) {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rings.size(), kGroup), [&](const auto& range) {
+        Surroundings& of_thread = surroundings.local();
+        for (std::size_t v = range.begin(); v != range.end() && !stop.requested(); ++v)
+          function(v, of_thread.of(v));
+      });
+    };
+    for (const VertexLayer& layer : layers) fits_.emplace_back(layer, rings.size(), bands_);
+    for_vertices([&](std::size_t v, const Surrounding& around) {
+      Fit fit;
+      for (std::size_t hops = 0; hops < kFits; ++hops) {
+        find_fit(around, hops, fit);
+        for (LayerFits& fits : fits_) fits.judge(v, hops, around, fit);
+      }
+    });
+    for_vertices([&](std::size_t v, const Surrounding& around) {
+      Fit fit;
+      for (LayerFits& fits : fits_) {
+        fits.choose(v, around);
+        find_fit(around, fits.chosen(v), fit);
+        fits.keep(v, around, fit);
+      }
+    });
+  }
+
+  void store(const VertexData& before, SmoothVertices& result) const {
+    for (std::size_t v = 0; v < rings_.size(); ++v)
+      if (gatherer_.diffuse_transmittance(v) == nullptr)
+        store(v, result);
+      else
+        keep(v, before, result);
+  }
+
+ private:
+  void store(std::size_t v, SmoothVertices& result) const {
+    SurfaceModel::PointValues emission_here;
+    SurfaceModel::PointValues reflectance_here;
+    const float* own = gatherer_.emitted(v, emission_here);
+    const float* reflectance =
+        gatherer_.field().room().surfaces().reflectance(rings_.point(v), reflectance_here);
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const std::size_t k = v * bands_ + b;
+      const auto brdf = static_cast<float>(lambert_brdf_per_sr(reflectance[b]));
+      std::array<float, 2> half{};
+      float variance = 0;
+      float covariance = 0;
+      for (const LayerFits& fits : fits_) {
+        for (std::size_t h = 0; h < 2; ++h) half[h] += fits.half(h, v, b);
+        variance += fits.variance(v, b);
+        covariance += fits.covariance(v, b);
+      }
+      // What is fitted through noise may pass below 0.
+      const float all = std::max(0.0F, 0.5F * (half[0] + half[1]));
+      const auto part = [&](std::size_t layer) {
+        return brdf * std::clamp(0.5F * (fits_[layer].half(0, v, b) + fits_[layer].half(1, v, b)), 0.0F, all);
+      };
+      result.irradiance[k] = all;
+      result.radiance.value[k] = own[b] + brdf * all;
+      result.radiance.variance[k] = brdf * brdf * variance;
+      result.radiance.covariance[k] = brdf * brdf * covariance;
+      result.radiance.halves_apart[k] = 0.5F * brdf * (half[0] - half[1]);
+      result.direct[k] = part(0);
+      if (!result.caustic.empty()) result.caustic[k] = part(2);
+    }
+  }
+  void keep(std::size_t v, const VertexData& before, SmoothVertices& result) const {
+    for (std::size_t k = v * bands_; k < (v + 1) * bands_; ++k) {
+      result.irradiance[k] = before.irradiance[k];
+      result.radiance.value[k] = before.radiance[k];
+      result.radiance.variance[k] = before.radiance_stderr[k] * before.radiance_stderr[k];
+      result.radiance.covariance[k] = result.radiance.variance[k];
+      result.direct[k] = before.direct_radiance[k];
+      if (!result.caustic.empty()) result.caustic[k] = before.caustic_radiance[k];
+    }
+  }
+
+  const VertexGatherer& gatherer_;
+  const VertexRings& rings_;
+  std::size_t bands_;
+  VertexNeighbours neighbours_;
+  std::vector<LayerFits> fits_;  // by layer
+};
+
+/// Errors are taken relative to what is reflected, in the dark to this share of the mean.
+constexpr double kDark = 0.1;
+
+std::vector<double> relative_scales(const VertexGatherer& gatherer, const VertexRings& rings,
+                                    const SmoothedValues& radiance, std::size_t bands, std::size_t band) {
+  SurfaceModel::PointValues here;
+  const auto reflected = [&](std::size_t v) {
+    return static_cast<double>(radiance.value[v * bands + band]) -
+           static_cast<double>(gatherer.emitted(v, here)[band]);
+  };
+  double power = 0;
+  double area = 0;
+  for (std::size_t v = 0; v < rings.size(); ++v) {
+    power += rings.area(v) * reflected(v);
+    area += rings.area(v);
+  }
+  std::vector<double> scales(rings.size(), 0.0);
+  for (std::size_t v = 0; v < scales.size(); ++v)
+    if (const double seen = reflected(v) + kDark * power / area; seen > 0) scales[v] = 1 / seen;
+  return scales;
+}
+
+}  // namespace
+
+void smooth_vertices(const VertexGatherer& gatherer, const VertexRings& rings, const VertexLayers& layers,
+                     const StopToken& stop, VertexData& data) {
+  const Smoothing smoothing(gatherer, rings, layers, stop);
+  if (stop.requested()) return;
+  SmoothVertices smooth(data);
+  smoothing.store(data, smooth);
+  const std::size_t bands = data.bands.count();
+  for (std::size_t b = 0; b < bands; ++b) {
+    const std::vector<double> scales = relative_scales(gatherer, rings, smooth.radiance, bands, b);
+    SmoothingErrors errors(smooth.radiance, bands, b, scales);
+    std::vector<std::size_t> group;
+    for (std::size_t v = 0; v < rings.size(); ++v) {
+      group.push_back(v);
+      if (group.size() < kGroup && v + 1 < rings.size()) continue;
+      errors.complete(group, data.radiance, data.radiance_stderr);
+      group.clear();
+    }
+  }
+  for (std::size_t k = 0; k < data.radiance.size(); ++k)
+    data.radiance_stderr[k] = std::sqrt(smooth.radiance.variance[k]);
+  data.radiance = std::move(smooth.radiance.value);
+  data.irradiance = std::move(smooth.irradiance);
+  data.direct_radiance = std::move(smooth.direct);
+  data.caustic_radiance = std::move(smooth.caustic);
+  data.smoothed = true;
+}
+
+}  // namespace reemit
