@@ -9,130 +9,24 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Dense>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "solver/reflect/lambert.h"
 #include "viewer_export/output/smoothing_errors.h"
+#include "viewer_export/vertex/surrounding_fit.h"
 #include "viewer_export/vertex/vertex_neighbours.h"
+#include "viewer_export/vertex/vertex_surroundings.h"
 
 namespace reemit {
 namespace {
 
-constexpr std::size_t kHops = 5;  ///< Edges to each side that are looked at: some 90 vertices.
 /// Vertices that have the errors of their means looked at together.
 constexpr std::size_t kGroup = 64;
 
-/// The vertices around one, nearer ones first, with their places in its tangent plane.
-struct Surrounding {
-  std::vector<std::uint32_t> vertices;        ///< The vertex itself first.
-  std::array<std::size_t, kHops + 1> upto{};  ///< How many are within so many edges.
-  std::vector<double> x, y;
-};
-
-/// Finds surroundings; one for each thread.
-class Surroundings {
- public:
-  Surroundings(const VertexRings& rings, const VertexNeighbours& neighbours)
-      : rings_(rings), neighbours_(neighbours), seen_in_(rings.size(), 0) {}
-
-  const Surrounding& of(std::size_t v) {
-    /// Least cosine to the normal of the vertex.
-    constexpr double kSameWay = 0.8;
-    found_.vertices.assign(1, static_cast<std::uint32_t>(v));
-    ++visit_;
-    seen_in_[v] = visit_;
-    found_.upto[0] = 1;
-    const Vec3& normal = rings_.normals()[v];
-    std::size_t next = 0;
-    for (std::size_t hop = 1; hop <= kHops; ++hop) {
-      for (const std::size_t end = found_.vertices.size(); next < end; ++next)
-        for (const std::uint32_t q : neighbours_.of(found_.vertices[next])) {
-          if (seen_in_[q] == visit_) continue;
-          seen_in_[q] = visit_;
-          if (rings_.normals()[q].dot(normal) > kSameWay) found_.vertices.push_back(q);
-        }
-      found_.upto[hop] = found_.vertices.size();
-    }
-    const Vec3 along = normal.unitOrthogonal();
-    const Vec3 across = normal.cross(along);
-    found_.x.clear();
-    found_.y.clear();
-    for (const std::uint32_t q : found_.vertices) {
-      const Vec3 d = rings_.positions()[q] - rings_.positions()[v];
-      found_.x.push_back(d.dot(along));
-      found_.y.push_back(d.dot(across));
-    }
-    return found_;
-  }
-
- private:
-  const VertexRings& rings_;
-  const VertexNeighbours& neighbours_;
-  Surrounding found_;
-  std::uint64_t visit_ = 0;
-  std::vector<std::uint64_t> seen_in_;  // by vertex: the visit that found it last
-};
-
-/// How values around a vertex make up that at the vertex of a smooth function fitted to them: a polynomial of
-/// the place whose coefficients these are.
-struct FitWeights {
-  Eigen::Matrix<double, 6, 1> c = Eigen::Matrix<double, 6, 1>::Zero();
-
-  static Eigen::Matrix<double, 6, 1> terms(double x, double y) {
-    Eigen::Matrix<double, 6, 1> t;
-    t << 1, x, y, x * x, x * y, y * y;
-    return t;
-  }
-  double at(double x, double y) const { return c.dot(terms(x, y)); }
-  /// Sum of the squares of all weights, and the weight of the vertex itself.
-  double constant() const { return c[0]; }
-};
-
-/// Of the first `count` of a surrounding: a surface of second order where there are enough, else a plane, or
-/// where points have none, their mean.
-FitWeights fit_weights(const Surrounding& around, std::size_t count) {
-  constexpr std::size_t kForPlane = 5;
-  constexpr std::size_t kForSecondOrder = 12;
-  constexpr double kThin = 1e-6;  // of the moments of points that determine no such function
-  double size = 0;
-  for (std::size_t i = 0; i < count; ++i) size = std::max(size, std::hypot(around.x[i], around.y[i]));
-  Eigen::Matrix<double, 6, 6> moments = Eigen::Matrix<double, 6, 6>::Zero();
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto t = FitWeights::terms(around.x[i] / size, around.y[i] / size);
-    moments += t * t.transpose();
-  }
-  FitWeights weights;
-  for (const int terms : {6, 3}) {
-    if (!(size > 0) || count < (terms == 6 ? kForSecondOrder : kForPlane)) continue;
-    const Eigen::LDLT<Eigen::MatrixXd> solver(moments.topLeftCorner(terms, terms));
-    if (!(solver.vectorD().minCoeff() > kThin * static_cast<double>(count))) continue;
-    weights.c.head(terms) = solver.solve(Eigen::VectorXd::Unit(terms, 0));
-    for (int k = 1; k < terms; ++k) weights.c[k] /= k < 3 ? size : size * size;
-    return weights;
-  }
-  weights.c[0] = 1 / static_cast<double>(count);
-  return weights;
-}
-
-/// Fits over surroundings of so many edges to each side, from none to kHops.
-constexpr std::size_t kFits = kHops + 1;
-
-/// A fit as weights of the first vertices of a surrounding.
-struct Fit {
-  std::vector<float> weight;
-  float constant = 1;  ///< FitWeights::constant
-};
-
-void find_fit(const Surrounding& around, std::size_t hops, Fit& fit) {
-  const FitWeights weights = fit_weights(around, around.upto[hops]);
-  fit.constant = static_cast<float>(weights.constant());
-  fit.weight.resize(around.upto[hops]);
-  for (std::size_t i = 0; i < fit.weight.size(); ++i)
-    fit.weight[i] = static_cast<float>(weights.at(around.x[i], around.y[i]));
-}
+/// Fits over surroundings of so many edges to each side, from none on.
+constexpr std::size_t kFits = Surrounding::kHops + 1;
 
 /// Fits of a layer: judged at all vertices, then chosen, then kept.
 class LayerFits {
@@ -149,7 +43,7 @@ class LayerFits {
 
   /// By how much the fits over `hops` edges to one half miss the values of the other, less the noise of
   /// these.
-  void judge(std::size_t v, std::size_t hops, const Surrounding& around, const Fit& fit) {
+  void judge(std::size_t v, std::size_t hops, const Surrounding& around, const SurroundingFit& fit) {
     float sum = 0;
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t own = v * bands_ + b;
@@ -177,7 +71,7 @@ class LayerFits {
     best_[v] = static_cast<std::uint8_t>(std::min_element(error.begin(), error.end()) - error.begin());
   }
   std::size_t chosen(std::size_t v) const { return best_[v]; }
-  void keep(std::size_t v, const Surrounding& around, const Fit& fit) {
+  void keep(std::size_t v, const Surrounding& around, const SurroundingFit& fit) {
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t own = v * bands_ + b;
       for (std::size_t h = 0; h < 2; ++h) half_[h][own] = value(h, b, around, fit);
@@ -185,7 +79,7 @@ class LayerFits {
       for (std::size_t i = 0; i < fit.weight.size(); ++i)
         variance += fit.weight[i] * fit.weight[i] * layer_.variance[around.vertices[i] * bands_ + b];
       variance_[own] = 0.5F * variance;
-      covariance_[own] = 0.5F * fit.constant * layer_.variance[own];
+      covariance_[own] = 0.5F * fit.own_weight * layer_.variance[own];
     }
   }
 
@@ -198,7 +92,7 @@ class LayerFits {
  private:
   static constexpr std::size_t kJudged = 3;  ///< Edges to each side within which fits are judged.
 
-  float value(std::size_t h, std::size_t band, const Surrounding& around, const Fit& fit) const {
+  float value(std::size_t h, std::size_t band, const Surrounding& around, const SurroundingFit& fit) const {
     float sum = 0;
     for (std::size_t i = 0; i < fit.weight.size(); ++i)
       sum += fit.weight[i] * layer_.half[h][around.vertices[i] * bands_ + band];
@@ -249,17 +143,17 @@ class Smoothing {
     };
     for (const VertexLayer& layer : layers) fits_.emplace_back(layer, rings.size(), bands_);
     for_vertices([&](std::size_t v, const Surrounding& around) {
-      Fit fit;
+      SurroundingFit fit;
       for (std::size_t hops = 0; hops < kFits; ++hops) {
-        find_fit(around, hops, fit);
+        fit_surrounding(around, hops, fit);
         for (LayerFits& fits : fits_) fits.judge(v, hops, around, fit);
       }
     });
     for_vertices([&](std::size_t v, const Surrounding& around) {
-      Fit fit;
+      SurroundingFit fit;
       for (LayerFits& fits : fits_) {
         fits.choose(v, around);
-        find_fit(around, fits.chosen(v), fit);
+        fit_surrounding(around, fits.chosen(v), fit);
         fits.keep(v, around, fit);
       }
     });
