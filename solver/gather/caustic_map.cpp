@@ -149,9 +149,10 @@ bool CausticMap::is_inside_triangle(TriangleId triangle, const Vec3f& place, flo
 
 /// By what light there is multiplied, for the photon and for the point, where only a share of the kernel lies
 /// on the face. With both gains what a photon brings and even light stay what they are: they solve the
-/// scaling of [SK67] along the end of a half plane to 4 % (0.4 % in the mean), in a square corner to 12 %. A
-/// gain of the point alone, the reciprocal of its share, keeps even light, and takes up to 30 % from what
-/// lies along the end.
+/// scaling of [SK67] along the end of a half plane to 4 % (0.4 % in the mean), and where as much is lost all
+/// over a face smaller than the kernel. Which of the two it is shows in how far the lost part lies to one
+/// side. A gain of the point alone, the reciprocal of its share, keeps even light, and takes up to 30 % from
+/// what lies along the end.
 float CausticMap::gain_at_end(const Vec3f& normal, const Vec3f& place, float radius, float turn) const {
   const RayTracer& rays = room_->rays();
   constexpr int kPoints = 12;
@@ -159,22 +160,32 @@ float CausticMap::gain_at_end(const Vec3f& normal, const Vec3f& place, float rad
   const float lift = kLift * radius;
   const Vec3f from = place + lift * normal;
   int beyond = 0;
+  Eigen::Vector2f beyond_mean = Eigen::Vector2f::Zero();
+  float beyond_distance = 0;
   for (int k = 0; k < kPoints; ++k) {
     // As the kernel weighs them, on a spiral.
     const float u = (static_cast<float>(k) + 0.5F) / kPoints;
     const float r = radius * std::sqrt(1 - std::sqrt(1 - u));
     const float phi =
         2 * std::numbers::pi_v<float> * (turn + static_cast<float>(k) * (std::numbers::phi_v<float> - 1));
-    const Vec3f to = from + frame.to_world({r * std::cos(phi), r * std::sin(phi), 0});
+    const Eigen::Vector2f place_in_plane(r * std::cos(phi), r * std::sin(phi));
+    const Vec3f to = from + frame.to_world({place_in_plane.x(), place_in_plane.y(), 0});
     Hit hit;
     const bool is_on_face = rays.visible(from, to) && rays.closest(to, -normal, hit) &&
                             hit.distance < 2.5F * lift &&
                             side_normal(rays, hit.triangle, hit.u, hit.v, hit.front).dot(normal) > kSameSide;
-    if (!is_on_face) ++beyond;
+    if (is_on_face) continue;
+    ++beyond;
+    beyond_mean += place_in_plane;
+    beyond_distance += r;
   }
+  if (beyond == 0) return 1;
   constexpr float kRise = 2.4F;
-  const float lost = static_cast<float>(beyond) / kPoints;
-  return 1 + kRise * lost * lost;
+  constexpr float kOfHalfPlane = 2 / std::numbers::pi_v<float>;  // one-sidedness at its end
+  const float one_sided = std::min(1.0F, beyond_mean.norm() / (kOfHalfPlane * beyond_distance));
+  const float lost = static_cast<float>(std::min(beyond, kPoints - 1)) / kPoints;
+  const float all_over = 1 / std::sqrt(1 - lost);
+  return all_over + one_sided * (1 + kRise * lost * lost - all_over);
 }
 
 void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool whole, float turn,
