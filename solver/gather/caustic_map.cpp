@@ -62,7 +62,8 @@ CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, 
 }
 
 CausticMap::Photons CausticMap::of_pilot(CausticPhotons photons) const {
-  Photons result{std::move(photons), {}, {}, {}, {}};
+  Photons result;
+  result.all = std::move(photons);
   std::vector<std::uint32_t> all(result.all.size());
   std::iota(all.begin(), all.end(), 0U);
   for (std::size_t level = 0; level < kLevels; ++level)
@@ -71,7 +72,8 @@ CausticMap::Photons CausticMap::of_pilot(CausticPhotons photons) const {
 }
 
 CausticMap::Photons CausticMap::of_part(CausticPhotons photons, const StopToken* stop) const {
-  Photons result{std::move(photons), {}, {}, {}, {}};
+  Photons result;
+  result.all = std::move(photons);
   result.radius.resize(result.all.size());
   result.beside_wall.resize(result.all.size());
   result.gain.resize(result.all.size(), 1.0F);

@@ -47,8 +47,7 @@ void fit_surrounding(const Surrounding& around, std::size_t hops, SurroundingFit
   double size = 0;
   for (std::size_t i = 0; i < count; ++i) size = std::max(size, std::hypot(around.x[i], around.y[i]));
   const Terms weights = weights_of(around, count, size);
-  fit.own_weight = static_cast<float>(weights[0]);
-  fit.weight.assign(count, fit.own_weight);
+  fit.weight.assign(count, static_cast<float>(weights[0]));
   for (std::size_t i = 1; i < count && size > 0; ++i)
     fit.weight[i] = static_cast<float>(weights.dot(terms_at(around.x[i] / size, around.y[i] / size)));
 }

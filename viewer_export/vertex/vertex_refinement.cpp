@@ -104,9 +104,7 @@ void VertexRefinement::run_to_target() {
     points += block.count;
     if (interrupt_ || !choose_active(parts)) break;
   }
-  for_chunks([&](std::size_t c) {
-    gatherer_.take_apart(first(c), last(c), &means[first(c) * gatherer_.values_per_vertex()], layers_);
-  });
+  if (settings_.smooth) gatherer_.take_apart(0, rings_.size(), means.data(), layers_);
   data_.limited_by_zones = !interrupt_ && relative_error(gatherer_, rings_, data_) > settings_.error_target &&
                            std::any_of(parts.begin(), parts.end(), std::mem_fn(&RefinedPart::is_stalled));
 }

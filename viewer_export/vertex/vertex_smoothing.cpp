@@ -34,11 +34,16 @@ class LayerFits {
   LayerFits(const VertexLayer& layer, std::size_t vertices, std::size_t bands)
       : layer_(layer),
         bands_(bands),
+        noise_(vertices),
         squared_error_(vertices * kFits),
         best_(vertices),
         variance_(vertices * bands),
         covariance_(vertices * bands) {
     for (std::vector<float>& of_half : half_) of_half.resize(vertices * bands);
+    for (std::size_t v = 0; v < vertices; ++v) {
+      const float* own = &layer.variance[v * bands];
+      noise_[v] = std::accumulate(own, own + bands, 0.0F);
+    }
   }
 
   /// By how much the fits over `hops` edges to one half miss the values of the other, less the noise of
@@ -59,12 +64,12 @@ class LayerFits {
   void choose(std::size_t v, const Surrounding& around) {
     float typical_noise = 0;
     for (std::size_t i = 0; i < around.upto[1]; ++i)
-      typical_noise += noise(around.vertices[i]) / static_cast<float>(around.upto[1]);
+      typical_noise += noise_[around.vertices[i]] / static_cast<float>(around.upto[1]);
     if (typical_noise == 0) return;
     std::array<double, kFits> error{};
     for (std::size_t i = 0; i < around.upto[kJudged]; ++i) {
       const std::size_t q = around.vertices[i];
-      const float weight = 1 / (typical_noise + noise(q));
+      const float weight = 1 / (typical_noise + noise_[q]);
       for (std::size_t hops = 0; hops < kFits; ++hops)
         error[hops] += static_cast<double>(weight * squared_error_[q * kFits + hops]);
     }
@@ -79,7 +84,7 @@ class LayerFits {
       for (std::size_t i = 0; i < fit.weight.size(); ++i)
         variance += fit.weight[i] * fit.weight[i] * layer_.variance[around.vertices[i] * bands_ + b];
       variance_[own] = 0.5F * variance;
-      covariance_[own] = 0.5F * fit.own_weight * layer_.variance[own];
+      covariance_[own] = 0.5F * fit.own_weight() * layer_.variance[own];
     }
   }
 
@@ -98,27 +103,27 @@ class LayerFits {
       sum += fit.weight[i] * layer_.half[h][around.vertices[i] * bands_ + band];
     return sum;
   }
-  /// Variance of a half, all bands together.
-  float noise(std::size_t v) const {
-    const float* own = &layer_.variance[v * bands_];
-    return std::accumulate(own, own + bands_, 0.0F);
-  }
 
   const VertexLayer& layer_;
   std::size_t bands_;
+  std::vector<float> noise_;                // by vertex: variance of a half, all bands together
   std::vector<float> squared_error_;        // by vertex and fit: an estimate, which may be below 0
   std::vector<std::uint8_t> best_;          // by vertex: edges of the fit that is chosen
   std::array<std::vector<float>, 2> half_;  // by vertex and band, as the following
   std::vector<float> variance_, covariance_;
 };
 
-/// What becomes of all vertices, as VertexData has them.
+/// What becomes of all vertices, as VertexData has them: at first what they were.
 struct SmoothVertices {
   explicit SmoothVertices(const VertexData& data)
       : radiance(data.radiance.size()),
-        irradiance(data.irradiance.size()),
-        direct(data.radiance.size()),
-        caustic(data.caustic_radiance.size()) {}
+        irradiance(data.irradiance),
+        direct(data.direct_radiance),
+        caustic(data.caustic_radiance) {
+    radiance.value = data.radiance;
+    for (std::size_t k = 0; k < data.radiance.size(); ++k)
+      radiance.variance[k] = radiance.covariance[k] = data.radiance_stderr[k] * data.radiance_stderr[k];
+  }
 
   SmoothedValues radiance;
   std::vector<float> irradiance, direct, caustic;
@@ -159,12 +164,9 @@ class Smoothing {
     });
   }
 
-  void store(const VertexData& before, SmoothVertices& result) const {
+  void store(SmoothVertices& result) const {
     for (std::size_t v = 0; v < rings_.size(); ++v)
-      if (gatherer_.diffuse_transmittance(v) == nullptr)
-        store(v, result);
-      else
-        keep(v, before, result);
+      if (gatherer_.diffuse_transmittance(v) == nullptr) store(v, result);
   }
 
  private:
@@ -197,16 +199,6 @@ class Smoothing {
       result.radiance.halves_apart[k] = 0.5F * brdf * (half[0] - half[1]);
       result.direct[k] = part(0);
       if (!result.caustic.empty()) result.caustic[k] = part(2);
-    }
-  }
-  void keep(std::size_t v, const VertexData& before, SmoothVertices& result) const {
-    for (std::size_t k = v * bands_; k < (v + 1) * bands_; ++k) {
-      result.irradiance[k] = before.irradiance[k];
-      result.radiance.value[k] = before.radiance[k];
-      result.radiance.variance[k] = before.radiance_stderr[k] * before.radiance_stderr[k];
-      result.radiance.covariance[k] = result.radiance.variance[k];
-      result.direct[k] = before.direct_radiance[k];
-      if (!result.caustic.empty()) result.caustic[k] = before.caustic_radiance[k];
     }
   }
 
@@ -246,7 +238,7 @@ void smooth_vertices(const VertexGatherer& gatherer, const VertexRings& rings, c
   const Smoothing smoothing(gatherer, rings, layers, stop);
   if (stop.requested()) return;
   SmoothVertices smooth(data);
-  smoothing.store(data, smooth);
+  smoothing.store(smooth);
   const std::size_t bands = data.bands.count();
   for (std::size_t b = 0; b < bands; ++b) {
     const std::vector<double> scales = relative_scales(gatherer, rings, smooth.radiance, bands, b);

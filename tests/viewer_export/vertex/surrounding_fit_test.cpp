@@ -59,8 +59,8 @@ TEST(SurroundingFit, OwnWeightIsTheSumOfSquares) {
     fit_surrounding(around, hops, fit);
     double squares = 0;
     for (const float w : fit.weight) squares += static_cast<double>(w) * static_cast<double>(w);
-    EXPECT_NEAR(squares, fit.own_weight, 1e-5);
-    EXPECT_EQ(fit.weight[0], fit.own_weight);
+    EXPECT_NEAR(squares, fit.own_weight(), 1e-5);
+    EXPECT_EQ(fit.weight[0], fit.own_weight());
   }
 }
 
