@@ -135,7 +135,9 @@ class SweepTracer {
     std::int64_t* quanta = block.power.data();
     for (int lane = 0; lane < block.count; ++lane, quanta += channels) {
       const Account& account = accounts_[lane];
-      if (account.quanta == nullptr && !second_look) {
+      const bool is_escape =
+          hits_.triangle[lane] == RayTracer::kMiss && !transport_.rays().misses_are_doubtful();
+      if (account.quanta == nullptr && !second_look && !is_escape) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
         local_.count_second_look();
         continue;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "mesh/zones/hairlines.h"
 #include "solver/trace/embree_tree.h"
 
 namespace reemit {
@@ -94,6 +95,7 @@ RayTracer::RayTracer(const ZoneMesh& mesh, const RoomTextures& textures)
   }
 
   flat_count_ = mesh.flat_count();
+  misses_are_doubtful_ = cut_outs_ != nullptr || may_have_hairlines(base);
   corners_.reserve(3 * base.triangles.size());
   faces_.reserve(base.triangles.size() + 1);
   for (std::size_t t = 0; t < base.triangles.size(); ++t) {
@@ -240,7 +242,7 @@ bool RayTracer::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) c
   const auto number = [](const Hit& found) { return static_cast<std::uint32_t>(found.triangle.index()); };
   const bool any = trace(direction, hit);
   const std::uint32_t met = any ? number(hit) : kMiss;
-  if (!is_doubtful(met, hit.u, hit.v, hit.front)) return true;
+  if (!is_doubtful(met, hit.u, hit.v, hit.front)) return any;
   Hit second;
   if (!trace(second_direction(direction, met, hit.u, hit.v), second)) return any;
   if (!any || !is_lost(number(second), second.front)) hit = second;
@@ -262,7 +264,7 @@ bool RayTracer::closest_for_camera(const Vec3f& origin, const Vec3f& direction, 
       near = std::max(query.ray.tfar * (1 + 1e-6F), std::nextafter(query.ray.tfar, kInfinity));
     }
   };
-  return look(direction) || look(turned(direction));
+  return look(direction) || (misses_are_doubtful_ && look(turned(direction)));
 }
 
 void RayTracer::closest16(const Ray16& rays, int count, Hit16& hits) const {
@@ -402,6 +404,7 @@ bool RayTracer::escapes(const Vec3f& origin, const Vec3f& direction) const {
   RTCRay ray = make_ray(origin, direction, 0, kInfinity, key);
   occluded1(embree_->scene(), ray);
   if (ray.tfar < 0) return false;
+  if (!misses_are_doubtful_) return true;
   ray = make_ray(origin, turned(direction), 0, kInfinity, key);
   occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;

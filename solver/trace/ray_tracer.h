@@ -124,11 +124,14 @@ class RayTracer {
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hits of the first `count` <= 16 rays. The caller looks twice, with look_again16 or full blocks.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
-  /// True if a ray that ended so deserves a second look: it met nothing, the back of a one-sided triangle, or
-  /// an edge.
+  /// True if a ray that ended so deserves a second look: it met nothing in a mesh with hairlines, the back of
+  /// a one-sided triangle, or an edge.
   bool is_doubtful(std::uint32_t triangle, float u, float v, bool front) const {
+    if (triangle == kMiss) return misses_are_doubtful_;
     return is_lost(triangle, front) || is_at_edge(triangle, u, v);
   }
+  /// True if a ray that met nothing may have slipped through a hairline (may_have_hairlines).
+  bool misses_are_doubtful() const { return misses_are_doubtful_; }
   /// True if (u,v) is so near an edge of a flat triangle that rounding decides which of the faces that meet
   /// there a ray seems to meet first.
   bool is_at_edge(std::uint32_t triangle, float u, float v) const {
@@ -143,7 +146,7 @@ class RayTracer {
   /// Second look at the doubtful ones of `hits`.
   void look_again16(const Ray16& rays, int count, Hit16& hits) const;
   /// Direction of the second look at a ray that ended so; (u,v) say nothing if it met nothing. A ray that
-  /// meets nothing may have slipped through the hairline where triangles with different vertices meet, and
+  /// meets nothing may have slipped through a hairline where triangles with different vertices meet, and
   /// one that meets a back through another to get there. One that meets an edge may have passed another face
   /// there: seen from outside, the near and the far face of a box are equally far at its rim, and where
   /// rounding prefers the far one, light comes to the inside of a closed box. All are traced once more,
@@ -190,6 +193,7 @@ class RayTracer {
   std::vector<Vec3f> corners_;
   std::vector<FacePlane> faces_;  // one at least
   std::size_t flat_count_ = 0;
+  bool misses_are_doubtful_ = true;
   std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
   std::vector<Vec3> patch_middles_;    // of curved patches
   ShapeFeet feet_;

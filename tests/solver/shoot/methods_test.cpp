@@ -394,8 +394,9 @@ TEST(Methods, PacketsThatEndWhereTheyShouldNotAreCounted) {
     const RareEvents& events = s.audit.events;
     EXPECT_GT(events.back_hits, 100U) << to_string(method);
     EXPECT_GT(events.escapes, 1000U);
-    EXPECT_GE(events.second_looks, events.back_hits + events.escapes) << "each had a second look";
-    EXPECT_LT(events.second_looks, 1.05 * static_cast<double>(events.back_hits + events.escapes));
+    // Each back had a second look; what left by the opening of a mesh without hairlines had none.
+    EXPECT_GE(events.second_looks, events.back_hits);
+    EXPECT_LT(events.second_looks, events.back_hits + events.escapes / 20);
     EXPECT_EQ(events.starts_behind, 0U);
     settings.threads = 1;
     EXPECT_EQ(run(room, settings).audit.events.second_looks, events.second_looks);
