@@ -21,8 +21,10 @@ constexpr double kNear = 1e-5;
 /// What is left out at the ends of an edge, where its neighbours begin. A hairline shorter than that loses
 /// less than one ray of 1e11.
 constexpr double kEnds = 10 * kNear;
-/// Pairs of an open edge and a triangle that are looked at: some 0.1 s.
+/// Pairs of an open edge and a triangle that are looked at, and triangles whose edges are counted: some 0.1 s
+/// for each.
 constexpr std::size_t kMostPairs = 1'000'000;
+constexpr std::size_t kMostTriangles = 100'000;
 
 Kernel::Point_3 to_cgal(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
@@ -72,8 +74,7 @@ bool is_near(const Kernel::Segment_3& segment, const std::array<Kernel::Point_3,
 bool may_have_hairlines(const BaseMesh& mesh) {
   if (!mesh.shapes.empty()) return true;
   if (mesh.triangles.empty()) return false;
-  // A mesh of n triangles has at most 3 n open edges; most have few.
-  if (mesh.triangles.size() > kMostPairs) return true;
+  if (mesh.triangles.size() > kMostTriangles) return true;
   const std::vector<Corners> triangles = places_of_corners(mesh);
   const std::vector<Edge> open = open_edges(triangles);
   if (open.size() * triangles.size() > kMostPairs) return true;
