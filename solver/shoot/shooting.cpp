@@ -135,9 +135,7 @@ class SweepTracer {
     std::int64_t* quanta = block.power.data();
     for (int lane = 0; lane < block.count; ++lane, quanta += channels) {
       const Account& account = accounts_[lane];
-      const bool is_escape =
-          hits_.triangle[lane] == RayTracer::kMiss && !transport_.rays().misses_are_doubtful();
-      if (account.quanta == nullptr && !second_look && !is_escape) {
+      if (account.quanta == nullptr && !second_look && !transport_.rays().has_left(hits_.triangle[lane])) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
         local_.count_second_look();
         continue;

@@ -192,9 +192,8 @@ class WalkTask {
     for (int lane = 0; lane < block.count; ++lane) {
       std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * values];
       const ZoneId zone(zones[lane]);
-      const bool is_escape =
-          hits_.triangle[lane] == RayTracer::kMiss && !transport_.rays().misses_are_doubtful();
-      if (!second_look && !is_escape && (!zone.valid() || transport_.rays().is_at_edge(hits_, lane))) {
+      if (!second_look && !transport_.rays().has_left(hits_.triangle[lane]) &&
+          (!zone.valid() || transport_.rays().is_at_edge(hits_, lane))) {
         doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
         local_.count_second_look();
         continue;

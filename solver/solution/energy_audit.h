@@ -41,10 +41,9 @@ struct BandAudit {
 /// Ends of packets that ought to be rare, as numbers of packets: more of them than usual point at a room or a
 /// program that has something wrong.
 struct RareEvents {
-  std::uint64_t second_looks =
-      0;                        ///< Rays whose end was in doubt, at edges, backs or hairlines, traced again.
-  std::uint64_t back_hits = 0;  ///< Packets that ended on the back of a one-sided face.
-  std::uint64_t escapes = 0;    ///< Packets that left the room.
+  std::uint64_t second_looks = 0;  ///< Rays traced again: they met an edge, a back, or nothing by a hairline.
+  std::uint64_t back_hits = 0;     ///< Packets that ended on the back of a one-sided face.
+  std::uint64_t escapes = 0;       ///< Packets that left the room.
   /// Rays whose start, lifted off a flat face, lay on the other side of it than that which they left:
   /// rounding took more than the lift. Starts on curved shapes are not looked at.
   std::uint64_t starts_behind = 0;

@@ -124,14 +124,12 @@ class RayTracer {
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hits of the first `count` <= 16 rays. The caller looks twice, with look_again16 or full blocks.
   void closest16(const Ray16& rays, int count, Hit16& hits) const;
-  /// True if a ray that ended so deserves a second look: it met nothing in a mesh with hairlines, the back of
-  /// a one-sided triangle, or an edge.
+  /// True if a ray that ended so deserves a second look: at a back, an edge or what may be a hairline.
   bool is_doubtful(std::uint32_t triangle, float u, float v, bool front) const {
-    if (triangle == kMiss) return misses_are_doubtful_;
-    return is_lost(triangle, front) || is_at_edge(triangle, u, v);
+    return !has_left(triangle) && (is_lost(triangle, front) || is_at_edge(triangle, u, v));
   }
-  /// True if a ray that met nothing may have slipped through a hairline (may_have_hairlines).
-  bool misses_are_doubtful() const { return misses_are_doubtful_; }
+  /// True if a ray that met this, or nothing, has left the room: it cannot have slipped through a hairline.
+  bool has_left(std::uint32_t triangle) const { return triangle == kMiss && !misses_are_doubtful_; }
   /// True if (u,v) is so near an edge of a flat triangle that rounding decides which of the faces that meet
   /// there a ray seems to meet first.
   bool is_at_edge(std::uint32_t triangle, float u, float v) const {
@@ -150,8 +148,7 @@ class RayTracer {
   /// one that meets a back through another to get there. One that meets an edge may have passed another face
   /// there: seen from outside, the near and the far face of a box are equally far at its rim, and where
   /// rounding prefers the far one, light comes to the inside of a closed box. All are traced once more,
-  /// turned by a few millionths, at edges towards the inside of the triangle, and what they meet then is
-  /// true.
+  /// turned by a few millionths, at edges towards the inside of the triangle: what they meet then is true.
   Vec3f second_direction(const Vec3f& direction, std::uint32_t triangle, float u, float v) const;
   Vec3f second_direction(const Vec3f& direction, const Hit16& hits, int lane) const {
     return second_direction(direction, hits.triangle[lane], hits.u[lane], hits.v[lane]);
@@ -193,7 +190,7 @@ class RayTracer {
   std::vector<Vec3f> corners_;
   std::vector<FacePlane> faces_;  // one at least
   std::size_t flat_count_ = 0;
-  bool misses_are_doubtful_ = true;
+  bool misses_are_doubtful_ = true;    // there may be hairlines (may_have_hairlines)
   std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
   std::vector<Vec3> patch_middles_;    // of curved patches
   ShapeFeet feet_;
