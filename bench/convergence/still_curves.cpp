@@ -80,8 +80,9 @@ Reference path_reference(const StudiedRoom& room, const MeshResult& mesh, const 
   const PinholeCamera camera(room.camera, room.picture_size, room.picture_size, walls.rays());
   constexpr std::size_t kReplicates = Film::kReplicates;
   const StopToken stop(never);
-  const TileRenderer renderer(walls, solution, camera, settings, kReplicates, stop);
-  Film film(room.scene.bands, room.picture_size, room.picture_size, kReplicates, renderer.parts(),
+  const std::unique_ptr<StillLight> light = StillLight::prepare(walls, solution, settings, never);
+  const TileRenderer renderer(*light, camera, stop);
+  Film film(room.scene.bands, room.picture_size, room.picture_size, kReplicates, light->field().parts(),
             renderer.has_caustics());
   const int samples = reference_samples(room, options) / static_cast<int>(kReplicates);
   const int log2_samples = std::bit_width(static_cast<unsigned>(samples - 1));
@@ -89,7 +90,7 @@ Reference path_reference(const StudiedRoom& room, const MeshResult& mesh, const 
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
       for (int first = 0; first < samples; first += kReferenceBlock)
-        renderer.render(tiles[i],
+        renderer.render(tiles[i].pixels(room.picture_size),
                         {.first = first,
                          .samples = std::min(kReferenceBlock, samples - first),
                          .log2_samples = log2_samples,

@@ -24,6 +24,10 @@ constexpr double kTypicalRays = 256;
 
 constexpr double kTypicalRadius = 0.3 * static_cast<double>(CausticMap::kLargestRadius);
 
+/// Photons of a cell of the grid that are looked at where they only tell how dense they are: beside a lamp
+/// there may be very many, on faces that do not count.
+constexpr std::uint32_t kMostOfCell = 64;
+
 /// Rays along a face look for what stands on it at this share of the radius above it.
 constexpr float kLift = 0.1F;
 
@@ -112,8 +116,8 @@ float CausticMap::radius_at(const Vec3f& normal, const Vec3f& place) const {
   const auto found_within = [&](std::size_t level, float enough) {
     const float radius = radius_of(level);
     float found = 0;
-    pilot_.grids[level].visit_while(place, radius, [&](std::uint32_t i, float d2) {
-      if (counts(pilot_, i, normal, place, radius)) found += 2 * (1 - d2 / (radius * radius));
+    pilot_.grids[level].visit_some(place, radius, kMostOfCell, [&](std::uint32_t i, float d2, float scale) {
+      if (counts(pilot_, i, normal, place, radius)) found += 2 * scale * (1 - d2 / (radius * radius));
       return found < enough;
     });
     return found;

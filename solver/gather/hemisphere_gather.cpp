@@ -69,9 +69,11 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
       const DiffuseWay diffuse = is_read ? DiffuseWay::kNotFollowed : DiffuseWay::kFollowed;
       scattered = is_read ? 0 : *std::max_element(reflectance, reflectance + bands);
       if (scattered > 0) add_direct(point, bounce, key, here, sum);
-      if (surfaces.spreads(hit.triangle))
-        direct_->add_lobe_sample(point, light_numbers(bounce, key), path.counted(), diffuse, here,
+      if (surfaces.spreads(hit.triangle)) {
+        const std::array<float, 4> u = numbers(bounce, key);
+        direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, path.counted(), diffuse, here,
                                  {over_mirrors, sum});
+      }
       const SpecularPath::Next next = path.choose(point, diffuse, scattered, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
@@ -105,19 +107,17 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
 
 void HemisphereGather::add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
                                   float* sum) const {
-  const std::array<float, DirectLight::kDimensions> u = light_numbers(bounce, key);
-  direct_->add_reflected_sample(y, u, 1, weight, sum);
-  if (!caustics_.exists()) return;
+  const std::array<float, 4> u = numbers(bounce, key);
+  direct_->add_reflected_sample(y, {u[0], u[1], u[2]}, 1, weight, sum);
+  if (!caustics_.exists() || !(u[3] < kPhotonLooks)) return;
   SurfaceModel::PointValues at_point;
   const float* reflectance = room().surfaces().reflectance(y, at_point);
-  caustics_.add_reflected(y, key.part, true, u[2], {reflectance, std::numbers::inv_pi_v<float>}, weight, sum);
+  caustics_.add_reflected(y, key.part, true, u[3] / kPhotonLooks,
+                          {reflectance, std::numbers::inv_pi_v<float> / kPhotonLooks}, weight, sum);
 }
 
-std::array<float, DirectLight::kDimensions> HemisphereGather::light_numbers(int bounce,
-                                                                            const PathKey& key) const {
-  const std::array<float, 4> u =
-      rng_.uniform4(key.index, key.batch, key.step(static_cast<std::uint32_t>(2 * bounce)));
-  return {u[0], u[1], u[2]};
+std::array<float, 4> HemisphereGather::numbers(int bounce, const PathKey& key) const {
+  return rng_.uniform4(key.index, key.batch, key.step(static_cast<std::uint32_t>(2 * bounce)));
 }
 
 GatherBatch::GatherBatch(const HemisphereGather& gather)

@@ -51,13 +51,12 @@ class HemisphereGather {
   const RadianceField& field() const { return *field_; }
 
   /// An estimate of weight[b]/pi times the irradiance of photons at x for two uniform numbers, added to
-  /// sum[b]. A look at photons costs as much as several rays and has less noise: one in eight takes it.
+  /// sum[b], where u1 is below kPhotonLooks.
   void add_photons(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
                    float* sum) const {
-    constexpr float kLooks = 0.125F;
-    if (caustics_.exists() && u1 < kLooks)
-      caustics_.add_reflected(x, key.part, false, u0, {white_.data(), std::numbers::inv_pi_v<float> / kLooks},
-                              weight, sum);
+    if (caustics_.exists() && u1 < kPhotonLooks)
+      caustics_.add_reflected(x, key.part, false, u0,
+                              {white_.data(), std::numbers::inv_pi_v<float> / kPhotonLooks}, weight, sum);
   }
 
   /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
@@ -67,11 +66,15 @@ class HemisphereGather {
                      float* caustic) const;
 
  private:
+  /// A look at photons costs as much as several rays and has less noise: one of eight that might takes it.
+  static constexpr float kPhotonLooks = 0.125F;
+
   /// One sample of what y reflects of the luminaires along the path.
   void add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
                   float* sum) const;
 
-  std::array<float, DirectLight::kDimensions> light_numbers(int bounce, const PathKey& key) const;
+  /// Three for a shadow ray, one for a look at photons.
+  std::array<float, 4> numbers(int bounce, const PathKey& key) const;
 
   const RadianceField* field_;
   const DirectLight* direct_;

@@ -1,7 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "scenes/model/vec.h"
@@ -20,14 +22,16 @@ class PhotonGrid {
   /// same order each time.
   template <class Use>
   void visit(const Vec3f& place, float radius, const Use& use) const {
-    visit_while(place, radius, [&use](std::uint32_t number, float d2) {
-      use(number, d2);
-      return true;
-    });
+    visit_some(place, radius, std::numeric_limits<std::uint32_t>::max(),
+               [&use](std::uint32_t number, float d2, float) {
+                 use(number, d2);
+                 return true;
+               });
   }
-  /// The same as long as `use` returns true.
+  /// The same of at most `most` points of each cell, those that came first, as long as use(point number,
+  /// squared distance, points of the cell for each that is looked at) returns true.
   template <class Use>
-  void visit_while(const Vec3f& place, float radius, const Use& use) const {
+  void visit_some(const Vec3f& place, float radius, std::uint32_t most, const Use& use) const {
     if (table_.empty()) return;
     const float r2 = radius * radius;
     std::array<std::int64_t, 3> low{};
@@ -38,9 +42,12 @@ class PhotonGrid {
           key_of(low[0] + (corner & 1), low[1] + (corner >> 1 & 1), low[2] + (corner >> 2));
       for (std::size_t slot = slot_of(key); table_[slot].end != 0; slot = (slot + 1) & (table_.size() - 1)) {
         if (table_[slot].key != key) continue;
-        for (std::uint32_t i = table_[slot].begin; i < table_[slot].end; ++i)
+        const std::uint32_t all = table_[slot].end - table_[slot].begin;
+        const std::uint32_t looked_at = std::min(all, most);
+        const float scale = static_cast<float>(all) / static_cast<float>(looked_at);
+        for (std::uint32_t i = table_[slot].begin; i < table_[slot].begin + looked_at; ++i)
           if (const float d2 = (points_[i].place - place).squaredNorm();
-              d2 < r2 && !use(points_[i].number, d2))
+              d2 < r2 && !use(points_[i].number, d2, scale))
             return;
         break;
       }

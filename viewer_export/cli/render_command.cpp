@@ -37,6 +37,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What a picture gets without a word about its quality: smoothed, this relative error, and at most so many
+/// camera rays per pixel, the mean over the picture.
+constexpr double kGoodToLookAt = 0.03;
+constexpr double kMostMeanSpp = 64;
+
 struct RenderOptions {
   std::vector<fs::path> files;  ///< A solution, or the files of a room.
   ReadOptions read;             ///< Of a room.
@@ -47,6 +52,7 @@ struct RenderOptions {
   PixelSize size;  ///< 0x0: as the camera says.
   StillSettings still;
   std::optional<bool> smooth;  ///< Unset: gathered pictures without an error target.
+  int spp = 0;                 ///< 0: as the picture needs.
   ToneMapSettings tone_map;
   OutputStyle style;
 
@@ -107,8 +113,9 @@ class Renderer {
     const auto on_progress = [&progress](const StillProgress& now) {
       progress.update(now.fraction, fmt::format("error {}", percent_text(now.error)));
     };
-    const StillImage image =
-        render_still(room_, solution_, job.camera, options_.still, on_progress, interrupt_.requested());
+    if (light_ == nullptr)
+      light_ = StillLight::prepare(room_, solution_, options_.still, interrupt_.requested());
+    const StillImage image = render_still(*light_, job.camera, on_progress, interrupt_.requested());
     progress.finish();
     std::optional<WrittenImage> written;
     write_output([&] { written = write_still_image(image, job.file, options_.tone_map); });
@@ -131,16 +138,16 @@ class Renderer {
   }
 
   void explain_missed_target(const Job& job, const StillImage& image) const {
-    if (image.limited_by_zones) {
+    if (image.limited_by_zones)
       print_note(
           fmt::format("{}: the noise of the zone solution keeps the error above the target; solve to a "
                       "lower --error",
                       job.camera.name));
-    } else if (options_.still.error_target > 0 && image.info.error > options_.still.error_target &&
-               !interrupted()) {
+    // The rest is for those who named a target.
+    if (options_.still.error_target == 0 || options_.still.most_mean_spp > 0) return;
+    if (!image.limited_by_zones && image.info.error > options_.still.error_target && !interrupted())
       print_note(fmt::format("{}: the error is above the target after the most samples a pixel can get ({})",
                              job.camera.name, options_.still.most_spp));
-    }
     const std::string missed = missed_by_zones("the picture", options_.still.error_target, image.info.zones);
     if (!missed.empty()) print_note(fmt::format("{}: {}", job.camera.name, missed));
   }
@@ -171,6 +178,7 @@ class Renderer {
   const Room& room_;
   const Solution& solution_;
   InterruptGuard interrupt_;
+  std::unique_ptr<StillLight> light_;  ///< From the first picture on.
   nlohmann::ordered_json pictures_ = nlohmann::ordered_json::array();
 };
 
@@ -201,6 +209,21 @@ Source load_source(const RenderOptions& options) {
   return {std::move(scene), std::move(solution)};
 }
 
+/// What the options leave open.
+void choose_quality(RenderOptions& options) {
+  StillSettings& still = options.still;
+  still.width = options.size.width;
+  still.height = options.size.height;
+  const bool is_gathered = still.integrator == Integrator::kGather;
+  still.smooth = options.smooth.value_or(is_gathered && still.error_target == 0);
+  if (options.spp > 0) {
+    still.spp = options.spp;
+  } else if (is_gathered && still.smooth && still.error_target == 0) {
+    still.error_target = kGoodToLookAt;
+    still.most_mean_spp = kMostMeanSpp;
+  }
+}
+
 ExitCode run_render(RenderOptions options) {
   check_view(options.camera);
   const bool into_folder = options.into_folder();
@@ -215,10 +238,7 @@ ExitCode run_render(RenderOptions options) {
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) check_output(job.file);
 
-  options.still.width = options.size.width;
-  options.still.height = options.size.height;
-  options.still.smooth = options.smooth.value_or(options.still.integrator == Integrator::kGather &&
-                                                 options.still.error_target == 0);
+  choose_quality(options);
   Renderer renderer(options, room, solution);
   std::size_t done = 0;
   while (done < jobs.size() && !renderer.interrupted()) renderer.render(jobs[done++]);
@@ -283,9 +303,12 @@ void add_quality_options(CLI::App& render, RenderOptions& options) {
       "unbiased reference, which needs no solution; zones: the zone values as they are");
   auto* error =
       add_parsed_option(render, "--error", options.still.error_target, parse_share, "SHARE",
-                        "Refine until the relative error (rms over pixels, worst band) is below: 2%");
-  add_integer_option(render, "--spp", options.still.spp, 1, 1048576,
-                     "Camera rays per pixel, rounded up to whole passes")
+                        "Refine until the relative error (rms over pixels, worst band) is below: 2%.\n"
+                        "Default of smoothed pictures: 3%, or what 64 camera rays per pixel reach");
+  add_integer_option(render, "--spp", options.spp, 1, 1048576,
+                     "Camera rays for each pixel, rounded up to whole passes (default where nothing\n"
+                     "is to be reached: 16)")
+      ->default_str("")
       ->excludes(error);
   using Chosen = std::optional<Selection>;
   add_choice_option<Chosen>(render, "--light-selection", options.still.light_selection,
@@ -301,8 +324,8 @@ void add_quality_options(CLI::App& render, RenderOptions& options) {
   add_choice_option<std::optional<bool>>(
       render, "--smooth", options.smooth, {{"auto", std::nullopt}, {"on", true}, {"off", false}},
       "Take the grain out: every pixel becomes a mean of pixels around it that are the\n"
-      "same within their noise; auto: of gathered pictures, unless --error asks for\n"
-      "pixels that are sampled until they are good, which counts the noise before it");
+      "same within their noise, and --error counts what is left; auto: of gathered\n"
+      "pictures, unless --error asks for pixels that are good by themselves");
   add_choice_option<PixelFilter>(render, "--filter", options.still.filter,
                                  {{"box", PixelFilter::kBox}, {"tent", PixelFilter::kTent}}, "Pixel filter");
   add_parsed_option(render, "--exposure", options.tone_map.exposure_ev, parse_number, "EV",

@@ -115,6 +115,37 @@ StillHalves Film::halves() const {
   return halves;
 }
 
+float Film::indirect(std::size_t pixel, std::size_t band, float radiance) const {
+  const std::size_t k = pixel * bands_ + band;
+  const float caustic = image_.caustic.empty() ? 0.0F : image_.caustic[k];
+  return std::max(0.0F, radiance - image_.direct[k] - caustic);
+}
+
+void Film::complete_geometry(StillImage& image, std::size_t pixel) const {
+  const float seen = seen_[pixel];
+  image.depth[pixel] = seen > 0 ? image.depth[pixel] / seen : std::numeric_limits<float>::infinity();
+  Eigen::Map<Vec3f> normal(&image.normal[3 * pixel]);
+  const float length = normal.norm();
+  if (length > 0) normal /= length;
+}
+
+StillImage Film::snapshot() const {
+  StillImage image = image_;
+  for (std::vector<float>* layer : {&image.radiance, &image.indirect, &image.radiance_stderr})
+    layer->resize(image_.direct.size());
+  for (std::size_t pixel = 0; pixel < image_.pixel_count(); ++pixel) {
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const std::size_t k = pixel * bands_ + b;
+      const ReplicateMean mean = replicate_mean(pixel, b);
+      image.radiance[k] = static_cast<float>(mean.mean);
+      image.indirect[k] = indirect(pixel, b, image.radiance[k]);
+      image.radiance_stderr[k] = static_cast<float>(std::sqrt(mean.squared_error));
+    }
+    complete_geometry(image, pixel);
+  }
+  return image;
+}
+
 StillImage Film::finish() {
   const bool have_errors = std::find(begun_.begin(), begun_.end(), 1) == begun_.end();
   for (std::size_t r = replicates_; r < 3; ++r) means_[r].resize(image_.direct.size());
@@ -125,15 +156,10 @@ StillImage Film::finish() {
       const ReplicateMean mean = mean_so_far(pixel, b);
       const double error = have_errors ? std::sqrt(mean.squared_error) : 0.0;
       means_[0][k] = static_cast<float>(mean.mean);
-      const float caustic = image_.caustic.empty() ? 0.0F : image_.caustic[k];
-      means_[1][k] = std::max(0.0F, means_[0][k] - image_.direct[k] - caustic);
+      means_[1][k] = indirect(pixel, b, means_[0][k]);
       means_[2][k] = static_cast<float>(error);
     }
-    const float seen = seen_[pixel];
-    image_.depth[pixel] = seen > 0 ? image_.depth[pixel] / seen : std::numeric_limits<float>::infinity();
-    Eigen::Map<Vec3f> normal(&image_.normal[3 * pixel]);
-    const float length = normal.norm();
-    if (length > 0) normal /= length;
+    complete_geometry(image_, pixel);
   }
   image_.radiance = std::move(means_[0]);
   image_.indirect = std::move(means_[1]);

@@ -70,6 +70,9 @@ class Film {
   /// it has parts; empty where a pixel has not begun an even number of replicates.
   StillHalves halves() const;
 
+  /// The picture so far. Pre: all replicates of all pixels have begun.
+  StillImage snapshot() const;
+
   /// Makes the layers and hands the picture over. Replicates that have not begun do not count, and there are
   /// no errors where a pixel has fewer than two. The film is empty afterwards.
   StillImage finish();
@@ -77,6 +80,9 @@ class Film {
  private:
   ReplicateMean replicate_mean(std::size_t pixel, std::size_t band) const;
   ReplicateMean mean_so_far(std::size_t pixel, std::size_t band) const;
+  float indirect(std::size_t pixel, std::size_t band, float radiance) const;
+  /// From sums to means, of a pixel of a picture that has the layers of this one.
+  void complete_geometry(StillImage& image, std::size_t pixel) const;
 
   std::size_t bands_;
   std::size_t replicates_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include <tbb/info.h>
@@ -15,7 +16,7 @@
 #include "scenes/model/error.h"
 #include "scenes/model/stop_token.h"
 #include "viewer_export/output/refinement.h"
-#include "viewer_export/still/smoothing.h"
+#include "viewer_export/still/smoothed_refinement.h"
 #include "viewer_export/still/tile_renderer.h"
 
 namespace reemit {
@@ -27,34 +28,13 @@ constexpr int kSmallestBlock = 2;
 constexpr int kLargestBlock = 8;
 /// Camera rays per pixel before an error is believed.
 constexpr int kFewestToStop = 16;
+/// Of a picture that is refined after smoothing: share of the work before it, as far as progress is told.
+constexpr double kShareOfFirst = 0.5;
 
 struct TileState {
   Tile tile;
   RefinedPart part;
 };
-
-void check(const StillSettings& s) {
-  const auto require = [](bool good, const char* name, const char* range) {
-    if (!good)
-      throw InputError("still", std::string(name) + " is out of range", std::string("Choose ") + range);
-  };
-  require(s.spp >= 1 && s.spp <= 1 << 20, "samples per pixel", "1 to 1048576.");
-  require(s.most_spp >= 1 && s.most_spp <= 1 << 20, "largest number of samples per pixel", "1 to 1048576.");
-  require(s.gathers >= 1 && s.gathers <= 1024, "gather rays per sample", "1 to 1024.");
-  require(s.light_samples >= 1 && s.light_samples <= 1024, "light samples", "1 to 1024.");
-  require(s.error_target >= 0 && s.error_target < 1, "error", "a share below 1, such as 2%.");
-  require(s.error_floor >= 0 && s.error_floor <= 1, "error floor", "a share of at most 1, such as 1%.");
-  require(s.close_hit >= 0 && std::isfinite(s.close_hit), "close-hit distance", "0 or more zone sizes.");
-  require(s.threads >= 0, "number of threads", "0 (all cores) or more.");
-}
-
-std::vector<TileState> make_tiles(int width, int height) {
-  std::vector<TileState> tiles;
-  for (int y = 0; y < height; y += Tile::kSize)
-    for (int x = 0; x < width; x += Tile::kSize)
-      tiles.push_back({{x, y, std::min(x + Tile::kSize, width), std::min(y + Tile::kSize, height)}, {}});
-  return tiles;
-}
 
 /// Sum over the pixels of a tile of (s/(L + floor))^2 for one band.
 double tile_error(const Film& film, const Tile& tile, std::size_t band, double floor) {
@@ -81,31 +61,33 @@ class Rendering {
         film_(film),
         progress_(progress),
         interrupt_(interrupt),
-        tiles_(make_tiles(film.image().width, film.image().height)),
-        to_target_(settings.error_target > 0) {
+        has_target_(settings.error_target > 0),
+        smooths_(settings.smooth && settings.integrator != Integrator::kZones) {
+    for (const Tile& tile : tiles_of(film.image().width, film.image().height)) tiles_.push_back({tile, {}});
     const int replicates = static_cast<int>(film.replicates());
-    const int most = to_target_ ? settings.most_spp : settings.spp;
-    most_samples_ = (most + replicates - 1) / replicates;
+    most_samples_ = ((has_target_ ? settings.most_spp : settings.spp) + replicates - 1) / replicates;
     log2_samples_ = std::bit_width(static_cast<unsigned>(most_samples_ - 1));
   }
 
   void run() {
     int samples = 0;
-    while (samples < most_samples_ && !interrupt_) {
+    const int replicates = static_cast<int>(film_.replicates());
+    const int all_alike =
+        refines_smoothed() ? std::min(most_samples_, kFewestToStop / replicates) : most_samples_;
+    while (samples < all_alike && !interrupt_) {
       const int wished = std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(samples) / 2)),
                                     kSmallestBlock, kLargestBlock);
-      const int block = std::min(wished, most_samples_ - samples);
-      const int replicates = static_cast<int>(film_.replicates());
+      const int block = std::min(wished, all_alike - samples);
       // The first block goes over the picture several times, by one replicate, one more, two more, and so on,
       // so that there is a whole picture early.
       for (int first = 0; first < replicates && !interrupt_;) {
         const int count = samples > 0 ? replicates : std::max(1, first);
-        render_block({samples, block, log2_samples_, first, count});
+        render_block({samples, block, log2_samples_, first, count}, all_alike);
         first += count;
       }
       if (interrupt_) break;
       samples += block;
-      progress_now_.samples = samples * static_cast<int>(film_.replicates());
+      progress_now_.samples = samples * replicates;
       measure();
       if (std::none_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.part.is_active(); }))
         break;
@@ -113,30 +95,64 @@ class Rendering {
     if (film_.has_gaps()) fill_what_is_missing();
   }
 
+  /// After run(): the smoothed picture, refined where there is a target for it. Nothing if there is none.
+  std::optional<StillImage> smooth(const StopToken& stop) {
+    if (!smooths_ || interrupt_) return std::nullopt;
+    const double pixels = static_cast<double>(film_.image().pixel_count());
+    SmoothedRefinement refinement(
+        film_,
+        {.target = refines_smoothed() ? settings_.error_target : std::numeric_limits<double>::infinity(),
+         .error_floor = settings_.error_floor,
+         .most_samples = most_samples_,
+         .most_rays = refines_smoothed() && settings_.most_mean_spp > 0
+                          ? settings_.most_mean_spp * pixels
+                          : std::numeric_limits<double>::infinity()},
+        stop);
+    std::optional<StillImage> image =
+        refinement.run([&](const std::vector<PixelSamples>& blocks, double from, double to) {
+          progress_now_.error = refinement.error();
+          render_blocks(blocks, from, to);
+        });
+    is_stalled_ = refinement.is_stalled();
+    return image;
+  }
+
   /// Whether the run ended before every pixel had a sample of its own.
   bool has_zone_values() const { return has_zone_values_; }
 
   double error() const { return progress_now_.error; }
   bool limited_by_zones() const {
-    return to_target_ && progress_now_.error > settings_.error_target &&
-           std::any_of(tiles_.begin(), tiles_.end(), [](const TileState& t) { return t.part.is_stalled(); });
+    return is_stalled_ || (has_target_ && !smooths_ && progress_now_.error > settings_.error_target &&
+                           std::any_of(tiles_.begin(), tiles_.end(),
+                                       [](const TileState& t) { return t.part.is_stalled(); }));
   }
 
  private:
-  void render_block(const SampleBlock& block) {
-    std::vector<TileState*> active;
-    for (TileState& t : tiles_)
-      if (t.part.is_active()) active.push_back(&t);
+  /// The picture gets samples of its own for each pixel first; smoothing and what it asks for come after.
+  bool refines_smoothed() const { return smooths_ && has_target_; }
+
+  void render_block(const SampleBlock& block, int all_samples) {
+    std::vector<PixelSamples> blocks;
+    for (const TileState& t : tiles_)
+      if (t.part.is_active()) blocks.push_back({t.tile.pixels(film_.image().width), block});
+    const auto share_at = [&](int replicates) {
+      const double of_block = static_cast<double>(replicates) / static_cast<double>(film_.replicates());
+      const double share = (block.first + block.samples * of_block) / all_samples;
+      return refines_smoothed() ? kShareOfFirst * share : share;
+    };
+    render_blocks(blocks, share_at(block.first_replicate),
+                  share_at(block.first_replicate + block.replicates));
+  }
+
+  /// `from`, `to`: where the blocks begin and end of all there is to do [0,1].
+  void render_blocks(const std::vector<PixelSamples>& blocks, double from, double to) {
     std::size_t done = 0;
-    tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
       if (interrupt_) return;
-      renderer_.render(active[i]->tile, block, film_);
+      renderer_.render(blocks[i].pixels, blocks[i].block, film_);
       const std::lock_guard lock(progress_mutex_);
       ++done;
-      const double share = static_cast<double>(done) / static_cast<double>(active.size());
-      const double of_block =
-          (block.first_replicate + block.replicates * share) / static_cast<double>(film_.replicates());
-      report((block.first + block.samples * of_block) / most_samples_);
+      report(from + (to - from) * static_cast<double>(done) / static_cast<double>(blocks.size()));
     });
   }
 
@@ -162,8 +178,9 @@ class Rendering {
   /// Pre: the mutex is held, or no tile is being rendered.
   void report(double of_samples) {
     if (!progress_) return;
-    const double by_error =
-        to_target_ ? std::min(1.0, std::pow(settings_.error_target / progress_now_.error, 2)) : 0.0;
+    const double by_error = has_target_ && !smooths_
+                                ? std::min(1.0, std::pow(settings_.error_target / progress_now_.error, 2))
+                                : 0.0;
     progress_now_.fraction = std::max({progress_now_.fraction, of_samples, by_error});
     progress_now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     progress_(progress_now_);
@@ -175,7 +192,7 @@ class Rendering {
     const std::size_t pixels = film_.image().pixel_count();
     const std::size_t bands = film_.image().bands.count();
     const double target2 = std::pow(RefinedPart::aim(settings_.error_target), 2);
-    const bool may_stop = to_target_ && progress_now_.samples >= kFewestToStop;
+    const bool may_stop = has_target_ && !smooths_ && progress_now_.samples >= kFewestToStop;
     std::vector<double> worst(tiles_.size(), 0.0);
     double error2 = 0;
     for (std::size_t b = 0; b < bands; ++b) {
@@ -206,7 +223,9 @@ class Rendering {
   const StillProgressCallback& progress_;
   const std::atomic<bool>& interrupt_;
   std::vector<TileState> tiles_;
-  bool to_target_;
+  bool has_target_;
+  bool smooths_;
+  bool is_stalled_ = false;
   bool has_zone_values_ = false;
   int most_samples_ = 1;  // per replicate
   int log2_samples_ = 0;
@@ -216,7 +235,7 @@ class Rendering {
 };
 
 ExportInfo describe_still(const Scene& scene, const Solution& solution, const StillSettings& settings,
-                          double error) {
+                          const StillImage& image, double error) {
   ExportInfo info;
   info.program_version = solution.program_version;
   info.room = scene.source.empty() ? scene.name : scene.source;
@@ -230,54 +249,48 @@ ExportInfo describe_still(const Scene& scene, const Solution& solution, const St
     info.settings.emplace_back("shadow rays per sample", static_cast<std::uint64_t>(settings.light_samples));
   if (settings.integrator == Integrator::kGather)
     info.settings.emplace_back("gather rays per sample", static_cast<std::uint64_t>(settings.gathers));
+  if (image.smoothed)
+    info.settings.emplace_back("smoothed", "over pixels that are the same within their noise");
   return info;
 }
 
 }  // namespace
 
-std::string to_string(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::kGather:
-      return "gather";
-    case Integrator::kPath:
-      return "path";
-    case Integrator::kZones:
-      return "zones";
-  }
-  return "";
+StillImage render_still(const StillLight& light, const Camera& camera, const StillProgressCallback& progress,
+                        const std::atomic<bool>& interrupt) {
+  const StillSettings& settings = light.settings();
+  const Room& room = light.room();
+  const int width = settings.width != 0 ? settings.width : camera.width;
+  const int height = settings.height != 0 ? settings.height : camera.height;
+  const PinholeCamera pinhole(camera, width, height, room.rays());
+  tbb::task_arena arena(thread_count(settings));
+  StillImage image;
+  arena.execute([&] {
+    const StopToken stop(interrupt);
+    const TileRenderer renderer(light, pinhole, stop);
+    Film film(room.scene().bands, width, height, light.replicates(), light.field().parts(),
+              renderer.has_caustics());
+    Rendering rendering(renderer, settings, film, progress, interrupt);
+    rendering.run();
+    std::optional<StillImage> smoothed = rendering.smooth(stop);
+    std::optional<ZoneBias> zones;
+    if (!interrupt) zones = renderer.zone_bias(film);
+    image = smoothed ? *std::move(smoothed) : film.finish();
+    image.info = describe_still(room.scene(), light.solution(), settings, image,
+                                image.smoothed ? image.info.error : rendering.error());
+    image.info.zones = zones;
+    if (rendering.has_zone_values())
+      image.info.settings.emplace_back("interrupted", "tiles that were not reached hold zone values");
+    image.limited_by_zones = rendering.limited_by_zones();
+    image.interrupted = interrupt;
+  });
+  return image;
 }
 
 StillImage render_still(const Room& room, const Solution& solution, const Camera& camera,
                         const StillSettings& settings, const StillProgressCallback& progress,
                         const std::atomic<bool>& interrupt) {
-  check(settings);
-  const int width = settings.width != 0 ? settings.width : camera.width;
-  const int height = settings.height != 0 ? settings.height : camera.height;
-  const PinholeCamera pinhole(camera, width, height, room.rays());
-  const int most = settings.error_target > 0 ? settings.most_spp : settings.spp;
-  const std::size_t replicates = std::min(Film::kReplicates, std::bit_floor(static_cast<std::size_t>(most)));
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
-  StillImage image;
-  arena.execute([&] {
-    const StopToken stop(interrupt);
-    const TileRenderer renderer(room, solution, pinhole, settings, replicates, stop);
-    Film film(room.scene().bands, width, height, replicates, renderer.parts(), renderer.has_caustics());
-    Rendering rendering(renderer, settings, film, progress, interrupt);
-    rendering.run();
-    ExportInfo info = describe_still(room.scene(), solution, settings, rendering.error());
-    if (rendering.has_zone_values())
-      info.settings.emplace_back("interrupted", "tiles that were not reached hold zone values");
-    if (!interrupt) info.zones = renderer.zone_bias(solution, film);
-    const bool smooth = settings.smooth && settings.integrator != Integrator::kZones;
-    const StillHalves halves = smooth ? film.halves() : StillHalves();
-    image = film.finish();
-    image.info = std::move(info);
-    if (!halves[0].empty()) smooth_still(image, halves, settings.error_floor, stop);
-    image.limited_by_zones = rendering.limited_by_zones();
-    image.interrupted = interrupt;
-  });
-  return image;
+  return render_still(*StillLight::prepare(room, solution, settings, interrupt), camera, progress, interrupt);
 }
 
 }  // namespace reemit

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer_export/still/pixel_rows.h"
+
 namespace reemit {
 namespace {
 
 constexpr int kPatch = 3;          ///< Pixels to each side that are compared.
 constexpr float kStrength = 0.6F;  ///< Standard errors by which pixels may differ ([RKZ12] eq. 3: k).
 /// Distance at which a pixel counts no more. The kernel is (1 - d/4)^4, which is like exp(-d) but ends.
-constexpr float kFarthest = 4;
+constexpr float kNotAlike = 4;
 constexpr float kNormalScale = 0.25F;  ///< Length of the difference of normals that counts as distance 1.
 constexpr float kDepthScale = 0.02F;   ///< Relative difference of depth that does.
 
@@ -52,27 +54,25 @@ void SimilarPixels::add_offset(int dx, int dy) {
 }
 
 void SimilarPixels::add_own() {
-  row_weight_.assign(size_, 1.0F);
+  const float* own = &planes_.precision[planes_.at(0, first_)];
+  row_weight_.assign(own, own + size_);
   for (std::size_t h = 0; h < 2; ++h) add_values(h, 0, planes_.at(0, first_), size_);
 }
 
 void SimilarPixels::add_values(std::size_t h, std::size_t p, std::size_t q, std::size_t count) {
   const float* w = row_weight_.data();
-  const auto add_plane = [&](std::vector<float>& sums, std::size_t plane, const float* values) {
-    float* sum = &sums[plane * size_ + p];
-    for (std::size_t i = 0; i < count; ++i) sum[i] += w[i] * values[i];
+  const auto add_plane = [&](std::size_t plane, const float* values) {
+    pixel_rows::add_weighted(&sum_[h][plane * size_ + p], w, values, count);
   };
   float* weight = &weight_[h][p];
   for (std::size_t i = 0; i < count; ++i) weight[i] += w[i];
   const std::size_t n = planes_.pixels();
   const std::size_t bands = planes_.bands;
   for (std::size_t b = 0; b < bands; ++b) {
-    add_plane(sum_[h], b, &planes_.irradiance[h][b * n + q]);
-    add_plane(sum_[h], bands + b, &planes_.direct[b * n + q]);
-    if (layers_ == 3) add_plane(sum_[h], 2 * bands + b, &planes_.caustic[b * n + q]);
-    const float* variance = &planes_.variance[b * n + q];
-    float* squares = &squares_[h][b * size_ + p];
-    for (std::size_t i = 0; i < count; ++i) squares[i] += w[i] * w[i] * variance[i];
+    add_plane(b, &planes_.irradiance[h][b * n + q]);
+    add_plane(bands + b, &planes_.direct[b * n + q]);
+    if (layers_ == 3) add_plane(2 * bands + b, &planes_.caustic[b * n + q]);
+    pixel_rows::add_variances(&squares_[h][b * size_ + p], w, &planes_.variance[b * n + q], count);
   }
 }
 
@@ -86,15 +86,8 @@ void SimilarPixels::find_differences(std::size_t h, int dx, int dy, const Area& 
     for (int y = area.y0; y < area.y1; ++y) {
       const std::size_t p = planes_.at(area.x0, y);
       const std::size_t q = planes_.at(area.x0 + dx, y + dy);
-      float* out = &differences_[area.at(area.x0, y)];
-      for (std::size_t i = 0; i < area.width(); ++i) {
-        const float difference = value[p + i] - value[q + i];
-        const float vp = variance[p + i];
-        const float vq = variance[q + i];
-        const float tiny = 1e-6F * value[p + i] * value[p + i] + 1e-30F;
-        out[i] += share * (difference * difference - (vp + std::min(vp, vq))) /
-                  (tiny + kStrength * kStrength * (vp + vq));
-      }
+      pixel_rows::add_differences(&differences_[area.at(area.x0, y)], {value + p, variance + p},
+                                  {value + q, variance + q}, share, kStrength, area.width());
     }
   }
 }
@@ -102,42 +95,15 @@ void SimilarPixels::find_differences(std::size_t h, int dx, int dy, const Area& 
 void SimilarPixels::average_patches(std::size_t h, const Area& area) {
   rows_.resize(differences_.size());
   patches_[h].resize(differences_.size());
-  const int most = static_cast<int>(area.width());
-  for (int y = area.y0; y < area.y1; ++y) {
-    const float* in = &differences_[area.at(area.x0, y)];
-    float* out = &rows_[area.at(area.x0, y)];
-    for (int i = 0; i < most; ++i) {
-      const int from = std::max(0, i - kPatch);
-      const int to = std::min(most, i + kPatch + 1);
-      float sum = 0;
-      for (int j = from; j < to; ++j) sum += in[j];
-      out[i] = sum / static_cast<float>(to - from);
-    }
-  }
+  for (int y = area.y0; y < area.y1; ++y)
+    pixel_rows::average_along(&rows_[area.at(area.x0, y)], &differences_[area.at(area.x0, y)], kPatch,
+                              area.width());
   for (int y = std::max(area.y0, first_); y < std::min(area.y1, last_); ++y) {
     const int from = std::max(area.y0, y - kPatch);
     const int to = std::min(area.y1, y + kPatch + 1);
-    float* out = &patches_[h][area.at(area.x0, y)];
-    std::fill(out, out + area.width(), 0.0F);
-    for (int j = from; j < to; ++j) {
-      const float* in = &rows_[area.at(area.x0, j)];
-      for (std::size_t i = 0; i < area.width(); ++i) out[i] += in[i];
-    }
-    for (std::size_t i = 0; i < area.width(); ++i) out[i] /= static_cast<float>(to - from);
+    pixel_rows::average_across(&patches_[h][area.at(area.x0, y)], &rows_[area.at(area.x0, from)],
+                               static_cast<std::size_t>(to - from), area.width(), area.width());
   }
-}
-
-float SimilarPixels::distance_of_things(std::size_t p, std::size_t q, int dx, int dy) const {
-  float normals = 0;
-  for (const std::vector<float>& axis : planes_.normal) {
-    const float difference = axis[p] - axis[q];
-    normals += difference * difference;
-  }
-  const float allowed =
-      kDepthScale * planes_.depth[p] + 2 * (static_cast<float>(std::abs(dx)) * planes_.slope_x[p] +
-                                            static_cast<float>(std::abs(dy)) * planes_.slope_y[p]);
-  const float depth = (planes_.depth[p] - planes_.depth[q]) / allowed;
-  return std::max(normals / (kNormalScale * kNormalScale), depth * depth);
 }
 
 void SimilarPixels::add_row(int y, int dx, int dy, const Area& area) {
@@ -146,20 +112,24 @@ void SimilarPixels::add_row(int y, int dx, int dy, const Area& area) {
   const std::size_t patch = area.at(area.x0, y);
   row_things_.resize(area.width());
   row_weight_.resize(area.width());
-  bool any = false;
-  for (std::size_t i = 0; i < area.width(); ++i) {
-    const bool near = std::min(patches_[0][patch + i], patches_[1][patch + i]) < kFarthest;
-    row_things_[i] = near ? distance_of_things(from + i, q + i, dx, dy) : kFarthest;
-    any = any || row_things_[i] < kFarthest;
-  }
+  const auto things_at = [&](std::size_t first) {
+    return pixel_rows::Things{
+        {&planes_.normal[0][first], &planes_.normal[1][first], &planes_.normal[2][first]},
+        &planes_.depth[first],
+        &planes_.slope_x[first],
+        &planes_.slope_y[first]};
+  };
+  pixel_rows::find_distances(row_things_.data(), things_at(from), things_at(q),
+                             {.normals = kNormalScale,
+                              .depth = kDepthScale,
+                              .columns = static_cast<float>(std::abs(dx)),
+                              .rows = static_cast<float>(std::abs(dy))},
+                             area.width());
+  const bool any = std::any_of(row_things_.begin(), row_things_.end(), [](float d) { return d < kNotAlike; });
   if (!any) return;
   for (std::size_t h = 0; h < 2; ++h) {
-    const float* other = &patches_[1 - h][patch];
-    for (std::size_t i = 0; i < area.width(); ++i) {
-      const float distance = std::min(kFarthest, std::max({0.0F, other[i], row_things_[i]}));
-      const float near = 1 - distance / kFarthest;
-      row_weight_[i] = near * near * near * near;
-    }
+    pixel_rows::weigh(row_weight_.data(), &patches_[1 - h][patch], row_things_.data(), kNotAlike,
+                      &planes_.precision[q], area.width());
     add_values(h, from - planes_.at(0, first_), q, area.width());
   }
 }

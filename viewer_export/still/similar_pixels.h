@@ -35,7 +35,10 @@ class SimilarPixels {
     return 0.25F * sum;
   }
   /// Share of a pixel's own value in its mean.
-  float own_share(std::size_t p) const { return 0.5F * (1 / weight_[0][p] + 1 / weight_[1][p]); }
+  float own_share(std::size_t p) const {
+    const float own = planes_.precision[planes_.at(0, first_) + p];
+    return 0.5F * (own / weight_[0][p] + own / weight_[1][p]);
+  }
 
  private:
   /// Pixels that have a neighbour at the offset looked at, in rows whose patches are needed.
@@ -59,9 +62,6 @@ class SimilarPixels {
   /// Means of the differences over patches: rows, then columns. Added up anew for every pixel, so that they
   /// do not depend on where a stripe begins.
   void average_patches(std::size_t h, const Area& area);
-
-  /// Distance of what two pixels see, by normal and depth.
-  float distance_of_things(std::size_t p, std::size_t q, int dx, int dy) const;
 
   void add_row(int y, int dx, int dy, const Area& area);
 

@@ -51,21 +51,6 @@ struct SmoothedLayers {
   std::vector<float> direct, caustic;
 };
 
-/// Relative weights of pixels: 1 / (L + floor).
-std::vector<double> pixel_scales(const SmoothedValues& smoothed, std::size_t bands, std::size_t band,
-                                 double error_floor) {
-  const std::size_t pixels = smoothed.value.size() / bands;
-  double mean = 0;
-  for (std::size_t p = 0; p < pixels; ++p)
-    mean += static_cast<double>(smoothed.value[p * bands + band]) / static_cast<double>(pixels);
-  std::vector<double> scales(pixels, 0.0);
-  for (std::size_t p = 0; p < pixels; ++p) {
-    const double radiance = static_cast<double>(smoothed.value[p * bands + band]) + error_floor * mean;
-    if (radiance > 0) scales[p] = 1 / radiance;
-  }
-  return scales;
-}
-
 /// The pixels of the block that begins at (x0,y0).
 std::vector<std::size_t> pixels_of_block(const StillImage& image, int x0, int y0) {
   std::vector<std::size_t> pixels;
@@ -80,7 +65,7 @@ std::vector<std::size_t> pixels_of_block(const StillImage& image, int x0, int y0
 double complete_errors(const StillImage& image, SmoothedValues& smoothed, std::size_t band,
                        double error_floor) {
   const std::size_t bands = image.bands.count();
-  const std::vector<double> scales = pixel_scales(smoothed, bands, band, error_floor);
+  const std::vector<double> scales = relative_scales(smoothed.value, bands, band, error_floor);
   SmoothingErrors errors(smoothed, bands, band, scales);
   for (int y0 = 0; y0 < image.height; y0 += kBlock)
     for (int x0 = 0; x0 < image.width; x0 += kBlock)
@@ -118,7 +103,6 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
       image.radiance_stderr[k] = std::sqrt(smoothed.radiance.variance[k]);
     }
     image.smoothed = true;
-    image.info.settings.emplace_back("smoothed", "over pixels that are the same within their noise");
     image.radiance = std::move(smoothed.radiance.value);
     image.direct = std::move(smoothed.direct);
     image.caustic = std::move(smoothed.caustic);

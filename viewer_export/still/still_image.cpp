@@ -21,6 +21,20 @@ void check_consistent(const StillImage& image) {
   check(image.normal, 3 * pixels, true);
 }
 
+std::vector<double> relative_scales(const std::vector<float>& radiance, std::size_t bands, std::size_t band,
+                                    double error_floor) {
+  const std::size_t pixels = radiance.size() / bands;
+  double mean = 0;
+  for (std::size_t p = 0; p < pixels; ++p)
+    mean += static_cast<double>(radiance[p * bands + band]) / static_cast<double>(pixels);
+  std::vector<double> scales(pixels, 0.0);
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const double seen = static_cast<double>(radiance[p * bands + band]) + error_floor * mean;
+    if (seen > 0) scales[p] = 1 / seen;
+  }
+  return scales;
+}
+
 std::vector<float> rgb_of(const StillImage& image) {
   const std::size_t bands = image.bands.count();
   std::vector<float> rgb;

@@ -47,6 +47,12 @@ using StillHalves = std::array<std::vector<float>, 2>;
 /// Throws std::invalid_argument when a layer's size does not fit the picture.
 void check_consistent(const StillImage& image);
 
+/// 1 / (L + floor) by pixel, by which errors of radiance L are taken relative; 0 where both are 0.
+/// `radiance`: as StillImage::radiance of `bands` bands; the floor is `error_floor` times its mean in this
+/// band.
+std::vector<double> relative_scales(const std::vector<float>& radiance, std::size_t bands, std::size_t band,
+                                    double error_floor);
+
 /// The picture in linear Rec.709, 3 values per pixel.
 std::vector<float> rgb_of(const StillImage& image);
 

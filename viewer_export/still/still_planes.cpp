@@ -22,6 +22,7 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
   direct.resize(bands * n);
   caustic.resize(image.caustic.size());
   variance.resize(bands * n);
+  precision.reserve(n);
   depth.resize(n);
   for (std::size_t b = 0; b < bands; ++b) {
     for (std::size_t p = 0; p < n; ++p) {
@@ -35,6 +36,8 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
       variance[to] = 2 * error * error;  // of a half
     }
   }
+  const float fewest = *std::min_element(image.samples.begin(), image.samples.end());
+  for (const float samples : image.samples) precision.push_back(samples / fewest);
   for (std::size_t p = 0; p < n; ++p) depth[p] = std::isfinite(image.depth[p]) ? image.depth[p] : kNothing;
   for (std::size_t k = 0; k < 3; ++k) {
     normal[k].resize(n);

@@ -24,11 +24,12 @@ struct StillPlanes {
   /// Radiance over `scale` of each half, by band [W/(m2 sr)]: where diffuse light is seen, irradiance over
   /// pi.
   std::array<std::vector<float>, 2> irradiance;
-  std::vector<float> direct;    ///< Likewise of the layers of both halves, by band.
-  std::vector<float> caustic;   ///< Empty where there is none.
-  std::vector<float> scale;     ///< By band: reflectance, where it is not next to 0.
-  std::vector<float> variance;  ///< By band, of one half's irradiance.
-  std::vector<float> depth;     ///< [m], finite.
+  std::vector<float> direct;     ///< Likewise of the layers of both halves, by band.
+  std::vector<float> caustic;    ///< Empty where there is none.
+  std::vector<float> scale;      ///< By band: reflectance, where it is not next to 0.
+  std::vector<float> variance;   ///< By band, of one half's irradiance.
+  std::vector<float> precision;  ///< Samples over the fewest that a pixel has.
+  std::vector<float> depth;      ///< [m], finite.
   std::array<std::vector<float>, 3> normal;
   std::vector<float> slope_x, slope_y;  ///< Of depth per pixel [m]: of both sides the smaller.
 

@@ -33,84 +33,86 @@ struct TileRenderer::PixelSums {
   PixelBlock found;
 };
 
-TileRenderer::TileRenderer(const Room& room, const Solution& solution, const PinholeCamera& camera,
-                           const StillSettings& settings, std::size_t replicates, const StopToken& stop)
-    : room_(&room),
-      camera_(&camera),
-      settings_(&settings),
-      stop_(&stop),
-      field_(room, solution, settings.integrator == Integrator::kPath ? 1 : replicates),
-      direct_(room, {settings.light_selection}),
-      gather_(field_, direct_,
-              // The other integrators gather nothing; without close hits there is nothing to prepare.
-              GatherSettings{.close_hit = settings.integrator == Integrator::kGather ? settings.close_hit : 0,
-                             .caustics = settings.integrator == Integrator::kGather,
-                             .seed = settings.seed},
-              &stop),
-      path_(room, direct_, settings.seed),
-      specular_(settings.seed, RngPurpose::kSpecularCamera, RngPurpose::kSpreadCamera),
-      has_caustics_(room.scene().bends_light()),
-      all_(room.band_count(), 1.0F) {}
+std::vector<std::uint32_t> Tile::pixels(int width) const {
+  std::vector<std::uint32_t> pixels;
+  pixels.reserve(static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0));
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) pixels.push_back(static_cast<std::uint32_t>(y * width + x));
+  return pixels;
+}
 
-void TileRenderer::render(const Tile& tile, const SampleBlock& block, Film& film) const {
+std::vector<Tile> tiles_of(int width, int height) {
+  std::vector<Tile> tiles;
+  for (int y = 0; y < height; y += Tile::kSize)
+    for (int x = 0; x < width; x += Tile::kSize)
+      tiles.push_back({x, y, std::min(x + Tile::kSize, width), std::min(y + Tile::kSize, height)});
+  return tiles;
+}
+
+TileRenderer::TileRenderer(const StillLight& light, const PinholeCamera& camera, const StopToken& stop)
+    : light_(light),
+      room_(&light.room()),
+      camera_(&camera),
+      settings_(&light.settings()),
+      stop_(&stop),
+      field_(light.field()),
+      direct_(light.direct()),
+      specular_(settings_->seed, RngPurpose::kSpecularCamera, RngPurpose::kSpreadCamera),
+      has_caustics_(room_->scene().bends_light()),
+      all_(room_->band_count(), 1.0F) {}
+
+void TileRenderer::render(std::span<const std::uint32_t> pixels, const SampleBlock& block, Film& film) const {
   const std::size_t bands = field_.band_count();
-  const auto picture_width = static_cast<std::size_t>(film.image().width);
-  const std::size_t pixels =
-      static_cast<std::size_t>(tile.x1 - tile.x0) * static_cast<std::size_t>(tile.y1 - tile.y0);
+  const auto width = static_cast<std::uint32_t>(film.image().width);
   const int last_replicate = block.first_replicate + block.replicates;
   const std::size_t stride = layers() * bands;
-  std::vector<float> values(stride * pixels * static_cast<std::size_t>(block.replicates), 0.0F);
+  std::vector<float> values(stride * pixels.size() * static_cast<std::size_t>(block.replicates), 0.0F);
   std::vector<float> weight(bands);
   std::vector<PixelBlock> found;
-  found.reserve(pixels * static_cast<std::size_t>(block.replicates));
-  GatherBatch batch(gather_);
+  found.reserve(pixels.size() * static_cast<std::size_t>(block.replicates));
+  GatherBatch batch(light_.gather());
   float* next = values.data();
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x);
-      for (int r = block.first_replicate; r < last_replicate; ++r, next += stride) {
-        if (stop_->requested()) return;
-        float* caustic = has_caustics_ ? next + 3 * bands : nullptr;
-        PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
-                       pixel,
-                       static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
-                       static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(field_.parts()),
-                       1,
-                       settings_->integrator,
-                       1.0F / static_cast<float>(block.samples),
-                       next,
-                       next + bands,
-                       next + 2 * bands,
-                       caustic,
-                       &weight,
-                       {.direct = next,
-                        .indirect = next + bands,
-                        .caustic = caustic,
-                        .albedo = next + 2 * bands,
-                        .samples = block.samples,
-                        .earlier = block.first}};
-        for (int s = block.first; s < block.first + block.samples; ++s) {
-          const std::array<float, 2> u = sums.sampler.place(s);
-          add_sample(x + 0.5 + sample_filter(settings_->filter, u[0]),
-                     y + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
-        }
-        found.push_back(sums.found);
+  for (const std::uint32_t pixel : pixels)
+    for (int r = block.first_replicate; r < last_replicate; ++r, next += stride) {
+      if (stop_->requested()) return;
+      float* caustic = has_caustics_ ? next + 3 * bands : nullptr;
+      PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
+                     pixel,
+                     static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
+                     static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(field_.parts()),
+                     1,
+                     settings_->integrator,
+                     1.0F / static_cast<float>(block.samples),
+                     next,
+                     next + bands,
+                     next + 2 * bands,
+                     caustic,
+                     &weight,
+                     {.direct = next,
+                      .indirect = next + bands,
+                      .caustic = caustic,
+                      .albedo = next + 2 * bands,
+                      .samples = block.samples,
+                      .earlier = block.first}};
+      for (int s = block.first; s < block.first + block.samples; ++s) {
+        const std::array<float, 2> u = sums.sampler.place(s);
+        add_sample(pixel % width + 0.5 + sample_filter(settings_->filter, u[0]),
+                   pixel / width + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
       }
+      found.push_back(sums.found);
     }
   batch.flush();
   auto next_found = found.begin();
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x)
-      for (int r = block.first_replicate; r < last_replicate; ++r)
-        film.add(static_cast<std::size_t>(y) * picture_width + static_cast<std::size_t>(x),
-                 static_cast<std::size_t>(r), *next_found++);
+  for (const std::uint32_t pixel : pixels)
+    for (int r = block.first_replicate; r < last_replicate; ++r)
+      film.add(pixel, static_cast<std::size_t>(r), *next_found++);
 }
 
 void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) const {
   const std::size_t bands = field_.band_count();
   std::vector<float> values(layers() * bands);
   std::vector<float> weight(bands);
-  GatherBatch batch(gather_);
+  GatherBatch batch(light_.gather());
   const auto pixel_at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
            static_cast<std::size_t>(x);
@@ -350,17 +352,17 @@ void TileRenderer::add_scattered(const SurfacePoint& x, const float* share, std:
     for (std::size_t b = 0; b < bands; ++b)
       weight[b] = share[b] * sums.share / static_cast<float>(gathers) * through[b];
     if (path)
-      path_.add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect, sums.caustic);
+      light_.path().add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect, sums.caustic);
     else
       batch.add(x, u[0], u[1], key, weight.data(), sums.indirect, sums.caustic);
   }
 }
 
-std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const Film& film) const {
+std::optional<ZoneBias> TileRenderer::zone_bias(const Film& film) const {
   if (settings_->integrator == Integrator::kPath) return ZoneBias{};
   if (settings_->integrator == Integrator::kZones) {
-    if (!solution.record.discretisation) return std::nullopt;
-    return ZoneBias{*solution.record.discretisation, *solution.record.discretisation};
+    const std::optional<double>& known = light_.solution().record.discretisation;
+    return known ? std::optional(ZoneBias{*known, *known}) : std::nullopt;
   }
   const StillImage& image = film.image();
   const std::size_t bands = field_.band_count();
@@ -395,7 +397,7 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Solution& solution, const 
     }
   }
   const ZoneBias bias =
-      estimate_zone_bias(gather_, path_, points, scale,
+      estimate_zone_bias(light_.gather(), light_.path(), points, scale,
                          ZoneBiasEffort::of(camera_rays * (2 + settings_->gathers)), settings_->seed, stop_);
   if (stop_->requested()) return std::nullopt;
   return bias;

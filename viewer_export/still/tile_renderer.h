@@ -1,15 +1,14 @@
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "solver/gather/direct_light.h"
 #include "solver/gather/hemisphere_gather.h"
-#include "solver/gather/path_tracer.h"
-#include "solver/gather/radiance_field.h"
 #include "solver/solution/zone_bias.h"
 #include "viewer_export/still/camera.h"
 #include "viewer_export/still/film.h"
-#include "viewer_export/still/render_still.h"
+#include "viewer_export/still/still_light.h"
 
 namespace reemit {
 
@@ -17,7 +16,13 @@ namespace reemit {
 struct Tile {
   static constexpr int kSize = 16;
   int x0, y0, x1, y1;
+
+  /// Numbers of its pixels in a picture of this width [px].
+  std::vector<std::uint32_t> pixels(int width) const;
 };
+
+/// The tiles of a picture of this size [px].
+std::vector<Tile> tiles_of(int width, int height);
 
 /// Samples of some replicates of a pixel that are taken in one go.
 struct SampleBlock {
@@ -31,22 +36,18 @@ struct SampleBlock {
 /// Renders tiles. Const members may be called from any thread for different tiles.
 class TileRenderer {
  public:
-  /// `replicates`: of each pixel, a power of two; each reads its own part of the zone solution. `stop` must
-  /// outlive the renderer; once it is requested, tiles hold zone values or what they had before.
-  TileRenderer(const Room& room, const Solution& solution, const PinholeCamera& camera,
-               const StillSettings& settings, std::size_t replicates, const StopToken& stop);
+  /// All must outlive the renderer. Once `stop` is requested, tiles hold zone values or what they had before.
+  TileRenderer(const StillLight& light, const PinholeCamera& camera, const StopToken& stop);
 
   TileRenderer(const TileRenderer&) = delete;
   TileRenderer& operator=(const TileRenderer&) = delete;
 
-  /// Parts of the zone solution that the replicates read in turn.
-  std::size_t parts() const { return field_.parts(); }
   /// Whether films get a layer of caustics.
   bool has_caustics() const { return has_caustics_; }
 
-  /// Adds samples first .. first+samples-1 of the replicates of the block to each pixel of the tile; none if
-  /// it was told to stop.
-  void render(const Tile& tile, const SampleBlock& block, Film& film) const;
+  /// Adds samples first .. first+samples-1 of the replicates of the block to each of these pixels (by number
+  /// in the picture), which have had as many as `first`; none if it was told to stop.
+  void render(std::span<const std::uint32_t> pixels, const SampleBlock& block, Film& film) const;
 
   /// For a picture that ends before its first pass does: gives each square of `width` pixels of a tile the
   /// zone values that a ray through its middle sees, as one sample of the first replicate of each pixel.
@@ -55,7 +56,7 @@ class TileRenderer {
   /// What the zones do to the picture on the film, relative as StillSettings::error_target: from points seen
   /// through pixels all over it, with about two per cent of the rays of the picture. Exactly 0 for a
   /// path-traced one. Nothing if it is not known.
-  std::optional<ZoneBias> zone_bias(const Solution& solution, const Film& film) const;
+  std::optional<ZoneBias> zone_bias(const Film& film) const;
 
  private:
   struct PixelSums;
@@ -86,14 +87,13 @@ class TileRenderer {
                             PixelSums& sums) const;
   SurfacePoint seen_point(const Hit& hit, const Vec3f& direction) const;
 
+  const StillLight& light_;
   const Room* room_;
   const PinholeCamera* camera_;
   const StillSettings* settings_;
   const StopToken* stop_;
-  RadianceField field_;
-  DirectLight direct_;
-  HemisphereGather gather_;
-  PathTracer path_;
+  const RadianceField& field_;
+  const DirectLight& direct_;
   SpecularNumbers specular_;
   bool has_caustics_;
   std::vector<float> all_;  // by band: nothing is lost on the way to the eye

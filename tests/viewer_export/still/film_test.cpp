@@ -56,5 +56,34 @@ TEST(Film, mean_and_error_of_replicates_that_grow_by_blocks) {
   EXPECT_TRUE(std::isinf(image.depth[0]));
 }
 
+TEST(Film, a_snapshot_is_the_picture_that_would_be_handed_over) {
+  Film film(BandSet::grey(), 3, 2, 4, 1, true);
+  for (std::size_t pixel = 0; pixel < 6; ++pixel)
+    for (std::size_t r = 0; r < 4; ++r) {
+      const auto direct = static_cast<float>(pixel + r * r);
+      const float indirect = 0.5F * static_cast<float>(r), caustic = 0.25F, albedo = 0.5F;
+      film.add(pixel, r,
+               {.direct = &direct,
+                .indirect = &indirect,
+                .caustic = &caustic,
+                .albedo = &albedo,
+                .normal = Vec3(0, 0, 2),
+                .depth = 3,
+                .seen = pixel == 5 ? 0 : 2,
+                .samples = 2});
+    }
+  const StillImage now = film.snapshot();
+  ASSERT_NO_THROW(check_consistent(now));
+  const StillImage end = film.finish();
+  EXPECT_EQ(now.radiance, end.radiance);
+  EXPECT_EQ(now.radiance_stderr, end.radiance_stderr);
+  EXPECT_EQ(now.direct, end.direct);
+  EXPECT_EQ(now.indirect, end.indirect);
+  EXPECT_EQ(now.caustic, end.caustic);
+  EXPECT_EQ(now.normal, end.normal);
+  EXPECT_EQ(now.depth, end.depth);
+  EXPECT_EQ(now.samples, end.samples);
+}
+
 }  // namespace
 }  // namespace reemit

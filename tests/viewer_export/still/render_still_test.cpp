@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "scenes/model/error.h"
+#include "solver/progressive_solver.h"
 #include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
+#include "tests/support/never.h"
 
 namespace reemit {
 namespace {
@@ -114,6 +116,111 @@ TEST(RenderStill, same_bits_for_any_number_of_threads) {
   EXPECT_EQ(one.radiance_stderr, five.radiance_stderr);
   settings.seed = 2;
   EXPECT_NE(one.radiance, render(room, solution, inside(), settings).radiance);
+}
+
+StillSettings refined_still(double error) {
+  StillSettings settings = small_still(Integrator::kGather, 16);
+  settings.width = 64;
+  settings.height = 48;
+  settings.smooth = true;
+  settings.error_target = error;
+  return settings;
+}
+
+TEST(RenderStill, smoothed_pictures_get_samples_where_noise_is_left) {
+  const RoomBuilder room = lamp_room();
+  const Solution solution = test::uniform_solution(room, 1, 0.5);
+  const StillImage even = render(room, solution, inside(), refined_still(0.99));
+  const StillImage refined = render(room, solution, inside(), refined_still(0.01));
+  ASSERT_NO_THROW(check_consistent(refined));
+  EXPECT_TRUE(refined.smoothed);
+  for (const float samples : even.samples) EXPECT_EQ(samples, 16);
+  ASSERT_GT(even.info.error, 0.015) << "nothing to refine";
+  EXPECT_LE(refined.info.error, 0.01);
+  // A true picture tells whether what is stated is so: within a half, as it is stated of smoothed pictures.
+  StillSettings settings = refined_still(0);
+  settings.smooth = false;
+  settings.spp = 1024;
+  settings.seed = 99;
+  const StillImage truth = render(room, solution, inside(), settings);
+  const auto error_of = [&](const StillImage& image) {
+    const std::vector<double> scales = relative_scales(truth.radiance, 1, 0, settings.error_floor);
+    double sum = 0;
+    for (std::size_t p = 0; p < scales.size(); ++p)
+      sum += std::pow(scales[p] * static_cast<double>(image.radiance[p] - truth.radiance[p]), 2);
+    return std::sqrt(sum / static_cast<double>(scales.size()));
+  };
+  EXPECT_LT(error_of(refined), 0.016);
+  EXPECT_GT(error_of(even), 1.5 * error_of(refined));
+  const auto [fewest, most] = std::minmax_element(refined.samples.begin(), refined.samples.end());
+  EXPECT_EQ(*fewest, 16);
+  EXPECT_GE(*most, 128);
+}
+
+TEST(RenderStill, refinement_ends_where_noise_is_that_of_the_zones) {
+  // So few packets that no sample of a pixel makes up for them.
+  const RoomBuilder room = lamp_room();
+  SolverSettings solver;
+  solver.packets = 30'000;
+  const Solution solution = solve(room.scene(), room.mesh(), solver, {}, test::kNever);
+  StillSettings settings = refined_still(1e-3);
+  settings.width = 32;
+  settings.height = 24;
+  const StillImage image = render(room, solution, inside(), settings);
+  EXPECT_TRUE(image.limited_by_zones);
+  EXPECT_GT(image.info.error, 1e-3);
+  double rays = 0;
+  for (const float samples : image.samples) rays += static_cast<double>(samples);
+  EXPECT_LT(rays, 0.7 * settings.most_spp * static_cast<double>(image.pixel_count())) << "it did not notice";
+}
+
+TEST(RenderStill, refinement_that_is_interrupted_hands_over_what_was_smoothed) {
+  const RoomBuilder room = furnace(3, 0.5, 8);
+  const Solution solution = test::uniform_solution(room, 3, 3);
+  const Room walls(room.scene(), solution.mesh);
+  const StillSettings settings = refined_still(1e-7);
+  std::atomic<bool> interrupt{false};
+  const StillImage image = render_still(
+      walls, solution, inside(), settings,
+      [&](const StillProgress& now) {
+        if (now.fraction > 0.6) interrupt = true;
+      },
+      interrupt);
+  EXPECT_TRUE(interrupt);
+  EXPECT_TRUE(image.smoothed);
+  EXPECT_TRUE(image.interrupted);
+  EXPECT_NO_THROW(check_consistent(image));
+  double mean = 0;  // smoothed pixels are no independent ones
+  for (const float l : image.radiance)
+    mean += static_cast<double>(l) / static_cast<double>(image.pixel_count());
+  EXPECT_NEAR(mean, 6 / pi, 0.002);
+}
+
+TEST(RenderStill, refinement_keeps_to_the_camera_rays_it_may_use) {
+  const RoomBuilder room = lamp_room();
+  const Solution solution = test::uniform_solution(room, 1, 0.5);
+  StillSettings settings = refined_still(1e-4);
+  settings.most_mean_spp = 24;
+  const StillImage image = render(room, solution, inside(), settings);
+  double rays = 0;
+  for (const float samples : image.samples) rays += static_cast<double>(samples);
+  const auto pixels = static_cast<double>(image.pixel_count());
+  EXPECT_LE(rays, 24 * pixels);
+  EXPECT_GT(rays, 20 * pixels);
+  EXPECT_GT(image.info.error, 1e-4);
+}
+
+TEST(RenderStill, refined_pictures_have_the_same_bits_for_any_number_of_threads) {
+  const RoomBuilder room = lamp_room();
+  const Solution solution = test::uniform_solution(room, 1, 0.5);
+  StillSettings settings = refined_still(0.02);
+  settings.threads = 1;
+  const StillImage one = render(room, solution, inside(), settings);
+  settings.threads = 5;
+  const StillImage five = render(room, solution, inside(), settings);
+  EXPECT_EQ(one.samples, five.samples);
+  EXPECT_EQ(one.radiance, five.radiance);
+  EXPECT_EQ(one.radiance_stderr, five.radiance_stderr);
 }
 
 TEST(RenderStill, standard_errors_are_true) {
