@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
@@ -17,6 +16,7 @@
 #include "solver/run/examination.h"
 #include "solver/run/prepared_room.h"
 #include "solver/run/schedule.h"
+#include "solver/run/thread_count.h"
 #include "solver/shoot/batches_ahead.h"
 #include "solver/tally/batch_statistics.h"
 #include "solver/tally/stop_rule.h"
@@ -42,11 +42,6 @@ EnergyAudit empty_audit(const Solution& solution) {
     band.absorbed_on_backs.assign(solution.surface_names.size(), 0);
   });
   return audit;
-}
-
-int thread_count(const SolverSettings& settings) {
-  const int cores = tbb::info::default_concurrency();
-  return settings.threads > 0 ? std::min(settings.threads, cores) : cores;
 }
 
 /// What a solution tells of the run so far.
@@ -107,7 +102,7 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
     throw InputError(scene.source, "the room has a sky, and the matrix method has none",
                      "Solve it with --method shooting or walk.");
   if (room.is_dark()) return solution;
-  tbb::task_arena arena(thread_count(solution.settings));
+  tbb::task_arena arena(thread_count(solution.settings.threads));
   arena.execute([&] {
     run_matrix(room, solution, watch.progress, interrupt);
     if (examination == Examination::kWhole)
@@ -143,7 +138,7 @@ class ProgressiveSolver::Run {
         solution_(prepared_to_go_on(std::move(start))),
         begin_(seconds_ago(solution_.record.seconds)),
         room_(scene, solution_, preparing),
-        arena_(thread_count(solution_.settings)),
+        arena_(thread_count(solution_.settings.threads)),
         schedule_(begin_, solution_),
         plan_(solution_.settings, solution_.mesh.zone_count(), solution_.record.unit_packets),
         rule_(solution_.settings, plan_, schedule_.batches_s) {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include "solver/run/thread_count.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
@@ -54,8 +54,7 @@ ExitCode export_form_factors(const FormFactorExport& options) {
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;
   Progress progress("form factors", progress_style(options.style.quiet, options.style.verbose));
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
+  tbb::task_arena arena(thread_count(options.threads));
   const FormFactors factors = arena.execute([&] {
     return compute_form_factors(
         cells, rays, {.seed = options.seed, .enforce_closure = true},

@@ -209,11 +209,9 @@ Source load_source(const RenderOptions& options) {
   return {std::move(scene), std::move(solution)};
 }
 
-/// What the options leave open.
+/// What the options leave open of it.
 void choose_quality(RenderOptions& options) {
   StillSettings& still = options.still;
-  still.width = options.size.width;
-  still.height = options.size.height;
   const bool is_gathered = still.integrator == Integrator::kGather;
   still.smooth = options.smooth.value_or(is_gathered && still.error_target == 0);
   if (options.spp > 0) {
@@ -238,6 +236,8 @@ ExitCode run_render(RenderOptions options) {
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) check_output(job.file);
 
+  options.still.width = options.size.width;
+  options.still.height = options.size.height;
   choose_quality(options);
   Renderer renderer(options, room, solution);
   std::size_t done = 0;

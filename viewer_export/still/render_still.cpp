@@ -9,12 +9,11 @@
 #include <optional>
 #include <utility>
 
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "scenes/model/error.h"
 #include "scenes/model/stop_token.h"
+#include "solver/run/thread_count.h"
 #include "viewer_export/output/refinement.h"
 #include "viewer_export/still/smoothed_refinement.h"
 #include "viewer_export/still/tile_renderer.h"
@@ -61,11 +60,13 @@ class Rendering {
         film_(film),
         progress_(progress),
         interrupt_(interrupt),
-        has_target_(settings.error_target > 0),
-        smooths_(settings.smooth && settings.integrator != Integrator::kZones) {
+        smooths_(settings.smooth && settings.integrator != Integrator::kZones),
+        refines_smoothed_(smooths_ && settings.error_target > 0),
+        refines_tiles_(!smooths_ && settings.error_target > 0) {
     for (const Tile& tile : tiles_of(film.image().width, film.image().height)) tiles_.push_back({tile, {}});
     const int replicates = static_cast<int>(film.replicates());
-    most_samples_ = ((has_target_ ? settings.most_spp : settings.spp) + replicates - 1) / replicates;
+    most_samples_ =
+        ((settings.error_target > 0 ? settings.most_spp : settings.spp) + replicates - 1) / replicates;
     log2_samples_ = std::bit_width(static_cast<unsigned>(most_samples_ - 1));
   }
 
@@ -73,7 +74,7 @@ class Rendering {
     int samples = 0;
     const int replicates = static_cast<int>(film_.replicates());
     const int all_alike =
-        refines_smoothed() ? std::min(most_samples_, kFewestToStop / replicates) : most_samples_;
+        refines_smoothed_ ? std::min(most_samples_, kFewestToStop / replicates) : most_samples_;
     while (samples < all_alike && !interrupt_) {
       const int wished = std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(samples) / 2)),
                                     kSmallestBlock, kLargestBlock);
@@ -101,10 +102,10 @@ class Rendering {
     const double pixels = static_cast<double>(film_.image().pixel_count());
     SmoothedRefinement refinement(
         film_,
-        {.target = refines_smoothed() ? settings_.error_target : std::numeric_limits<double>::infinity(),
+        {.target = refines_smoothed_ ? settings_.error_target : std::numeric_limits<double>::infinity(),
          .error_floor = settings_.error_floor,
          .most_samples = most_samples_,
-         .most_rays = refines_smoothed() && settings_.most_mean_spp > 0
+         .most_rays = refines_smoothed_ && settings_.most_mean_spp > 0
                           ? settings_.most_mean_spp * pixels
                           : std::numeric_limits<double>::infinity()},
         stop);
@@ -122,15 +123,12 @@ class Rendering {
 
   double error() const { return progress_now_.error; }
   bool limited_by_zones() const {
-    return is_stalled_ || (has_target_ && !smooths_ && progress_now_.error > settings_.error_target &&
+    return is_stalled_ || (refines_tiles_ && progress_now_.error > settings_.error_target &&
                            std::any_of(tiles_.begin(), tiles_.end(),
                                        [](const TileState& t) { return t.part.is_stalled(); }));
   }
 
  private:
-  /// The picture gets samples of its own for each pixel first; smoothing and what it asks for come after.
-  bool refines_smoothed() const { return smooths_ && has_target_; }
-
   void render_block(const SampleBlock& block, int all_samples) {
     std::vector<PixelSamples> blocks;
     for (const TileState& t : tiles_)
@@ -138,7 +136,7 @@ class Rendering {
     const auto share_at = [&](int replicates) {
       const double of_block = static_cast<double>(replicates) / static_cast<double>(film_.replicates());
       const double share = (block.first + block.samples * of_block) / all_samples;
-      return refines_smoothed() ? kShareOfFirst * share : share;
+      return refines_smoothed_ ? kShareOfFirst * share : share;
     };
     render_blocks(blocks, share_at(block.first_replicate),
                   share_at(block.first_replicate + block.replicates));
@@ -178,9 +176,8 @@ class Rendering {
   /// Pre: the mutex is held, or no tile is being rendered.
   void report(double of_samples) {
     if (!progress_) return;
-    const double by_error = has_target_ && !smooths_
-                                ? std::min(1.0, std::pow(settings_.error_target / progress_now_.error, 2))
-                                : 0.0;
+    const double by_error =
+        refines_tiles_ ? std::min(1.0, std::pow(settings_.error_target / progress_now_.error, 2)) : 0.0;
     progress_now_.fraction = std::max({progress_now_.fraction, of_samples, by_error});
     progress_now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     progress_(progress_now_);
@@ -192,7 +189,7 @@ class Rendering {
     const std::size_t pixels = film_.image().pixel_count();
     const std::size_t bands = film_.image().bands.count();
     const double target2 = std::pow(RefinedPart::aim(settings_.error_target), 2);
-    const bool may_stop = has_target_ && !smooths_ && progress_now_.samples >= kFewestToStop;
+    const bool may_stop = refines_tiles_ && progress_now_.samples >= kFewestToStop;
     std::vector<double> worst(tiles_.size(), 0.0);
     double error2 = 0;
     for (std::size_t b = 0; b < bands; ++b) {
@@ -223,8 +220,9 @@ class Rendering {
   const StillProgressCallback& progress_;
   const std::atomic<bool>& interrupt_;
   std::vector<TileState> tiles_;
-  bool has_target_;
   bool smooths_;
+  bool refines_smoothed_;  // all pixels alike first, then what SmoothedRefinement asks for
+  bool refines_tiles_;
   bool is_stalled_ = false;
   bool has_zone_values_ = false;
   int most_samples_ = 1;  // per replicate
@@ -263,7 +261,7 @@ StillImage render_still(const StillLight& light, const Camera& camera, const Sti
   const int width = settings.width != 0 ? settings.width : camera.width;
   const int height = settings.height != 0 ? settings.height : camera.height;
   const PinholeCamera pinhole(camera, width, height, room.rays());
-  tbb::task_arena arena(thread_count(settings));
+  tbb::task_arena arena(thread_count(settings.threads));
   StillImage image;
   arena.execute([&] {
     const StopToken stop(interrupt);

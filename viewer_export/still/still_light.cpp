@@ -5,6 +5,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "solver/run/thread_count.h"
 #include "viewer_export/still/film.h"
 
 namespace reemit {
@@ -21,7 +22,7 @@ std::unique_ptr<StillLight> StillLight::prepare(const Room& room, const Solution
                                                 const StillSettings& settings,
                                                 const std::atomic<bool>& interrupt) {
   check(settings);
-  tbb::task_arena arena(thread_count(settings));
+  tbb::task_arena arena(thread_count(settings.threads));
   return arena.execute([&] {
     const StopToken stop(interrupt);
     return std::unique_ptr<StillLight>(new StillLight(room, solution, settings, stop));

@@ -1,9 +1,6 @@
 #include "viewer_export/still/still_settings.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include <tbb/info.h>
 
 #include "scenes/model/error.h"
 
@@ -21,8 +18,7 @@ std::string to_string(Integrator integrator) {
   return "";
 }
 
-void check(const StillSettings& settings) {
-  const StillSettings& s = settings;
+void check(const StillSettings& s) {
   const auto require = [](bool good, const char* name, const char* range) {
     if (!good)
       throw InputError("still", std::string(name) + " is out of range", std::string("Choose ") + range);
@@ -35,11 +31,6 @@ void check(const StillSettings& settings) {
   require(s.error_floor >= 0 && s.error_floor <= 1, "error floor", "a share of at most 1, such as 1%.");
   require(s.close_hit >= 0 && std::isfinite(s.close_hit), "close-hit distance", "0 or more zone sizes.");
   require(s.threads >= 0, "number of threads", "0 (all cores) or more.");
-}
-
-int thread_count(const StillSettings& settings) {
-  const int cores = tbb::info::default_concurrency();
-  return settings.threads > 0 ? std::min(settings.threads, cores) : cores;
 }
 
 }  // namespace reemit

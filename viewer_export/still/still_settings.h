@@ -48,7 +48,4 @@ struct StillSettings {
 /// Throws InputError for settings out of range.
 void check(const StillSettings& settings);
 
-/// Threads for what is done with these settings.
-int thread_count(const StillSettings& settings);
-
 }  // namespace reemit

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/io/common/up_direction.h"
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
+#include "solver/run/thread_count.h"
 #include "solver/tally/replicates.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_refinement.h"
@@ -166,8 +166,7 @@ VertexData gather_vertices(const Room& room, const Solution& solution, const Ver
   const Scene& scene = room.scene();
   const VertexRings rings(room.surfaces(), solution, settings.all_zones);
   VertexData data = make_vertices(scene, solution, rings);
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
+  tbb::task_arena arena(thread_count(settings.threads));
   arena.execute([&] {
     const VertexGatherer gatherer(room, solution, rings, settings, VertexRefinement::most_points(settings),
                                   StopToken(interrupt));
