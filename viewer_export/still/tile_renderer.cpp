@@ -72,7 +72,9 @@ void TileRenderer::render(std::span<const std::uint32_t> pixels, const SampleBlo
   found.reserve(pixels.size() * static_cast<std::size_t>(block.replicates));
   GatherBatch batch(light_.gather());
   float* next = values.data();
-  for (const std::uint32_t pixel : pixels)
+  for (const std::uint32_t pixel : pixels) {
+    const std::uint32_t column = pixel % width;
+    const std::uint32_t row = pixel / width;
     for (int r = block.first_replicate; r < last_replicate; ++r, next += stride) {
       if (stop_->requested()) return;
       float* caustic = has_caustics_ ? next + 3 * bands : nullptr;
@@ -96,11 +98,12 @@ void TileRenderer::render(std::span<const std::uint32_t> pixels, const SampleBlo
                       .earlier = block.first}};
       for (int s = block.first; s < block.first + block.samples; ++s) {
         const std::array<float, 2> u = sums.sampler.place(s);
-        add_sample(pixel % width + 0.5 + sample_filter(settings_->filter, u[0]),
-                   pixel / width + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
+        add_sample(column + 0.5 + sample_filter(settings_->filter, u[0]),
+                   row + 0.5 + sample_filter(settings_->filter, u[1]), s, sums, batch);
       }
       found.push_back(sums.found);
     }
+  }
   batch.flush();
   auto next_found = found.begin();
   for (const std::uint32_t pixel : pixels)
