@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -82,6 +84,14 @@ std::string factor_row(const std::vector<Curve>& curves, const std::string& what
                      time_cell(f.slow), fast, time_cell(f.fast), ratio, asked);
 }
 
+/// In the order in which they first come.
+std::vector<std::string> rooms_of(const std::vector<Curve>& curves) {
+  std::vector<std::string> rooms;
+  for (const Curve& c : curves)
+    if (rooms.empty() || rooms.back() != c.room) rooms.push_back(c.room);
+  return rooms;
+}
+
 std::string factor_table(const std::vector<Curve>& vertices, const std::vector<Curve>& stills) {
   std::string text =
       "| what | error | slower [s] | faster [s] | factor (least .. most over seeds) | aimed at |\n"
@@ -89,10 +99,13 @@ std::string factor_table(const std::vector<Curve>& vertices, const std::vector<C
   for (const double error : kErrors)
     text += factor_row(vertices, "vertices, rms", "cornell_box", "zones averaged", "gathered", error,
                        error == 0.02 ? "20" : "");
-  for (const char* room : {"cornell_box", "cornell_box grey", "mirrors", "glass", "gloss"})
-    for (const double error : {0.05, 0.03, 0.02, 0.01})
-      text += factor_row(stills, "still, median", room, "path", "gather", error,
-                         error == 0.03 && std::string(room).starts_with("cornell") ? "8" : "");
+  for (const std::string& room : rooms_of(stills)) {
+    const char* const aim = room.starts_with("cornell") ? "40" : "15";
+    for (const double error : {0.03, 0.015})
+      text += factor_row(stills, "still, median", room, "path", "gather", error, "") +
+              factor_row(stills, "still, median", room, "path", "smoothed", error, error < 0.02 ? aim : "");
+    text += factor_row(stills, "still, median", room, "smoothed", "next view", 0.015, "3");
+  }
   return text;
 }
 

@@ -81,7 +81,8 @@ std::vector<StudiedRoom> find_rooms(const Options& options, Table& table) {
   {
     StudiedRoom& office = add("office", library / "office.json", 0.02);
     office.vertex_stride = 19;
-    office.picture_size = 96;  // its paths cost ten times those of the other rooms
+    office.picture_size = 256;
+    office.tile_stride = 8;
     office.reference_samples = 2048;
     office.path_samples = {8, 32, 128};
   }
@@ -93,14 +94,24 @@ std::vector<StudiedRoom> find_rooms(const Options& options, Table& table) {
     room.stills_only = true;
     room.reference_samples = 8192;
   }
-  for (const char* name : {"scene3", "scene6"}) {
-    const std::string file = fmt::format("erw5/{}.mgf", name);
-    if (const auto path = find_below(options.rooms, file))
-      add(fmt::format("erw5_{}", name), *path, 0.012);
-    else
-      table.notes.push_back(
-          fmt::format("erw5_{}: left out, {} is not below the folder given by --rooms", name, file));
-  }
+  const auto add_found = [&](const std::string& name, const std::string& file,
+                             double vertex_zone_area) -> StudiedRoom* {
+    if (const auto path = find_below(options.rooms, file)) return &add(name, *path, vertex_zone_area);
+    table.notes.push_back(
+        fmt::format("{}: left out, {} is not below the folder given by --rooms", name, file));
+    return nullptr;
+  };
+  for (const char* name : {"scene3", "scene6"})
+    add_found(fmt::format("erw5_{}", name), fmt::format("erw5/{}.mgf", name), 0.012);
+  for (const auto& [name, file] : {std::pair("conference_1994", "conference_1994/conf.mgf"),
+                                   std::pair("modern_hall", "modern_hall/modern_hall.obj")})
+    if (StudiedRoom* room = add_found(name, file, 0)) {
+      room->stills_only = true;
+      room->picture_size = 256;
+      room->tile_stride = 8;
+      room->reference_samples = 2048;
+      room->path_samples = {8, 32, 128};
+    }
   return rooms;
 }
 

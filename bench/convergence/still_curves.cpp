@@ -1,10 +1,14 @@
-// Error over time of stills by the three integrators, solve included where a zone solution is read.
+// Error over time of stills by the three integrators and smoothed, solve included where a zone solution is
+// read.
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <memory>
+#include <numeric>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -23,13 +27,40 @@ namespace {
 /// One command line of a user: solve, then render.
 struct StillEffort {
   std::uint64_t packets;
-  int samples;  ///< Camera rays per pixel.
+  int samples = 0;          ///< Camera rays per pixel.
+  double error_target = 0;  ///< In their place.
 };
 
-constexpr std::array<StillEffort, 4> kStillEfforts{
-    {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 128}}};
-constexpr std::array<StillEffort, 4> kZoneEfforts{
-    {{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}};
+/// Name of a method, and of what it costs in a room that has been solved.
+constexpr const char* kSmoothed = "smoothed";
+constexpr const char* kNextView = "next view";
+
+/// A way to a picture, and how much work goes into it from level to level.
+struct StillMethod {
+  std::string name;
+  Integrator integrator;
+  bool smooth;
+  std::vector<StillEffort> efforts;
+};
+
+/// Path tracing is shared out by room: its paths cost ten times as much in one as in another.
+std::vector<StillMethod> still_methods(const std::vector<int>& path_samples) {
+  std::vector<StillMethod> methods{
+      {"zones", Integrator::kZones, false, {{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}},
+      {"gather",
+       Integrator::kGather,
+       false,
+       {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 128}}},
+      {kSmoothed,
+       Integrator::kGather,
+       true,
+       {{1U << 18, 2}, {1U << 19, 4}, {1U << 20, 8}, {1U << 21, 16}, {1U << 22, 32}}},
+      {"refined", Integrator::kGather, true, {{1U << 20, 0, 0.06}, {1U << 21, 0, 0.03}, {1U << 22, 0, 0.02}}},
+      {"path", Integrator::kPath, false, {}}};
+  for (const int samples : path_samples) methods.back().efforts.push_back({0, samples});
+  return methods;
+}
+
 /// Camera rays of a replicate in one block of the reference.
 constexpr int kReferenceBlock = 16;
 
@@ -58,6 +89,10 @@ std::vector<float> chosen_values(const StillImage& image, const std::vector<floa
                                      bands +
                                  b]);
   return values;
+}
+
+double mean_of(const std::vector<float>& layer) {
+  return std::accumulate(layer.begin(), layer.end(), 0.0) / static_cast<double>(layer.size());
 }
 
 int reference_samples(const StudiedRoom& room, const Options& options) {
@@ -110,7 +145,8 @@ class StillCurves {
         options_(options),
         table_(table),
         mesh_(build_mesh(room.scene)),
-        tiles_(chosen_tiles(room)) {
+        tiles_(chosen_tiles(room)),
+        methods_(still_methods(room.path_samples)) {
     norm_.floor_share = StillSettings{}.error_floor;
     const int samples = reference_samples(room, options);
     reference_ = cache.get(
@@ -126,29 +162,39 @@ class StillCurves {
                     100 * reference_error_.median, 100 * reference_error_.rms));
   }
 
-  void run(int seed, std::size_t level, std::size_t levels) {
-    if (level < levels) {
-      measure(Integrator::kZones, seed, level, kZoneEfforts[level]);
-      measure(Integrator::kGather, seed, level, kStillEfforts[level]);
-    }
-    if (level < room_.path_samples.size() - (options_.quick ? 1 : 0))
-      measure(Integrator::kPath, seed, level, {0, room_.path_samples[level]});
+  /// All methods that have this level.
+  void run(int seed, std::size_t level) {
+    for (const StillMethod& method : methods_)
+      if (level < levels_of(method)) measure(method, seed, level);
+  }
+
+  std::size_t levels() const {
+    std::size_t most = 0;
+    for (const StillMethod& method : methods_) most = std::max(most, levels_of(method));
+    return most;
   }
 
  private:
-  void measure(Integrator integrator, int seed, std::size_t level, const StillEffort& effort) {
+  std::size_t levels_of(const StillMethod& method) const {
+    return method.efforts.size() - (options_.quick ? 1 : 0);
+  }
+
+  void measure(const StillMethod& method, int seed, std::size_t level) {
+    const StillEffort& effort = method.efforts[level];
     SolverSettings solver;
     solver.threads = options_.threads;
     solver.seed = static_cast<std::uint64_t>(seed);
     // render_still wants a solution of the room even where it reads none; that one is not timed.
-    const bool needs_solution = integrator != Integrator::kPath;
+    const bool needs_solution = method.integrator != Integrator::kPath;
     solver.packets = needs_solution ? effort.packets : 1U << 14;
     StillSettings still;
     still.threads = options_.threads;
     still.seed = solver.seed;
-    still.integrator = integrator;
+    still.integrator = method.integrator;
+    still.smooth = method.smooth;
     still.width = still.height = room_.picture_size;
-    still.spp = effort.samples;
+    if (effort.samples > 0) still.spp = effort.samples;
+    still.error_target = effort.error_target;
     Solution solution;
     MeshResult own_mesh = mesh_;
     const double solve_seconds =
@@ -159,13 +205,22 @@ class StillCurves {
       image = render_still(walls, solution, room_.camera, still, {}, never_);
     });
     // What a picture of the zones costs, and how good it is, depends on their packets.
-    const bool of_zones = integrator == Integrator::kZones;
-    report({room_.name, "still", to_string(integrator), solver.seed, static_cast<int>(level),
-            render_seconds + (needs_solution ? solve_seconds : 0.0),
-            of_zones ? static_cast<double>(solution.record.rays) : static_cast<double>(effort.samples),
-            of_zones ? "rays of the solve" : "samples per pixel",
-            deviation(chosen_values(image, image.radiance, tiles_), reference_, norm_), reference_error_},
-           table_);
+    const bool of_zones = method.integrator == Integrator::kZones;
+    Measurement row{room_.name,
+                    "still",
+                    method.name,
+                    solver.seed,
+                    static_cast<int>(level),
+                    render_seconds + (needs_solution ? solve_seconds : 0.0),
+                    of_zones ? static_cast<double>(solution.record.rays) : mean_of(image.samples),
+                    of_zones ? "rays of the solve" : "samples per pixel",
+                    deviation(chosen_values(image, image.radiance, tiles_), reference_, norm_),
+                    reference_error_};
+    report(row, table_);
+    if (method.name != kSmoothed) return;
+    row.method = kNextView;
+    row.seconds = render_seconds;
+    report(row, table_);
   }
 
   const std::atomic<bool> never_{false};
@@ -174,6 +229,7 @@ class StillCurves {
   Table& table_;
   MeshResult mesh_;
   std::vector<Tile> tiles_;
+  std::vector<StillMethod> methods_;
   ErrorNorm norm_;
   Reference reference_;
   ErrorPair reference_error_;
@@ -184,10 +240,8 @@ class StillCurves {
 void measure_stills(const StudiedRoom& room, const Options& options, const ReferenceCache& cache,
                     Table& table) {
   StillCurves curves(room, options, cache, table);
-  const std::size_t levels = kStillEfforts.size() - (options.quick ? 1 : 0);
   for (int seed = 1; seed <= options.seeds; ++seed)
-    for (std::size_t level = 0; level < std::max(levels, room.path_samples.size()); ++level)
-      curves.run(seed, level, levels);
+    for (std::size_t level = 0; level < curves.levels(); ++level) curves.run(seed, level);
 }
 
 }  // namespace reemit::bench
