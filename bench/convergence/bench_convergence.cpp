@@ -55,7 +55,10 @@ Table measure(const Options& options, const Jobs& jobs, const std::vector<std::s
       if (jobs.stills) measure_stills(room, options, cache, table);
     }
   });
-  table.notes.push_back(fmt::format("the whole measurement took {:.0f} s, references included", seconds));
+  table.notes.push_back(fmt::format("the whole measurement took {:.0f} s, {}", seconds,
+                                    options.reference_cache.empty()
+                                        ? "references included"
+                                        : "references kept from earlier runs not included"));
   return table;
 }
 

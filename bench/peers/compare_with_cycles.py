@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """Stills and vertex values of the same rooms by reemit and by Blender's Cycles: time at equal error.
 
-Usage: compare_with_cycles.py PROGRAM [--room NAME ...] [--threads N] [--quick] [--keep FOLDER] [--page FILE]
+Usage: compare_with_cycles.py PROGRAM [--room NAME ...] [--threads N] [--quick] [--keep FOLDER]
 
 PROGRAM is build/release/reemit. Needs Blender with Cycles (Debian: blender) and, for Python, numpy, h5py and
 OpenImageIO (python3-numpy, python3-h5py, python3-openimageio); says so and ends with exit code 77 where they are
-missing. Prints two tables in Markdown, and writes them to FILE in place of what stands there between the lines
-"<!-- peers -->" and "<!-- /peers -->".
+missing. Prints two tables in Markdown.
 
 Both programs get the same triangles, materials and camera; Cycles traces all bounces, unclamped. Reference of both: the
 mean of two long runs of Cycles, with seeds of their own, which shares nothing with reemit; how far the two differ says
@@ -45,10 +44,9 @@ VERTEX_EFFORTS = ((2**18, ("--samples", "64", "--light-samples", "16")),
                   (2**21, ("--samples", "512", "--light-samples", "128")))
 # Samples of Cycles per pixel or vertex; of each of the two references.
 STILL_SAMPLES = (16, 64, 256)
-STILL_REFERENCE = 4096
-DENOISED_SAMPLES = (16, 64)
+STILL_REFERENCE = 1024
 VERTEX_SAMPLES = (64, 256)
-VERTEX_REFERENCE = 4096
+VERTEX_REFERENCE = 512
 SIZE = 256  # [px], width and height of stills
 ERRORS = (0.05, 0.03, 0.02, 0.01)
 # Largest zone of the mesh whose vertices are wanted [m2].
@@ -131,13 +129,49 @@ def read_ply(file):
     return vertices, faces["v"]
 
 
+def ring(centre, axis, radius, count):
+    """Points of a circle, counter-clockwise about the axis."""
+    axis = axis / numpy.linalg.norm(axis)
+    across = numpy.cross(axis, numpy.eye(3)[numpy.argmin(abs(axis))])
+    across /= numpy.linalg.norm(across)
+    phi = 2 * numpy.pi * numpy.arange(count) / count
+    return centre + radius * (numpy.outer(numpy.cos(phi), across) + numpy.outer(numpy.sin(phi), numpy.cross(axis, across)))
+
+
+def flat_shape(row, count=96):
+    """A curved shape of the solution file as triangles, wound towards its front."""
+    kind, first, second, radius, other_radius, inside = int(row[0]), row[1:4], row[4:7], row[7], row[8], row[9]
+    if kind == 0:
+        polar = numpy.pi * numpy.arange(count // 2 + 1) / (count // 2)
+        up = numpy.array([0, 0, 1.0])
+        rings = [ring(first - radius * numpy.cos(a) * up, up, radius * numpy.sin(a), count) for a in polar]
+    elif kind == 1:
+        rings = [ring(first, second, radius, count), ring(first, second, other_radius, count)]
+    else:
+        rings = [ring(first, second - first, radius, count),
+                 ring(second, second - first, radius if kind == 2 else other_radius, count)]
+    low = numpy.arange(count) + count * numpy.arange(len(rings) - 1)[:, None]
+    next_low = (numpy.arange(count) + 1) % count + count * numpy.arange(len(rings) - 1)[:, None]
+    triangles = numpy.concatenate([numpy.stack([low, next_low, next_low + count], axis=2).reshape(-1, 3),
+                                   numpy.stack([low, next_low + count, low + count], axis=2).reshape(-1, 3)])
+    return numpy.concatenate(rings), triangles[:, ::-1] if inside else triangles
+
+
 def read_room(solution):
-    """Triangles and materials of the room as it was traced."""
+    """Triangles and materials of the room as it was traced; curved shapes as many flat triangles."""
     with h5py.File(solution, "r") as file:
-        material_of_surface = file["surfaces/material"][:]
-        surface = file["mesh/triangle_surface"][:]
-        return {"vertices": file["mesh/vertices"][:], "triangles": file["mesh/triangles"][:],
-                "triangle_material": material_of_surface[surface], "albedo": file["materials/reflectance"][:],
+        material = file["surfaces/material"][:][file["mesh/triangle_surface"][:]]
+        vertices, triangles = [file["mesh/vertices"][:]], file["mesh/triangles"][:]
+        shape = file["mesh/triangle_shape"][:].astype(numpy.int64) if "mesh/triangle_shape" in file else None
+        is_flat = numpy.ones(len(triangles), bool) if shape is None else shape == 2**32 - 1
+        all_triangles, all_materials = [triangles[is_flat].astype(numpy.int64)], [material[is_flat]]
+        for number in numpy.unique(shape[~is_flat]) if shape is not None else ():
+            points, faces = flat_shape(file["mesh/shapes"][number])
+            all_triangles.append(faces + sum(len(v) for v in vertices))
+            vertices.append(points)
+            all_materials.append(numpy.full(len(faces), material[shape == number][0]))
+        return {"vertices": numpy.concatenate(vertices), "triangles": numpy.concatenate(all_triangles),
+                "triangle_material": numpy.concatenate(all_materials), "albedo": file["materials/reflectance"][:],
                 "radiance": file["materials/emitted_radiance"][:], "two_sided": file["materials/two_sided"][:]}
 
 
@@ -153,9 +187,10 @@ def vertex_areas(vertices, triangles):
 class Errors:
     """Of values [items][bands] against the mean of two long runs, whose noise is taken out."""
 
-    def __init__(self, first, second, weight):
-        """weight(truth): of the squared deviations, [items][bands]."""
+    def __init__(self, first, second, share, weight):
+        """share: of an item in the sum of all; weight(truth): of the squared deviations, [items][bands]."""
         self.truth = (first + second) / 2
+        self.share = share
         self.weight = weight(self.truth)
         self.noise2 = self.squares(first - second) / 4
 
@@ -170,7 +205,7 @@ class Errors:
 
     def gain(self, values):
         """Sum of the values over that of the truth, less 1: what the programs disagree in as a whole."""
-        return values.sum() / self.truth.sum() - 1
+        return (self.share * values).sum() / (self.share * self.truth).sum() - 1
 
 
 def still_weight(truth):
@@ -208,28 +243,24 @@ def measure_stills(name, reemit, cycles, quick):
     cycles.write_room(**read_room(room))
     jobs = []
     reference = STILL_REFERENCE // (8 if quick else 1)
-    for samples, seed, denoise in ([(reference, 101, False), (reference, 102, False)] +
-                                   [(s, 1, False) for s in STILL_SAMPLES] + [(s, 1, True) for s in DENOISED_SAMPLES]):
-        jobs.append({"name": f"{samples}_{seed}{'_denoised' if denoise else ''}", "kind": "still", "samples": samples,
-                     "seed": seed, "denoise": denoise, "size": [SIZE, SIZE], "eye": camera["eye_m"],
-                     "look_at": camera["look_at_m"], "up": camera["up"], "fov_deg": camera["vertical_fov_deg"]})
+    for samples, seed in [(reference, 101), (reference, 102)] + [(s, 1) for s in STILL_SAMPLES]:
+        jobs.append({"name": f"{samples}_{seed}", "kind": "still", "samples": samples, "seed": seed, "size": [SIZE, SIZE],
+                     "eye": camera["eye_m"], "look_at": camera["look_at_m"], "up": camera["up"],
+                     "fov_deg": camera["vertical_fov_deg"]})
     seconds = cycles.do(jobs)
     pictures = {j["name"]: read_picture(cycles.folder / f"{j['name']}.exr").reshape(-1, 3) for j in jobs}
-    errors = Errors(pictures[jobs[0]["name"]], pictures[jobs[1]["name"]], still_weight)
-    runs, theirs, denoised, ours = [], [], [], []
+    errors = Errors(pictures[jobs[0]["name"]], pictures[jobs[1]["name"]], 1, still_weight)
+    runs, theirs, ours = [], [], []
     for job in jobs[2:]:
-        error = errors.of(pictures[job["name"]])
-        (denoised if job["denoise"] else theirs).append((seconds[job["name"]], error))
-        runs.append((f"Cycles, {job['samples']} samples{', denoised' if job['denoise'] else ''}", seconds[job["name"]],
-                     error, errors.gain(pictures[job["name"]])))
+        theirs.append((seconds[job["name"]], errors.of(pictures[job["name"]])))
+        runs.append((f"Cycles, {job['samples']} samples", *theirs[-1], errors.gain(pictures[job["name"]])))
     for packets, error in STILL_EFFORTS:
         solution, solve_seconds = reemit.solve(packets)
         picture, render_seconds = reemit.still(solution, "--smooth", "on", "--error", error)
         values = picture.reshape(-1, 3)
         ours.append((solve_seconds + render_seconds, errors.of(values)))
         runs.append((f"reemit, {packets} packets, --error {error}", ours[-1][0], ours[-1][1], errors.gain(values)))
-    return (compare(name, "still", ours, theirs) + compare(name, "still, Cycles denoised", ours, denoised),
-            [(name, "still", *r, errors.own()) for r in runs])
+    return compare(name, "still", ours, theirs), [(name, "still", *r, errors.own()) for r in runs]
 
 
 def measure_vertices(name, zone_area, reemit, cycles, quick):
@@ -244,30 +275,26 @@ def measure_vertices(name, zone_area, reemit, cycles, quick):
     cycles.write_room(
         **{**room, "triangles": room["triangles"][lamps], "triangle_material": room["triangle_material"][lamps]},
         point_vertices=numpy.stack([vertices[c] for c in "xyz"], axis=1), point_triangles=triangles[keep],
-        point_albedo=albedo_of(room, vertices))
+        point_albedo=room["albedo"][vertices["material"]])
     reference = VERTEX_REFERENCE // (8 if quick else 1)
     jobs = [{"name": f"{samples}_{seed}", "kind": "bake", "samples": samples, "seed": seed}
             for samples, seed in [(reference, 101), (reference, 102)] + [(s, 1) for s in VERTEX_SAMPLES]]
     seconds = cycles.do(jobs)
     baked = {j["name"]: numpy.pi * numpy.load(cycles.folder / f"{j['name']}.npy").astype(float) for j in jobs}
     area = numpy.where(is_point, vertex_areas(vertices, triangles[keep]), 0)[:, None]
-    errors = Errors(baked[jobs[0]["name"]], baked[jobs[1]["name"]],
+    errors = Errors(baked[jobs[0]["name"]], baked[jobs[1]["name"]], area,
                     lambda truth: area / (area * truth**2).sum(axis=0))
     runs, theirs, ours = [], [], []
     for job in jobs[2:]:
         theirs.append((seconds[job["name"]], errors.of(baked[job["name"]])))
-        runs.append((f"Cycles, {job['samples']} samples", *theirs[-1], errors.gain(area * baked[job["name"]])))
+        runs.append((f"Cycles, {job['samples']} samples", *theirs[-1], errors.gain(baked[job["name"]])))
     for packets, options in VERTEX_EFFORTS:
         solution, solve_seconds = reemit.solve(packets, *fine)
         (found, _), export_seconds = reemit.vertices(solution, *options)
         values = numpy.stack([found[f"irradiance_{b}"] for b in "rgb"], axis=1).astype(float)
         ours.append((solve_seconds + export_seconds, errors.of(values)))
-        runs.append((f"reemit, {packets} packets, {' '.join(options)}", *ours[-1], 0))
+        runs.append((f"reemit, {packets} packets, {' '.join(options)}", *ours[-1], errors.gain(values)))
     return compare(name, f"{is_point.sum()} vertices", ours, theirs), [(name, "vertices", *r, errors.own()) for r in runs]
-
-
-def albedo_of(room, vertices):
-    return room["albedo"][vertices["material"]]
 
 
 def main():

@@ -116,6 +116,7 @@ def set_up_cycles(threads):
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.light_sampling_threshold = 0
     cycles.use_adaptive_sampling = False
+    cycles.use_denoising = False  # Debian's Blender has no denoiser
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 1
     scene.view_settings.view_transform = "Raw"
@@ -128,7 +129,6 @@ def render(folder, job):
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = job["size"]
     scene.render.resolution_percentage = 100
-    scene.cycles.use_denoising = job["denoise"]
     place_camera(job)
     scene.render.filepath = str(folder / job["name"])
     start = time.monotonic()

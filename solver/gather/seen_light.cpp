@@ -22,14 +22,25 @@ enum SamplerNumber : int { kPlaces, kGlance, kOneLook, kOtherLook };
 
 }  // namespace
 
-SeenLight::SeenLight(const RadianceField& field, const DirectLight& direct, std::span<const double> scale,
-                     std::uint64_t seed)
-    : field_(&field), direct_(&direct), scale_(scale), seed_(seed) {}
+SeenLight::SeenLight(const RadianceField& field, const DirectLight& direct, std::span<const float> reflected,
+                     std::span<const double> scale, std::uint64_t seed)
+    : field_(&field), direct_(&direct), reflected_(reflected), scale_(scale), seed_(seed) {}
 
-bool SeenLight::is_dim(ZoneId zone, double limit) const {
-  const float* radiance = field_->reflected(zone);
+bool SeenLight::is_dim(ZoneId zone) const {
+  const float* radiance = &reflected_[zone.index() * scale_.size()];
   for (std::size_t b = 0; b < scale_.size(); ++b)
-    if (static_cast<double>(radiance[b]) > limit * scale_[b]) return false;
+    if (static_cast<double>(radiance[b]) > kDarkEnd * scale_[b]) return false;
+  return true;
+}
+
+bool SeenLight::is_dim(ZoneId zone, const Look& glance) const {
+  const float* reflectance = field_->room().zone_reflectance(zone);
+  for (std::size_t b = 0; b < scale_.size(); ++b) {
+    double irradiance = 0;
+    for (std::size_t i = 0; i < kPoints; ++i)
+      irradiance += static_cast<double>(glance.irradiance[i * scale_.size() + b]) / kPoints;
+    if (lambert_brdf_per_sr(reflectance[b]) * irradiance > kDarkZone * scale_[b]) return false;
+  }
   return true;
 }
 
@@ -58,22 +69,27 @@ void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& 
   for (std::size_t i = 0; i < kPoints; ++i) {
     if (hits.triangle[i] == RayTracer::kMiss) continue;
     const ZoneId end = room.mesh().zone_at(TriangleId(hits.triangle[i]), hits.u[i], hits.v[i], hits.front[i]);
-    const float* radiance = field_->reflected(end);
+    if (!end.valid()) continue;
+    const float* radiance = &reflected_[end.index() * bands];
     for (std::size_t b = 0; b < bands; ++b)
       look.irradiance[i * bands + b] += std::numbers::pi_v<float> * share * radiance[b];
-    if (hits.distance[i] > reach && !is_dim(end, kDarkEnd)) look.open[i] += share;
+    if (hits.distance[i] > reach && !is_dim(end)) look.open[i] += share;
   }
 }
 
-SeenLight::Look SeenLight::look_around(ZoneId zone, const Points& points, const PointSampler& sampler) const {
+void SeenLight::add_direct(const Points& points, const PointSampler& sampler, int rays, Look& look) const {
   const std::size_t bands = scale_.size();
-  const std::vector<float> weight(bands, 1.0F / kShadowRays);
-  Look found;
-  found.irradiance.assign(kPoints * bands, 0.0F);
+  const std::vector<float> weight(bands, 1.0F / static_cast<float>(rays));
   for (int i = 0; i < kPoints; ++i)
-    for (int ray = 0; ray < kShadowRays; ++ray)
-      direct_->add_sample(points[static_cast<std::size_t>(i)], sampler.light(i, ray, kShadowRays),
-                          weight.data(), &found.irradiance[static_cast<std::size_t>(i) * bands]);
+    for (int ray = 0; ray < rays; ++ray)
+      direct_->add_sample(points[static_cast<std::size_t>(i)], sampler.light(i, ray, rays), weight.data(),
+                          &look.irradiance[static_cast<std::size_t>(i) * bands]);
+}
+
+SeenLight::Look SeenLight::look_around(ZoneId zone, const Points& points, const PointSampler& sampler) const {
+  Look found;
+  found.irradiance.assign(kPoints * scale_.size(), 0.0F);
+  add_direct(points, sampler, kShadowRays, found);
   for (int ray = 0; ray < kRays; ++ray) look_out(zone, points, sampler, ray, kRays, found);
   return found;
 }
@@ -97,7 +113,6 @@ SeenLight::Half SeenLight::half_of(const std::array<float, kPoints>& open,
 }
 
 SeenLight::Zone SeenLight::look(ZoneId zone) const {
-  if (is_dim(zone, kDarkZone)) return {};
   const auto sampler = [&](SamplerNumber number) {
     return PointSampler(seed_, RngPurpose::kSeenLight, zone.index(), number,
                         std::countr_zero(unsigned{kPoints}));
@@ -108,6 +123,8 @@ SeenLight::Zone SeenLight::look(ZoneId zone) const {
   look_out(zone, points, sampler(kGlance), 0, 1, glance);
   const double openness = std::accumulate(glance.open.begin(), glance.open.end(), 0.0) / kPoints;
   if (openness > kOpen) return {openness, 0};
+  add_direct(points, sampler(kGlance), 1, glance);
+  if (is_dim(zone, glance)) return {};
   const Look one = look_around(zone, points, sampler(kOneLook));
   const Look other = look_around(zone, points, sampler(kOtherLook));
   const float* reflectance = field_->room().zone_reflectance(zone);

@@ -16,10 +16,10 @@ namespace reemit {
 /// a mean that is too dark for what they see.
 class SeenLight {
  public:
-  /// `scale`: per band, the radiance that counts as 1 [W/(m2 sr)]; bands where it is 0 are left out. All
-  /// must outlive it.
-  SeenLight(const RadianceField& field, const DirectLight& direct, std::span<const double> scale,
-            std::uint64_t seed);
+  /// `reflected`: of each zone, per band, the mean over the parts of the field [W/(m2 sr)]. `scale`: per
+  /// band, the radiance that counts as 1 [W/(m2 sr)]; bands where it is 0 are left out. All must outlive it.
+  SeenLight(const RadianceField& field, const DirectLight& direct, std::span<const float> reflected,
+            std::span<const double> scale, std::uint64_t seed);
 
   /// Of one zone; the means are over bands.
   struct Zone {
@@ -32,7 +32,9 @@ class SeenLight {
   };
 
   /// An estimate with four rays of each of sixteen points, seen twice; its noise is 0 on average. Zones with
-  /// nothing nearby are not looked at twice and have 0 of `misread`, dark zones have 0 of both.
+  /// nothing nearby are not looked at twice and have 0 of `misread`, nor are those that see nothing but dark.
+  /// What the zone itself has in `reflected` is not looked at: where packets are few, that would choose zones
+  /// that have met more of them than they should.
   Zone look(ZoneId zone) const;
 
  private:
@@ -52,17 +54,21 @@ class SeenLight {
     double covariance;  // of openness and irradiance [W/m2]
   };
 
-  bool is_dim(ZoneId zone, double limit) const;
+  bool is_dim(ZoneId zone) const;
+  bool is_dim(ZoneId zone, const Look& glance) const;
   Points points_of(ZoneId zone, const PointSampler& place) const;
   /// One ray of each point, the sampler's `ray` of `rays`.
   void look_out(ZoneId zone, const Points& points, const PointSampler& sampler, int ray, int rays,
                 Look& look) const;
+  /// Light of luminaires at each point by so many shadow rays.
+  void add_direct(const Points& points, const PointSampler& sampler, int rays, Look& look) const;
   Look look_around(ZoneId zone, const Points& points, const PointSampler& sampler) const;
   static Half half_of(const std::array<float, kPoints>& open, const std::vector<float>& irradiance,
                       std::size_t band);
 
   const RadianceField* field_;
   const DirectLight* direct_;
+  std::span<const float> reflected_;
   std::span<const double> scale_;
   std::uint64_t seed_;
 };

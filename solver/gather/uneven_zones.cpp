@@ -23,8 +23,6 @@ namespace {
 constexpr double kUneven = 1;
 /// Radiance over the mean of the room from which on any error of the zone matters.
 constexpr double kBright = 16;
-/// Zones darker than this in direct light, over the mean of the room, are not looked at.
-constexpr double kDim = 0.25;
 /// Share of the light that gather rays read, by which zones whose seen part is brighter than their mean may
 /// mislead them in all, and zones whose seen part is darker: the zones with the largest differences are
 /// uneven until the others stay below it. About the noise of the look in a room without such zones.
@@ -49,18 +47,30 @@ struct Spread {
   double variance = 0;  // over the zone; an estimate, may be below 0
 };
 
+/// By zone and band, the mean over all parts.
+std::vector<float> reflected_radiance(const RadianceField& field) {
+  const std::size_t bands = field.band_count();
+  const std::size_t zones = field.room().mesh().zone_count();
+  std::vector<float> reflected(zones * bands, 0.0F);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, zones, 4096), [&](const auto& range) {
+    for (std::size_t z = range.begin(); z != range.end(); ++z)
+      for (std::size_t part = 0; part < field.parts(); ++part)
+        for (std::size_t b = 0; b < bands; ++b)
+          reflected[z * bands + b] += field.reflected(ZoneId(z), part)[b] / static_cast<float>(field.parts());
+  });
+  return reflected;
+}
+
 /// Per band, the mean reflected radiance over all area.
-std::vector<double> mean_radiance(const RadianceField& field) {
-  const ZoneMesh& mesh = field.room().mesh();
-  std::vector<double> mean(field.band_count(), 0.0);
+std::vector<double> mean_radiance(const ZoneMesh& mesh, const std::vector<float>& reflected,
+                                  std::size_t bands) {
+  std::vector<double> mean(bands, 0.0);
   double area = 0;
   for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
     const double zone_area = mesh.zone_area(ZoneId(z));
     area += zone_area;
-    for (std::size_t part = 0; part < field.parts(); ++part)
-      for (std::size_t b = 0; b < mean.size(); ++b)
-        mean[b] += zone_area / static_cast<double>(field.parts()) *
-                   static_cast<double>(field.reflected(ZoneId(z), part)[b]);
+    for (std::size_t b = 0; b < bands; ++b)
+      mean[b] += zone_area * static_cast<double>(reflected[z * bands + b]);
   }
   for (double& m : mean) m /= area;
   return mean;
@@ -77,10 +87,6 @@ class Looker {
   Spread look(ZoneId zone, const Look& effort) const {
     const std::size_t bands = field_.band_count();
     const float* reflectance = room_.zone_reflectance(zone);
-    const float* direct = field_.reflected_direct(zone);
-    bool dim = true;
-    for (std::size_t b = 0; b < bands; ++b) dim = dim && static_cast<double>(direct[b]) <= kDim * mean_[b];
-    if (dim) return {};
     const auto points = static_cast<std::size_t>(effort.points);
     const std::vector<float> weight(bands, 1.0F / static_cast<float>(effort.rays));
     std::vector<float> found(kHalves * points * bands, 0.0F);  // by half, point and band
@@ -135,16 +141,15 @@ double unevenness(const Spread& spread) {
 /// over the room's mean.
 class Misreading {
  public:
-  Misreading(const RadianceField& field, const std::vector<double>& mean,
+  Misreading(const ZoneMesh& mesh, const std::vector<float>& reflected, const std::vector<double>& mean,
              const std::vector<SeenLight::Zone>& seen)
-      : mesh_(field.room().mesh()), seen_(seen) {
-    for (std::size_t z = 0; z < seen.size(); ++z) {
-      const float* radiance = field.reflected(ZoneId(z));
-      for (std::size_t b = 0; b < mean.size(); ++b)
+      : mesh_(mesh), seen_(seen) {
+    const std::size_t bands = mean.size();
+    for (std::size_t z = 0; z < seen.size(); ++z)
+      for (std::size_t b = 0; b < bands; ++b)
         if (mean[b] > 0)
-          read_ +=
-              weight(z) * static_cast<double>(radiance[b]) / (mean[b] * static_cast<double>(mean.size()));
-    }
+          read_ += weight(z) * static_cast<double>(reflected[z * bands + b]) /
+                   (mean[b] * static_cast<double>(bands));
   }
 
   /// Raises harm[z] to the difference in those of the zones of one sign that have to be continued, so that
@@ -183,9 +188,10 @@ std::vector<std::uint8_t> uneven_zones(const RadianceField& field, const DirectL
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
   const auto is_to_stop = [stop] { return stop != nullptr && stop->requested(); };
   if (direct.empty() || is_to_stop()) return uneven;
-  const std::vector<double> mean = mean_radiance(field);
+  const std::vector<float> reflected = reflected_radiance(field);
+  const std::vector<double> mean = mean_radiance(mesh, reflected, field.band_count());
   const Looker looker(field, direct, mean, seed);
-  const SeenLight seen_light(field, direct, mean, seed);
+  const SeenLight seen_light(field, direct, reflected, mean, seed);
   std::vector<SeenLight::Zone> seen(mesh.zone_count());
   std::vector<double> harm(mesh.zone_count(), 0.0);
   tbb::parallel_for(std::size_t{0}, mesh.zone_count(), [&](std::size_t z) {
@@ -197,7 +203,7 @@ std::vector<std::uint8_t> uneven_zones(const RadianceField& field, const DirectL
     if (looked_at > 1) harm[z] = looked_at;
   });
   if (is_to_stop()) return uneven;
-  const Misreading misreading(field, mean, seen);
+  const Misreading misreading(mesh, reflected, mean, seen);
   for (const double sign : {1.0, -1.0}) misreading.add_harm(sign, harm);
 
   std::vector<std::size_t> order;

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "solver/gather/point_sampler.h"
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/reflect/lambert.h"
 
@@ -19,10 +18,10 @@ constexpr double kSpot = 0.5;
 /// One replicate of one pixel while a block is rendered.
 struct TileRenderer::PixelSums {
   PointSampler sampler;
-  std::uint64_t index;  // of the pixel in the picture
-  std::uint32_t batch;  // of the random numbers
-  std::uint32_t part;   // of the zone solution
-  std::uint32_t parts;  // from there on, whose mean zones are read; gather rays read the first
+  std::uint64_t index;      // of the pixel in the picture
+  std::uint32_t batch = 0;  // of the random numbers
+  std::uint32_t part = 0;   // of the zone solution
+  std::uint32_t parts = 1;  // from there on, whose mean zones are read; gather rays read the first
   Integrator integrator;
   float share;  // 1 / samples
   float* direct;
@@ -61,6 +60,27 @@ TileRenderer::TileRenderer(const StillLight& light, const PinholeCamera& camera,
       has_caustics_(room_->scene().bends_light()),
       all_(room_->band_count(), 1.0F) {}
 
+TileRenderer::PixelSums TileRenderer::sums_into(float* values, std::uint64_t pixel,
+                                                const PointSampler& sampler, int samples,
+                                                std::vector<float>& weight) const {
+  const std::size_t bands = field_.band_count();
+  float* const indirect = values + bands;
+  float* const albedo = indirect + bands;
+  float* const caustic = has_caustics_ ? albedo + bands : nullptr;
+  return {
+      .sampler = sampler,
+      .index = pixel,
+      .integrator = settings_->integrator,
+      .share = 1.0F / static_cast<float>(samples),
+      .direct = values,
+      .indirect = indirect,
+      .albedo = albedo,
+      .caustic = caustic,
+      .weight = &weight,
+      .found = {
+          .direct = values, .indirect = indirect, .caustic = caustic, .albedo = albedo, .samples = samples}};
+}
+
 void TileRenderer::render(std::span<const std::uint32_t> pixels, const SampleBlock& block, Film& film) const {
   const std::size_t bands = field_.band_count();
   const auto width = static_cast<std::uint32_t>(film.image().width);
@@ -77,25 +97,12 @@ void TileRenderer::render(std::span<const std::uint32_t> pixels, const SampleBlo
     const std::uint32_t row = pixel / width;
     for (int r = block.first_replicate; r < last_replicate; ++r, next += stride) {
       if (stop_->requested()) return;
-      float* caustic = has_caustics_ ? next + 3 * bands : nullptr;
-      PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
-                     pixel,
-                     static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r),
-                     static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(field_.parts()),
-                     1,
-                     settings_->integrator,
-                     1.0F / static_cast<float>(block.samples),
-                     next,
-                     next + bands,
-                     next + 2 * bands,
-                     caustic,
-                     &weight,
-                     {.direct = next,
-                      .indirect = next + bands,
-                      .caustic = caustic,
-                      .albedo = next + 2 * bands,
-                      .samples = block.samples,
-                      .earlier = block.first}};
+      PixelSums sums = sums_into(
+          next, pixel, PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
+          block.samples, weight);
+      sums.batch = static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r);
+      sums.part = static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(field_.parts());
+      sums.found.earlier = block.first;
       for (int s = block.first; s < block.first + block.samples; ++s) {
         const std::array<float, 2> u = sums.sampler.place(s);
         add_sample(column + 0.5 + sample_filter(settings_->filter, u[0]),
@@ -126,25 +133,10 @@ void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) cons
       const int y1 = std::min(y0 + width, tile.y1);
       const std::size_t pixel = pixel_at(x0, y0);
       std::fill(values.begin(), values.end(), 0.0F);
-      float* direct = values.data();
-      float* caustic = has_caustics_ ? direct + 3 * bands : nullptr;
-      PixelSums sums{PointSampler(settings_->seed, RngPurpose::kPixel, pixel, 0, 0),
-                     pixel,
-                     0,
-                     0,
-                     static_cast<std::uint32_t>(field_.parts()),
-                     Integrator::kZones,
-                     1.0F,
-                     direct,
-                     direct + bands,
-                     direct + 2 * bands,
-                     caustic,
-                     &weight,
-                     {.direct = direct,
-                      .indirect = direct + bands,
-                      .caustic = caustic,
-                      .albedo = direct + 2 * bands,
-                      .samples = 1}};
+      PixelSums sums = sums_into(values.data(), pixel,
+                                 PointSampler(settings_->seed, RngPurpose::kPixel, pixel, 0, 0), 1, weight);
+      sums.parts = static_cast<std::uint32_t>(field_.parts());
+      sums.integrator = Integrator::kZones;
       add_sample(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0, sums, batch);
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x) film.add(pixel_at(x, y), 0, sums.found);

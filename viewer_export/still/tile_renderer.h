@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/gather/hemisphere_gather.h"
+#include "solver/gather/point_sampler.h"
 #include "solver/solution/zone_bias.h"
 #include "viewer_export/still/camera.h"
 #include "viewer_export/still/film.h"
@@ -63,6 +64,9 @@ class TileRenderer {
 
   /// Of the film, that a pixel's samples add to: direct, indirect, albedo and, where they are, caustics.
   std::size_t layers() const { return has_caustics_ ? 4 : 3; }
+  /// Sums of a pixel over so many samples into layers() times bands values; `weight`: scratch, by band.
+  PixelSums sums_into(float* values, std::uint64_t pixel, const PointSampler& sampler, int samples,
+                      std::vector<float>& weight) const;
   void add_sample(double x, double y, int sample, PixelSums& sums, GatherBatch& batch) const;
   /// What scatters or emits at x, of which the film gets `through` per band; of what emits the share `found`.
   void add_seen(const SurfacePoint& x, const float* through, float found, int sample, PixelSums& sums,

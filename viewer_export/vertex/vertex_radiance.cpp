@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/io/common/up_direction.h"
@@ -62,7 +63,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
                    VertexData& data) {
   const SurfaceModel& surfaces = field.room().surfaces();
   const std::size_t bands = data.bands.count();
-  for (std::size_t v = 0; v < rings.size(); ++v)
+  tbb::parallel_for(std::size_t{0}, rings.size(), [&](std::size_t v) {
     for (std::size_t b = 0; b < bands; ++b) {
       const double area = 3 * rings.area(v);
       double direct = 0;
@@ -106,6 +107,7 @@ void average_zones(const Solution& solution, const VertexRings& rings, const Rad
         data.caustic_radiance[k] =
             static_cast<float>(brdf * caustic + through.caustic * std::numbers::inv_pi);
     }
+  });
 }
 
 VertexData make_vertices(const Scene& scene, const Solution& solution, const VertexRings& rings) {

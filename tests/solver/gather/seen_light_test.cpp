@@ -13,6 +13,14 @@ namespace {
 
 using test::MeanTest;
 
+/// Of a field of one part and one band, by zone [W/(m2 sr)].
+std::vector<float> reflected_of(const RadianceField& field) {
+  std::vector<float> reflected;
+  for (std::size_t z = 0; z < field.room().mesh().zone_count(); ++z)
+    reflected.push_back(field.reflected(ZoneId(z))[0]);
+  return reflected;
+}
+
 /// A wide room with a tile of two zones of 0.5 m2 in its middle. A plate 1 mm above the half x > 0.5 m hides
 /// all but 1/4 of the zone on its side of the diagonal and all but 3/4 of the other one.
 class TileUnderPlate {
@@ -35,11 +43,12 @@ class TileUnderPlate {
     const Room walls(room_.scene(), solution.mesh);
     const RadianceField field(walls, solution);
     const DirectLight direct(walls);
+    const std::vector<float> reflected = reflected_of(field);
     const std::vector<double> scale{1.0};
     const ZoneId zone =
         solution.mesh.first_zone(TriangleId(static_cast<std::uint32_t>(tile_) + number), true);
     for (std::uint64_t seed = 1; seed <= 512; ++seed) {
-      const SeenLight::Zone seen = SeenLight(field, direct, scale, seed).look(zone);
+      const SeenLight::Zone seen = SeenLight(field, direct, reflected, scale, seed).look(zone);
       open.add(seen.open);
       misread.add(seen.misread);
     }
@@ -90,7 +99,8 @@ TEST(SeenLight, is_the_mean_where_nothing_is_hidden) {
   const RadianceField field(walls, solution);
   const DirectLight direct(walls);
   const std::vector<double> scale{0.5 * std::numbers::inv_pi};
-  const SeenLight light(field, direct, scale, 1);
+  const std::vector<float> reflected = reflected_of(field);
+  const SeenLight light(field, direct, reflected, scale, 1);
   for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
     if (!solution.mesh.zone_is_front(ZoneId(z))) continue;
     EXPECT_GT(light.look(ZoneId(z)).open, 0.3);
