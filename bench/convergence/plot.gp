@@ -9,6 +9,9 @@ set style line 1 lc rgb "#000000" pt 5 ps 0.8 lw 1.8
 set style line 2 lc rgb "#D55E00" pt 9 ps 1.0 lw 1.8
 set style line 3 lc rgb "#009E73" pt 13 ps 1.1 lw 1.8
 set style line 4 lc rgb "#0072B2" pt 7 ps 0.8 lw 1.8
+set style line 5 lc rgb "#CC79A7" pt 11 ps 1.0 lw 1.8
+set style line 6 lc rgb "#E69F00" pt 15 ps 1.0 lw 1.8
+set style line 7 lc rgb "#56B4E9" pt 6 ps 0.8 lw 1.8
 set style line 9 lc rgb "#999999" dt 2 lw 1.2
 
 count = words(titles)

@@ -12,12 +12,26 @@ namespace {
 
 /// Methods keep their colour and marker from room to room: the number of a style in plot.gp.
 int style_of(const std::string& method) {
-  constexpr std::array<const char*, 9> kOrder{"walk random",    "walk sobol",     "shooting random",
-                                              "shooting sobol", "zones averaged", "gathered",
-                                              "zones",          "gather",         "path"};
-  const auto at = std::find(kOrder.begin(), kOrder.end(), method) - kOrder.begin();
-  constexpr std::array<int, 10> kStyle{1, 2, 3, 4, 1, 4, 1, 4, 2, 1};
-  return kStyle.at(static_cast<std::size_t>(at));
+  struct Style {
+    const char* method;
+    int number;
+  };
+  constexpr std::array<Style, 13> kStyles{{{"walk random", 1},
+                                           {"walk sobol", 2},
+                                           {"shooting random", 3},
+                                           {"shooting sobol", 4},
+                                           {"zones averaged", 1},
+                                           {"gathered", 4},
+                                           {"gathered and smoothed", 5},
+                                           {"zones", 1},
+                                           {"gather", 4},
+                                           {"smoothed", 5},
+                                           {"refined", 6},
+                                           {"next view", 7},
+                                           {"path", 2}}};
+  const auto* const found = std::find_if(kStyles.begin(), kStyles.end(),
+                                         [&](const Style& style) { return style.method == method; });
+  return found == kStyles.end() ? 3 : found->number;
 }
 
 void plot_room(const std::vector<Curve>& curves, const std::string& y_label,
