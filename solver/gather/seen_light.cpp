@@ -73,7 +73,9 @@ void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& 
     const float* radiance = &reflected_[end.index() * bands];
     for (std::size_t b = 0; b < bands; ++b)
       look.irradiance[i * bands + b] += std::numbers::pi_v<float> * share * radiance[b];
-    if (hits.distance[i] > reach && !is_dim(end)) look.open[i] += share;
+    if (!(hits.distance[i] > reach)) continue;
+    look.far += share / kPoints;
+    if (!is_dim(end)) look.open[i] += share;
   }
 }
 
@@ -122,7 +124,8 @@ SeenLight::Zone SeenLight::look(ZoneId zone) const {
   glance.irradiance.assign(kPoints * scale_.size(), 0.0F);
   look_out(zone, points, sampler(kGlance), 0, 1, glance);
   const double openness = std::accumulate(glance.open.begin(), glance.open.end(), 0.0) / kPoints;
-  if (openness > kOpen) return {openness, 0};
+  // Where they end on, however dark: where packets are few, many zones are dark that need not be.
+  if (glance.far > kOpen) return {openness, 0};
   add_direct(points, sampler(kGlance), 1, glance);
   if (is_dim(zone, glance)) return {};
   const Look one = look_around(zone, points, sampler(kOneLook));
