@@ -114,12 +114,9 @@ std::string factor_table(const std::vector<Curve>& vertices, const std::vector<C
 
 std::string pictures(const std::vector<Curve>& curves) {
   std::string text;
-  std::string last;
-  for (const Curve& c : curves) {
-    if (c.room == last) continue;
-    last = c.room;
-    text += fmt::format("![error over time: {}, {}](images/{})\n", c.quantity, c.room,
-                        plot_name(c.quantity, c.room));
+  for (const std::string& room : rooms_of(curves)) {
+    const std::string& quantity = curves.front().quantity;
+    text += fmt::format("![error over time: {}, {}](images/{})\n", quantity, room, plot_name(quantity, room));
   }
   return text;
 }

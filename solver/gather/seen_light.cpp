@@ -26,14 +26,14 @@ SeenLight::SeenLight(const RadianceField& field, const DirectLight& direct, std:
                      std::span<const double> scale, std::uint64_t seed)
     : field_(&field), direct_(&direct), reflected_(reflected), scale_(scale), seed_(seed) {}
 
-bool SeenLight::is_dim(ZoneId zone) const {
+bool SeenLight::is_dark_end(ZoneId zone) const {
   const float* radiance = &reflected_[zone.index() * scale_.size()];
   for (std::size_t b = 0; b < scale_.size(); ++b)
     if (static_cast<double>(radiance[b]) > kDarkEnd * scale_[b]) return false;
   return true;
 }
 
-bool SeenLight::is_dim(ZoneId zone, const Look& glance) const {
+bool SeenLight::is_dark_zone(ZoneId zone, const Look& glance) const {
   const float* reflectance = field_->room().zone_reflectance(zone);
   for (std::size_t b = 0; b < scale_.size(); ++b) {
     double irradiance = 0;
@@ -75,7 +75,7 @@ void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& 
       look.irradiance[i * bands + b] += std::numbers::pi_v<float> * share * radiance[b];
     if (!(hits.distance[i] > reach)) continue;
     look.far += share / kPoints;
-    if (!is_dim(end)) look.open[i] += share;
+    if (!is_dark_end(end)) look.open[i] += share;
   }
 }
 
@@ -127,7 +127,7 @@ SeenLight::Zone SeenLight::look(ZoneId zone) const {
   // Where they end on, however dark: where packets are few, many zones are dark that need not be.
   if (glance.far > kOpen) return {openness, 0};
   add_direct(points, sampler(kGlance), 1, glance);
-  if (is_dim(zone, glance)) return {};
+  if (is_dark_zone(zone, glance)) return {};
   const Look one = look_around(zone, points, sampler(kOneLook));
   const Look other = look_around(zone, points, sampler(kOtherLook));
   const float* reflectance = field_->room().zone_reflectance(zone);

@@ -55,8 +55,10 @@ class SeenLight {
     double covariance;  // of openness and irradiance [W/m2]
   };
 
-  bool is_dim(ZoneId zone) const;
-  bool is_dim(ZoneId zone, const Look& glance) const;
+  /// As what a ray ends on: by what the zone has in reflected_.
+  bool is_dark_end(ZoneId zone) const;
+  /// As a zone that is looked at: by what it reflects of the light that the glance found.
+  bool is_dark_zone(ZoneId zone, const Look& glance) const;
   Points points_of(ZoneId zone, const PointSampler& place) const;
   /// One ray of each point, the sampler's `ray` of `rays`.
   void look_out(ZoneId zone, const Points& points, const PointSampler& sampler, int ray, int rays,
