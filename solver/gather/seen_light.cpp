@@ -67,7 +67,10 @@ void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& 
   const std::size_t bands = scale_.size();
   const float share = 1.0F / static_cast<float>(rays);
   for (std::size_t i = 0; i < kPoints; ++i) {
-    if (hits.triangle[i] == RayTracer::kMiss) continue;
+    if (hits.triangle[i] == RayTracer::kMiss) {
+      look.far += share / kPoints;
+      continue;
+    }
     const ZoneId end = room.mesh().zone_at(TriangleId(hits.triangle[i]), hits.u[i], hits.v[i], hits.front[i]);
     if (!end.valid()) continue;
     const float* radiance = &reflected_[end.index() * bands];

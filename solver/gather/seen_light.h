@@ -47,7 +47,7 @@ class SeenLight {
   struct Look {
     std::array<float, kPoints> open{};  // share of rays that end on lit surfaces far away
     std::vector<float> irradiance;      // by point, then by band [W/m2]
-    float far = 0;                      // share of all rays that end far away, lit or dark
+    float far = 0;                      // share of all rays that end far away, lit or dark, or leave the room
   };
   /// Over the zone.
   struct Half {

@@ -108,5 +108,27 @@ TEST(SeenLight, is_the_mean_where_nothing_is_hidden) {
   }
 }
 
+// With a second look the noise of two estimates would be there instead of 0.
+TEST(SeenLight, looks_once_where_most_rays_leave_the_room) {
+  test::RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 0, true);
+  room.quad(wall, {Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)}, 8);
+  room.quad(wall, {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(0, 1, 1), Vec3(0, 0, 1)}, 1);
+  const Solution solution = test::uniform_solution(room, 0, 1);
+  const Room walls(room.scene(), solution.mesh);
+  const RadianceField field(walls, solution);
+  const DirectLight direct(walls);
+  const std::vector<double> scale{0.5 * std::numbers::inv_pi};
+  const std::vector<float> reflected = reflected_of(field);
+  const SeenLight light(field, direct, reflected, scale, 1);
+  int looked_at = 0;
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
+    if (solution.mesh.zone_centroid(ZoneId(z)).x() < 1 || !solution.mesh.zone_is_front(ZoneId(z))) continue;
+    ++looked_at;
+    EXPECT_EQ(light.look(ZoneId(z)).misread, 0);
+  }
+  EXPECT_EQ(looked_at, 128);
+}
+
 }  // namespace
 }  // namespace reemit
