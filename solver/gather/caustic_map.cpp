@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -28,11 +29,20 @@ constexpr double kTypicalRadius = 0.3 * static_cast<double>(CausticMap::kLargest
 /// there may be very many, on faces that do not count.
 constexpr std::uint32_t kMostOfCell = 64;
 
+/// Photons one after the other in order of their places, each of which begins with the radius of the last.
+constexpr std::size_t kNeighbours = 64;
+
 /// Rays along a face look for what stands on it at this share of the radius above it.
 constexpr float kLift = 0.1F;
 
 /// Least cosine between normals of points of one face, or of faces that go on about as each other do.
 constexpr float kSameSide = 0.8F;
+
+std::vector<std::uint32_t> numbers_below(std::size_t end) {
+  std::vector<std::uint32_t> numbers(end);
+  std::iota(numbers.begin(), numbers.end(), 0U);
+  return numbers;
+}
 
 float kernel(float squared_distance, float radius) {
   const float r2 = radius * radius;
@@ -68,8 +78,7 @@ CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, 
 CausticMap::Photons CausticMap::of_pilot(CausticPhotons photons) const {
   Photons result;
   result.all = std::move(photons);
-  std::vector<std::uint32_t> all(result.all.size());
-  std::iota(all.begin(), all.end(), 0U);
+  const std::vector<std::uint32_t> all = numbers_below(result.all.size());
   for (std::size_t level = 0; level < kLevels; ++level)
     result.grids[level] = PhotonGrid(result.all.places, all, 2 * radius_of(level));
   return result;
@@ -79,19 +88,16 @@ CausticMap::Photons CausticMap::of_part(CausticPhotons photons, const StopToken*
   Photons result;
   result.all = std::move(photons);
   result.radius.resize(result.all.size());
-  result.beside_wall.resize(result.all.size());
-  result.gain.resize(result.all.size(), 1.0F);
-  tbb::parallel_for(std::size_t{0}, result.all.size(), [&](std::size_t i) {
-    if (stop != nullptr && stop->requested()) return;  // with a radius of 0 it is not counted
-    const Vec3f& normal = result.all.normals[i];
-    const Vec3f& place = result.all.places[i];
-    const float radius = radius_at(normal, place);
-    const bool walled = is_beside_wall(normal, place, radius);
-    result.radius[i] = radius;
-    result.beside_wall[i] = walled ? 1 : 0;
-    if (walled || !is_inside_triangle(result.all.triangles[i], place, radius)) {
-      const double turn = static_cast<double>(i) * (std::numbers::phi - 1);
-      result.gain[i] = gain_at_end(normal, place, radius, static_cast<float>(turn - std::floor(turn)));
+  result.gain = std::make_unique<std::atomic<float>[]>(result.all.size());
+  std::vector<std::uint32_t> order = numbers_below(result.all.size());
+  order = PhotonGrid(result.all.places, order, 2 * radius_of(kLevels - 1)).numbers();
+  tbb::parallel_for(std::size_t{0}, order.size(), kNeighbours, [&](std::size_t begin) {
+    std::size_t levels = 0;
+    const std::size_t end = std::min(order.size(), begin + kNeighbours);
+    for (std::size_t k = begin; k < end; ++k) {
+      if (stop != nullptr && stop->requested()) return;  // with a radius of 0 it is not counted
+      const std::uint32_t i = order[k];
+      result.radius[i] = radius_at(result.all.normals[i], result.all.places[i], levels);
     }
   });
   std::array<std::vector<std::uint32_t>, kLevels> of_level;
@@ -105,6 +111,23 @@ CausticMap::Photons CausticMap::of_part(CausticPhotons photons, const StopToken*
   return result;
 }
 
+float CausticMap::gain_of(const Photons& photons, std::uint32_t i) const {
+  std::atomic<float>& gain = photons.gain[i];
+  if (const float known = gain.load(std::memory_order_relaxed); known != 0) return known;
+  const Vec3f& normal = photons.all.normals[i];
+  const Vec3f& place = photons.all.places[i];
+  const float radius = photons.radius[i];
+  const bool walled = is_beside_wall(normal, place, radius);
+  float found = 1;
+  if (walled || !is_inside_triangle(photons.all.triangles[i], place, radius)) {
+    const double turn = static_cast<double>(i) * (std::numbers::phi - 1);
+    found = gain_at_end(normal, place, radius, static_cast<float>(turn - std::floor(turn)));
+  }
+  if (walled) found = -found;
+  gain.store(found, std::memory_order_relaxed);
+  return found;
+}
+
 bool CausticMap::counts(const Photons& photons, std::uint32_t i, const Vec3f& normal, const Vec3f& place,
                         float radius) {
   constexpr float kFlat = 0.15F;
@@ -112,7 +135,7 @@ bool CausticMap::counts(const Photons& photons, std::uint32_t i, const Vec3f& no
          std::fabs((photons.all.places[i] - place).dot(normal)) < kFlat * radius;
 }
 
-float CausticMap::radius_at(const Vec3f& normal, const Vec3f& place) const {
+float CausticMap::radius_at(const Vec3f& normal, const Vec3f& place, std::size_t& levels) const {
   const auto found_within = [&](std::size_t level, float enough) {
     const float radius = radius_of(level);
     float found = 0;
@@ -122,8 +145,13 @@ float CausticMap::radius_at(const Vec3f& normal, const Vec3f& place) const {
     });
     return found;
   };
-  std::size_t levels = 0;  // with photons enough, from the largest on
-  while (levels < kLevels && found_within(levels, pilot_target_) >= pilot_target_) ++levels;
+  const auto is_enough = [&](std::size_t level) {
+    return found_within(level, pilot_target_) >= pilot_target_;
+  };
+  const std::size_t before = levels;
+  while (levels > 0 && !is_enough(levels - 1)) --levels;
+  if (levels == before)
+    while (levels < kLevels && is_enough(levels)) ++levels;
   if (levels == 0) return kLargestRadius;
   const float found = found_within(levels - 1, std::numeric_limits<float>::infinity());
   return radius_of(levels - 1) * std::sqrt(pilot_target_ / found);
@@ -213,14 +241,15 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
     photons.grids[level].visit(place, radius_of(level), [&](std::uint32_t i, float d2) {
       const float radius = photons.radius[i];
       if (d2 >= radius * radius || !counts(photons, i, x.normal, place, radius)) return;
-      if (photons.beside_wall[i] != 0) {
+      const float gain = gain_of(photons, i);
+      if (gain < 0) {
         walled = true;
         const Vec3f above = kLift * radius * x.normal;
         if (!rays.visible(place + above, photons.all.places[i] + above)) return;
       }
       if (found.empty()) found.assign(bands, 0.0F);
       const float share = whole ? 1 : 1 - left_to_rays(photons.all.luminaires[i]);
-      const float per_unit = share * kernel(d2, radius) * photons.gain[i];
+      const float per_unit = share * kernel(d2, radius) * std::fabs(gain);
       const float per_m2 = per_unit / (metres * metres);
       for (std::size_t b = 0; b < bands; ++b) found[b] += per_m2 * photons.all.power[i * bands + b];
       largest = std::max(largest, radius);

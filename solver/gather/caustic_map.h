@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "scenes/model/stop_token.h"
@@ -50,19 +52,23 @@ class CausticMap {
   static constexpr std::size_t kLevels = 6;  // radii halve from one to the next
   struct Photons {
     CausticPhotons all;
-    std::vector<float> radius;              ///< By photon; empty for those that set radii.
-    std::vector<std::uint8_t> beside_wall;  ///< By photon: something stands on the face within its radius.
-    std::vector<float> gain;                ///< By photon: gain_at_end of its place.
+    std::vector<float> radius;  ///< By photon; empty for those that set radii.
+    /// By photon: gain_of() where it has been asked for, else 0.
+    std::unique_ptr<std::atomic<float>[]> gain;
     /// Of the photons of all radii down to half that of the level; of those that set radii, of all.
     std::array<PhotonGrid, kLevels> grids;
   };
   Photons of_pilot(CausticPhotons photons) const;
   Photons of_part(CausticPhotons photons, const StopToken* stop) const;
   static float radius_of(std::size_t level) { return kLargestRadius / static_cast<float>(1U << level); }
+  /// gain_at_end of the place of a photon, below 0 if something stands on the face within its radius. Looked
+  /// for when it is asked for first, most photons lying where no one looks; all threads find the same.
+  float gain_of(const Photons& photons, std::uint32_t i) const;
   static bool counts(const Photons& photons, std::uint32_t i, const Vec3f& normal, const Vec3f& place,
                      float radius);
 
-  float radius_at(const Vec3f& normal, const Vec3f& place) const;
+  /// `levels`: with photons enough at a place nearby, from the largest on; becomes that of this place.
+  float radius_at(const Vec3f& normal, const Vec3f& place, std::size_t& levels) const;
   bool is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const;
   bool is_inside_triangle(TriangleId triangle, const Vec3f& place, float radius) const;
   float gain_at_end(const Vec3f& normal, const Vec3f& place, float radius, float turn) const;

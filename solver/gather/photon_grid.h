@@ -18,6 +18,9 @@ class PhotonGrid {
   /// be asked for.
   PhotonGrid(const std::vector<Vec3f>& places, const std::vector<std::uint32_t>& numbers, float cell);
 
+  /// Of all points, cell by cell: neighbours are close to each other.
+  std::vector<std::uint32_t> numbers() const;
+
   /// Calls use(point number, squared distance) for every point within `radius` <= cell/2 of a place, in the
   /// same order each time.
   template <class Use>
