@@ -1,6 +1,7 @@
 #include "scenes/model/photometry.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -37,6 +38,23 @@ bool locate(const std::vector<double>& lines, double angle, std::size_t& cell, d
   cell = static_cast<std::size_t>(above - lines.begin()) - 1;
   share = std::clamp((angle - lines[cell]) / (lines[cell + 1] - lines[cell]), 0.0, 1.0);
   return true;
+}
+
+using PlanePoint = std::array<double, 2>;
+
+/// The octahedron |x| + |y| + |z| = 1 as a square: the upper half in the middle, each lower face folded out
+/// over its edge [PBRT4 3.8.3].
+PlanePoint unfolded(const Vec3& direction) {
+  const Vec3 p = direction / direction.lpNorm<1>();
+  if (p.z() >= 0) return {p.x(), p.y()};
+  return {std::copysign(1 - std::fabs(p.y()), p.x()), std::copysign(1 - std::fabs(p.x()), p.y())};
+}
+
+Vec3 folded(const PlanePoint& p) {
+  const auto [x, y] = p;
+  const double z = 1 - std::fabs(x) - std::fabs(y);
+  if (z >= 0) return {x, y, z};
+  return {std::copysign(1 - std::fabs(y), x), std::copysign(1 - std::fabs(x), y), z};
 }
 
 }  // namespace
@@ -103,13 +121,34 @@ IntensityTable::IntensityTable(PhotometricType type, const std::vector<double>& 
                                                                         azimuth_integral(last, i - 1),
                                                                         azimuth_integral(last, i));
   demand(total_flux() > 0 && std::isfinite(total_flux()), "an intensity table must have some flux");
+  fill_rough_cells();
+}
+
+std::size_t IntensityTable::rough_cell(const Vec3& direction) {
+  const auto [x, y] = unfolded(direction);
+  const auto cell = [](double at) {
+    return static_cast<std::size_t>(std::clamp(0.5 * (at + 1) * kRoughCells, 0.0, kRoughCells - 1.0));
+  };
+  return cell(y) * kRoughCells + cell(x);
+}
+
+void IntensityTable::fill_rough_cells() {
+  constexpr int kPoints = 4;  // of a cell, along each side
+  constexpr int kSteps = kRoughCells * kPoints;
+  rough_.assign(std::size_t{kRoughCells} * kRoughCells, 0.0F);
+  for (int j = 0; j < kSteps; ++j)
+    for (int i = 0; i < kSteps; ++i) {
+      const auto at = [](int step) { return 2 * (step + 0.5) / kSteps - 1; };
+      const Vec3 direction = folded({at(i), at(j)});
+      rough_[rough_cell(direction)] += static_cast<float>(intensity(direction) / (kPoints * kPoints));
+    }
 }
 
 void IntensityTable::angles(const Vec3& direction, double& polar, double& azimuth) const {
   const double along = direction.dot(axes_.pole);
   const double x = direction.dot(axes_.zero);
   const double y = direction.dot(axes_.ninety);
-  polar = std::atan2(std::hypot(x, y), along);
+  polar = std::atan2(std::sqrt(x * x + y * y), along);
   azimuth = std::atan2(y, x);
   while (azimuth < azimuth_.front() - kAngleSlack) azimuth += 2 * pi;
   while (azimuth >= azimuth_.front() - kAngleSlack + 2 * pi) azimuth -= 2 * pi;

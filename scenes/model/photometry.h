@@ -50,6 +50,11 @@ class IntensityTable {
 
   /// Intensity [cd] in a direction of any length above 0, in luminaire coordinates.
   double intensity(const Vec3& direction) const;
+  /// About the same, and several times faster: the mean over the cell of some 6 degrees that holds the
+  /// direction, by points 1.5 degrees apart.
+  double rough_intensity(const Vec3& direction) const {
+    return static_cast<double>(rough_[rough_cell(direction)]);
+  }
   /// Polar angle and azimuth [rad] of a direction; the azimuth lies in the turn that begins at azimuth()[0].
   void angles(const Vec3& direction, double& polar, double& azimuth) const;
   /// Unit direction in luminaire coordinates.
@@ -71,9 +76,15 @@ class IntensityTable {
   }
 
  private:
+  // Directions in cells of an octahedron unfolded to a square.
+  static constexpr int kRoughCells = 32;
+  static std::size_t rough_cell(const Vec3& direction);
+  void fill_rough_cells();
+
   PhotometricType type_;
   GoniometerAxes axes_;
   std::vector<double> polar_, azimuth_, candela_;
+  std::vector<float> rough_;
   std::vector<double> polar_sine_, polar_cosine_;
   std::vector<double> flux_below_, azimuth_integral_;
   double greatest_ = 0;

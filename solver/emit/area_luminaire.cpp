@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 /// Beyond this many radii of the sphere around it, a shape weighs as if all of it were in its middle.
-constexpr double kFarRadii = 4;
+constexpr double kFarRadii = 2;
 /// Least weight of what the formulas say is 0 although a point of it may light x.
 constexpr double kLeastExpected = 1e-9;
 
@@ -175,8 +175,11 @@ double AreaLuminaire::expected_irradiance(const Vec3& x, const Vec3& n) const {
   const double height = n.dot(to_centre);
   if (height <= -reach_ || faces_away(x)) return 0;
   const double distance2 = to_centre.squaredNorm();
-  if (height >= reach_ && distance2 > kFarRadii * kFarRadii * reach_ * reach_)
-    return std::max(expected_far(to_centre, height, distance2), kLeastExpected * area_ / distance2);
+  if (distance2 > kFarRadii * kFarRadii * reach_ * reach_) {
+    // Of a shape that the horizon cuts, about what is above it.
+    const double height_above = std::max(height, 0.25 * (height + reach_));
+    return std::max(expected_far(to_centre, height_above, distance2), kLeastExpected * area_ / distance2);
+  }
   const double near = expected_near(x, n);
   if (near < 0) return 0;
   // A part just above the horizon must keep a weight even when a formula rounds to 0.

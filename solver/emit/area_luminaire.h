@@ -37,9 +37,10 @@ class AreaLuminaire {
   /// Bounds for a light tree; `radiance`: along the normal, of all bands.
   LuminaireBounds bounds(double radiance) const;
 
-  /// About the irradiance at x (unit normal n) per unit of radiance if nothing is in the way: exact for
-  /// polygons, spheres and disks with Lambertian emission up to rounding, and where they are far within a few
-  /// per cent. Above 0 wherever any point of the side can light x ([SWZ96, sec. 4.2] on wrong zeros).
+  /// About the irradiance at x (unit normal n) per unit of radiance if nothing is in the way: of polygons,
+  /// spheres and disks with Lambertian emission that are near exact up to rounding; beyond twice the radius
+  /// of the sphere around them as if all were in the middle, within some 20 %. Above 0 wherever any point of
+  /// the side can light x ([SWZ96, sec. 4.2] on wrong zeros).
   double expected_irradiance(const Vec3& x, const Vec3& n) const;
 
   /// Draws a point for two uniform numbers. False if it cannot light x.

@@ -46,13 +46,11 @@ Vec3 PhotometricEmitter::point(double u0, double u1) const {
   return data_->centre + data_->to_room * sample_opening(data_->opening, u0, u1) / data_->metres;
 }
 
-// I cos / r^2 for a point of the opening [cd/m2].
-double PhotometricEmitter::kernel(const Vec3& to_light, const Vec3& n) const {
+double PhotometricEmitter::geometry(const Vec3& to_light, const Vec3& n) const {
   const double height = n.dot(to_light);
   const double distance2 = to_light.squaredNorm();
   if (!(height > 0) || !(distance2 > 0)) return 0;
-  const double intensity = data_->table->intensity(data_->to_room.transpose() * -to_light);
-  return intensity * height /
+  return height /
          (std::sqrt(distance2) * std::max(distance2, data_->nearest2) * data_->metres * data_->metres);
 }
 
@@ -60,24 +58,28 @@ float PhotometricEmitter::expected_irradiance(const Vec3f& x, const Vec3f& n) co
   const Vec3 from = x.cast<double>();
   const Vec3 normal = n.cast<double>();
   const Vec3 to_centre = data_->centre - from;
-  if (!(data_->extent2 > 0)) return static_cast<float>(kernel(to_centre, normal));
-  const double height = normal.dot(to_centre) +
-                        opening_reach(data_->opening, data_->to_room.transpose() * normal) / data_->metres;
+  const auto rough = [&](const Vec3& to_light) {
+    const double g = geometry(to_light, normal);
+    return g > 0 ? g * data_->table->rough_intensity(in_luminaire(-to_light)) : 0.0;
+  };
+  const double height =
+      normal.dot(to_centre) + opening_reach(data_->opening, in_luminaire(normal)) / data_->metres;
   if (!(height > 0)) return 0;
-  // Beyond five sizes the centre stands for the rest to about 1 % ([ZIM98] appendix, the five-times rule).
-  constexpr double kFar2 = 25;
   const double distance2 = to_centre.squaredNorm();
+  // A weight may be off by tens of per cent, which the few samples that it misplaces hardly show.
+  constexpr double kFar2 = 1;
   double mean = 0;
-  if (distance2 > kFar2 * data_->extent2) {
-    mean = kernel(to_centre, normal);
+  if (distance2 > kFar2 * data_->extent2 && normal.dot(to_centre) > 0) {
+    mean = rough(to_centre);
   } else {
     constexpr std::array<std::array<double, 2>, 4> kPoints{{{0.2, 0.3}, {0.7, 0.2}, {0.3, 0.8}, {0.8, 0.7}}};
-    for (const auto& [u0, u1] : kPoints) mean += 0.25 * kernel(point(u0, u1) - from, normal);
+    for (const auto& [u0, u1] : kPoints) mean += 0.25 * rough(point(u0, u1) - from);
   }
   // What these points miss must keep a weight.
   constexpr double kLeastShare = 1e-3;
   const double around = data_->table->total_flux() / (4 * std::numbers::pi * data_->metres * data_->metres);
-  const double least = kLeastShare * around * height / std::pow(distance2 + data_->extent2, 1.5);
+  const double least =
+      kLeastShare * around * height / ((distance2 + data_->extent2) * std::sqrt(distance2 + data_->extent2));
   return static_cast<float>(std::max(mean, least));
 }
 
@@ -86,7 +88,9 @@ LuminaireSample PhotometricEmitter::sample(const Vec3f& x, const Vec3f& n, float
   const Vec3 p = point(static_cast<double>(u0), static_cast<double>(u1));
   const Vec3 to_light = p - from;
   LuminaireSample result;
-  result.factor = static_cast<float>(kernel(to_light, n.cast<double>()));
+  const double g = geometry(to_light, n.cast<double>());
+  if (!(g > 0)) return result;
+  result.factor = static_cast<float>(g * data_->table->intensity(in_luminaire(-to_light)));
   if (!(result.factor > 0)) return result;
   const double distance = to_light.norm();
   result.target = (p - std::min(0.5, kClear / distance) * to_light).cast<float>();

@@ -24,8 +24,9 @@ class PhotometricEmitter {
     return light.table->total_flux() * light.intensity_per_candela;
   }
 
-  /// About the irradiance at x (normal n) per unit of intensity_per_candela [cd/m2] if nothing is in the way:
-  /// exact for points, a mean over a few points of the opening else. Above 0 wherever a point of the opening
+  /// About the irradiance at x (normal n) per unit of intensity_per_candela [cd/m2] if nothing is in the way,
+  /// by IntensityTable::rough_intensity from the middle of the opening, or from a few of its points if it is
+  /// near or its middle lies below the horizon. Above 0 wherever a point of the opening
   /// lies above the horizon of x.
   float expected_irradiance(const Vec3f& x, const Vec3f& n) const;
 
@@ -48,7 +49,9 @@ class PhotometricEmitter {
 
  private:
   Vec3 point(double u0, double u1) const;  // normalised
-  double kernel(const Vec3& to_light, const Vec3& n) const;
+  /// cos / r^2 for a point of the opening, 0 below the horizon [1/m2].
+  double geometry(const Vec3& to_light, const Vec3& n) const;
+  Vec3 in_luminaire(const Vec3& direction) const { return data_->to_room.transpose() * direction; }
 
   struct Data {
     std::shared_ptr<const IntensityTable> table;

@@ -75,6 +75,30 @@ TEST(Photometry, is_linear_in_both_angles) {
   EXPECT_EQ(table.greatest_intensity(), 8);
 }
 
+TEST(Photometry, rough_intensity_is_that_of_directions_nearby) {
+  std::vector<double> polar, azimuth, candela;
+  for (double g = 0; g <= 180; g += 15) polar.push_back(g);
+  for (double c = 0; c <= 360; c += 15) azimuth.push_back(c);
+  for (const double c : azimuth)
+    for (const double g : polar) candela.push_back(10 + Vec3(2, 1, 3).dot(type_c(g, c)));
+  const IntensityTable table(PhotometricType::kC, polar, azimuth, candela);
+  const double slope = Vec3(2, 1, 3).norm();  // [cd/rad] at most
+  double sum = 0;
+  constexpr int kDirections = 2000;
+  for (int i = 0; i < kDirections; ++i) {
+    const double gamma = 180 / pi * std::acos(1 - 2 * (i + 0.5) / kDirections);
+    const Vec3 direction = std::exp(0.01 * (i % 700) - 3) * type_c(gamma, 222.4922 * i);
+    const double off = table.rough_intensity(direction) - table.intensity(direction);
+    EXPECT_LT(std::fabs(off), slope * 8 * pi / 180) << gamma;
+    sum += off;
+  }
+  EXPECT_NEAR(sum / kDirections, 0, 0.02);
+
+  const IntensityTable spot(PhotometricType::kC, {0, 3, 180}, {0, 360}, {1e6, 0, 0, 1e6, 0, 0});
+  EXPECT_GT(spot.rough_intensity(type_c(2, 10)), 0);
+  EXPECT_EQ(spot.rough_intensity(type_c(20, 10)), 0);
+}
+
 TEST(Photometry, goniometers_differ_by_their_pole) {
   const auto near = [](const Vec3& a, const Vec3& b) { return (a - b).norm() < 1e-12; };
   const double d = pi / 180;

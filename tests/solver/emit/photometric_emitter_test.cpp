@@ -146,9 +146,19 @@ TEST_F(Emitters, point_luminaire_is_intensity_over_distance_squared) {
       l.table->intensity(l.orientation.transpose() * away) * -n.dot(away) / std::pow(away.norm(), 3);
   ASSERT_GT(expected, 0);
   EXPECT_NEAR(irradiance(l, x, n) / expected, 1, 1e-5);
-  const PhotometricEmitter e(l, *rays_);
-  EXPECT_NEAR(static_cast<double>(e.expected_irradiance(rays_->normalised(x), n.cast<float>())) / expected, 1,
-              1e-5);
+}
+
+TEST_F(Emitters, weight_is_about_the_irradiance) {
+  PhotometricLight l = light(test::lambertian_table(), {});
+  l.orientation.setIdentity();
+  const Vec3 n = Vec3(0.2, -0.1, 1).normalized();
+  for (const Vec3& to_light : {Vec3(0, 0, 2), Vec3(1, -0.5, 1), Vec3(-2, 1, 3)})
+    for (const double size : {0.0, 0.3}) {
+      l.opening = opening(Shape::kBox, size, size, 0);
+      const double weight = static_cast<double>(PhotometricEmitter(l, *rays_).expected_irradiance(
+          rays_->normalised(l.position - to_light), n.cast<float>()));
+      EXPECT_NEAR(weight / irradiance(l, l.position - to_light, n), 1, 0.12) << to_light.transpose();
+    }
 }
 
 TEST_F(Emitters, a_lambertian_opening_is_a_lambertian_panel_at_every_distance) {

@@ -46,8 +46,12 @@ TEST(SurroundingFit, ReproducesWhatItIsOfOrder) {
       fit_surrounding(around, hops, fit);
       ASSERT_EQ(fit.weight.size(), around.upto[hops]);
       EXPECT_NEAR(fitted(around, fit, [](double, double) { return 1.0; }), 1, 1e-5);
-      if (around.upto[hops] >= 5) EXPECT_NEAR(fitted(around, fit, plane), 2, 1e-4);
-      if (around.upto[hops] >= 12) EXPECT_NEAR(fitted(around, fit, second_order), 2, 1e-4);
+      if (around.upto[hops] >= 5) {
+        EXPECT_NEAR(fitted(around, fit, plane), 2, 1e-4);
+      }
+      if (around.upto[hops] >= 12) {
+        EXPECT_NEAR(fitted(around, fit, second_order), 2, 1e-4);
+      }
     }
   }
 }
