@@ -1,6 +1,7 @@
 #include "mesh/geometry/vertex_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace reemit {
@@ -16,14 +17,14 @@ VertexTable::Cell VertexTable::cell_of(const Vec3& p) const {
   static constexpr double kFarthest =
       4e18;  // rooms this far from 0 in terms of their size have lost all digits anyway
   const auto index = [this](double x) {
-    return static_cast<std::int64_t>(std::floor(std::clamp(x / cell_, -kFarthest, kFarthest)));
+    if (weld_ == 0) return std::bit_cast<std::int64_t>(x + 0.0);  // which makes one zero of the two
+    return static_cast<std::int64_t>(std::floor(std::clamp(x / (2 * weld_), -kFarthest, kFarthest)));
   };
   return {index(p.x()), index(p.y()), index(p.z())};
 }
 
 std::uint32_t VertexTable::weld(const Vec3& p) {
-  // A cell is twice as wide as the weld distance, so the box around p touches at most two cells along each
-  // axis.
+  // The box around p touches at most two cells along each axis.
   const Vec3 reach = Vec3::Constant(weld_);
   const Cell low = cell_of(p - reach);
   const Cell high = cell_of(p + reach);

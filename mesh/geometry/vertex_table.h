@@ -12,7 +12,7 @@ namespace reemit {
 class VertexTable {
  public:
   /// `weld`: distance [m] within which points are one; 0 = only equal points.
-  explicit VertexTable(double weld) : weld_(weld), cell_(weld > 0 ? 2 * weld : 1) {}
+  explicit VertexTable(double weld) : weld_(weld) {}
 
   /// Index of the vertex at `p`: the nearest one within the weld distance (the first of equals), else a new
   /// one.
@@ -23,6 +23,7 @@ class VertexTable {
   const std::vector<Vec3>& points() const { return points_; }
 
  private:
+  /// Twice as wide as the weld distance; of equal points alone where that is 0.
   struct Cell {
     std::int64_t x, y, z;
     bool operator==(const Cell&) const = default;
@@ -33,7 +34,6 @@ class VertexTable {
   Cell cell_of(const Vec3& p) const;
 
   double weld_;
-  double cell_;
   std::vector<Vec3> points_;
   std::unordered_multimap<Cell, std::uint32_t, CellHash> cells_;
 };

@@ -9,6 +9,9 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/squared_distance_3.h>
+#include <Eigen/Geometry>
+
+#include "mesh/geometry/vertex_table.h"
 
 namespace reemit {
 namespace {
@@ -32,20 +35,15 @@ Kernel::Point_3 to_cgal(const Vec3& p) {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// By triangle, the first vertex of the mesh at the place of each corner: surfaces have vertices of their
-/// own.
-std::vector<Corners> places_of_corners(const BaseMesh& mesh) {
-  std::map<std::array<double, 3>, std::uint32_t> first;
-  std::vector<Corners> places;
-  places.reserve(mesh.triangles.size());
+/// By triangle, the places of its corners: surfaces have vertices of their own.
+std::vector<Corners> places_of_corners(const BaseMesh& mesh, VertexTable& places) {
+  std::vector<Corners> triangles;
+  triangles.reserve(mesh.triangles.size());
   for (const BaseTriangle& t : mesh.triangles) {
-    Corners& corners = places.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& p = mesh.vertices[t.vertex[k]];
-      corners[k] = first.try_emplace({p.x(), p.y(), p.z()}, t.vertex[k]).first->second;
-    }
+    Corners& corners = triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = places.weld(mesh.vertices[t.vertex[k]]);
   }
-  return places;
+  return triangles;
 }
 
 /// Edges of one triangle only.
@@ -75,21 +73,17 @@ bool may_have_hairlines(const BaseMesh& mesh) {
   if (!mesh.shapes.empty()) return true;
   if (mesh.triangles.empty()) return false;
   if (mesh.triangles.size() > kMostTriangles) return true;
-  const std::vector<Corners> triangles = places_of_corners(mesh);
+  VertexTable places(0);
+  const std::vector<Corners> triangles = places_of_corners(mesh, places);
   const std::vector<Edge> open = open_edges(triangles);
   if (open.size() * triangles.size() > kMostPairs) return true;
 
-  Vec3 low = mesh.vertices[triangles[0][0]];
-  Vec3 high = low;
-  for (const Corners& t : triangles)
-    for (const std::uint32_t v : t) {
-      low = low.cwiseMin(mesh.vertices[v]);
-      high = high.cwiseMax(mesh.vertices[v]);
-    }
-  const double size = (high - low).maxCoeff();
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : places.points()) box.extend(p);
+  const double size = box.sizes().maxCoeff();
   return std::any_of(open.begin(), open.end(), [&](const Edge& edge) {
-    const Vec3& from = mesh.vertices[edge.first];
-    const Vec3& to = mesh.vertices[edge.second];
+    const Vec3& from = places[edge.first];
+    const Vec3& to = places[edge.second];
     const double length = (to - from).norm();
     if (length < 4 * kEnds * size) return true;
     const Vec3 end = kEnds * size / length * (to - from);
@@ -97,9 +91,8 @@ bool may_have_hairlines(const BaseMesh& mesh) {
     return std::any_of(triangles.begin(), triangles.end(), [&](const Corners& t) {
       if (std::count(t.begin(), t.end(), edge.first) > 0 && std::count(t.begin(), t.end(), edge.second) > 0)
         return false;  // its own
-      return is_near(
-          segment, {to_cgal(mesh.vertices[t[0]]), to_cgal(mesh.vertices[t[1]]), to_cgal(mesh.vertices[t[2]])},
-          kNear * size);
+      return is_near(segment, {to_cgal(places[t[0]]), to_cgal(places[t[1]]), to_cgal(places[t[2]])},
+                     kNear * size);
     });
   });
 }

@@ -33,6 +33,12 @@ RadianceField::RadianceField(const Room& room, const Solution& solution, std::si
   read_zones(solution);
 }
 
+float RadianceField::mean_reflected(ZoneId zone, std::size_t band) const {
+  double sum = 0;
+  for (std::size_t part = 0; part < parts_; ++part) sum += static_cast<double>(reflected(zone, part)[band]);
+  return static_cast<float>(sum / static_cast<double>(parts_));
+}
+
 float RadianceField::zone_size(ZoneId z) const {
   const ZoneMesh& mesh = room_->mesh();
   const double metres = mesh.is_group(z) ? std::sqrt(2 * mesh.zone_area(z))

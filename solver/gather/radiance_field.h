@@ -25,6 +25,8 @@ class RadianceField {
   const float* reflected(ZoneId zone, std::size_t part = 0) const {
     return zone.valid() ? &reflected_[part * values_ + zone.index() * bands_] : zero_.data();
   }
+  /// Of one band, the mean over all parts.
+  float mean_reflected(ZoneId zone, std::size_t band) const;
   /// The share of E_direct in reflected(), from all parts [W/(m2 sr)].
   const float* reflected_direct(ZoneId zone) const {
     return zone.valid() ? &reflected_direct_[zone.index() * bands_] : zero_.data();

@@ -54,9 +54,7 @@ std::vector<float> reflected_radiance(const RadianceField& field) {
   std::vector<float> reflected(zones * bands, 0.0F);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, zones, 4096), [&](const auto& range) {
     for (std::size_t z = range.begin(); z != range.end(); ++z)
-      for (std::size_t part = 0; part < field.parts(); ++part)
-        for (std::size_t b = 0; b < bands; ++b)
-          reflected[z * bands + b] += field.reflected(ZoneId(z), part)[b] / static_cast<float>(field.parts());
+      for (std::size_t b = 0; b < bands; ++b) reflected[z * bands + b] = field.mean_reflected(ZoneId(z), b);
   });
   return reflected;
 }

@@ -113,9 +113,7 @@ std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& sol
   std::vector<double> power(bands, 0.0);
   for (const ZoneProbe& probe : probes)
     for (std::size_t b = 0; b < bands; ++b)
-      for (std::size_t part = 0; part < field.parts(); ++part)
-        power[b] += probe.area * static_cast<double>(field.reflected(probe.zone, part)[b]) /
-                    static_cast<double>(field.parts());
+      power[b] += probe.area * static_cast<double>(field.mean_reflected(probe.zone, b));
   std::vector<SurfacePoint> points;
   std::vector<double> scale;
   for (std::size_t i = 0; i < probes.size(); ++i) {

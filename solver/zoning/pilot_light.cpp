@@ -69,11 +69,10 @@ std::vector<double> mean_radiances(const RadianceField& field) {
     area += mesh.zone_area(z);
     float pick = 0.5F;
     const double need = need_of(field.room(), mesh.pick_cell(z, pick));
-    for (std::size_t part = 0; part < field.parts(); ++part)
-      for (std::size_t b = 0; b < field.band_count(); ++b)
-        mean[b] += need * mesh.zone_area(z) * static_cast<double>(field.reflected(z, part)[b]);
+    for (std::size_t b = 0; b < field.band_count(); ++b)
+      mean[b] += need * mesh.zone_area(z) * static_cast<double>(field.mean_reflected(z, b));
   }
-  for (double& m : mean) m = area > 0 ? m / (area * static_cast<double>(field.parts())) : 0;
+  for (double& m : mean) m = area > 0 ? m / area : 0;
   return mean;
 }
 

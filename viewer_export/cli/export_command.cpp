@@ -85,6 +85,9 @@ ExitCode run_export(const ExportOptions& options) {
     return export_form_factors({options.solution, options.outputs.front(), options.vertex.seed,
                                 options.vertex.threads, options.style});
   }
+  if (options.vertex.average_zones && options.smooth.value_or(false))
+    throw InputError("--smooth on", "means of zones are not smoothed",
+                     "leave it out, or gather (--values gather)");
   check_outputs(options);
   const Solution solution = load_solution(options.solution, options.style);
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);

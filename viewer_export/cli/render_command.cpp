@@ -213,6 +213,9 @@ Source load_source(const RenderOptions& options) {
 void choose_quality(RenderOptions& options) {
   StillSettings& still = options.still;
   const bool is_gathered = still.integrator == Integrator::kGather;
+  if (still.integrator == Integrator::kZones && options.smooth.value_or(false))
+    throw InputError("--smooth on", "pictures of zones have no grain to take out",
+                     "leave it out, or gather (--integrator gather)");
   still.smooth = options.smooth.value_or(is_gathered && still.error_target == 0);
   if (options.spp > 0) {
     still.spp = options.spp;

@@ -150,7 +150,22 @@ TEST_F(Pipeline, SmoothsGatheredPicturesUnlessTold) {
   EXPECT_TRUE(is_smoothed({"--error", "20%", "--smooth", "on"}));
   EXPECT_FALSE(is_smoothed({"--integrator", "path"}));
   EXPECT_TRUE(is_smoothed({"--integrator", "path", "--smooth", "on"}));
-  EXPECT_FALSE(is_smoothed({"--integrator", "zones", "--smooth", "on"}));
+  EXPECT_FALSE(is_smoothed({"--integrator", "zones"}));
+}
+
+TEST_F(Pipeline, SmoothingOfZonesIsRefused) {
+  solve_small_room(folder_, "room.h5");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"render", path("room.h5"), "-o", path("room.png"), "--integrator", "zones"},
+        {"export", path("room.h5"), "-o", path("room.ply"), "--values", "zones"}}) {
+    std::vector<std::string> smoothed = command;
+    smoothed.insert(smoothed.end(), {"--smooth", "on"});
+    const ProgramRun run = run_reemit(smoothed);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr("--smooth on"));
+    EXPECT_FALSE(std::filesystem::exists(command[3]));
+    EXPECT_EQ(run_reemit(command).exit_code, 0);
+  }
 }
 
 TEST_F(Pipeline, RendersAllCamerasIntoAFolder) {
