@@ -90,21 +90,30 @@ TEST(SeenLight, is_darker_than_the_mean_where_a_bright_part_is_hidden) {
   }
 }
 
+/// Every surface has a radiosity of 1 W/m2; reflectances are 0.5 and count as 1.
+struct EvenlyLitRoom {
+  explicit EvenlyLitRoom(const test::RoomBuilder& room)
+      : solution(test::uniform_solution(room, 0, 1)), walls(room.scene(), solution.mesh) {}
+
+  const Solution solution;
+  const Room walls;
+  const RadianceField field{walls, solution};
+  const DirectLight direct{walls};
+  const std::vector<double> scale{0.5 * std::numbers::inv_pi};
+  const std::vector<float> reflected = reflected_of(field);
+  const SeenLight seen{field, direct, reflected, scale, 1};
+};
+
 TEST(SeenLight, is_the_mean_where_nothing_is_hidden) {
   test::RoomBuilder room;
   const MaterialId wall = room.material("wall", 0.5);
   room.box(Vec3::Zero(), {3, 2, 1}, {wall, wall, wall, wall, wall, wall}, 8);
-  const Solution solution = test::uniform_solution(room, 0, 1);
-  const Room walls(room.scene(), solution.mesh);
-  const RadianceField field(walls, solution);
-  const DirectLight direct(walls);
-  const std::vector<double> scale{0.5 * std::numbers::inv_pi};
-  const std::vector<float> reflected = reflected_of(field);
-  const SeenLight light(field, direct, reflected, scale, 1);
-  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
-    if (!solution.mesh.zone_is_front(ZoneId(z))) continue;
-    EXPECT_GT(light.look(ZoneId(z)).open, 0.3);
-    EXPECT_NEAR(light.look(ZoneId(z)).misread, 0, 0.02);
+  const EvenlyLitRoom light(room);
+  const ZoneMesh& mesh = light.solution.mesh;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    if (!mesh.zone_is_front(ZoneId(z))) continue;
+    EXPECT_GT(light.seen.look(ZoneId(z)).open, 0.3);
+    EXPECT_NEAR(light.seen.look(ZoneId(z)).misread, 0, 0.02);
   }
 }
 
@@ -114,18 +123,13 @@ TEST(SeenLight, looks_once_where_most_rays_leave_the_room) {
   const MaterialId wall = room.material("wall", 0.5, 0, true);
   room.quad(wall, {Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)}, 8);
   room.quad(wall, {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(0, 1, 1), Vec3(0, 0, 1)}, 1);
-  const Solution solution = test::uniform_solution(room, 0, 1);
-  const Room walls(room.scene(), solution.mesh);
-  const RadianceField field(walls, solution);
-  const DirectLight direct(walls);
-  const std::vector<double> scale{0.5 * std::numbers::inv_pi};
-  const std::vector<float> reflected = reflected_of(field);
-  const SeenLight light(field, direct, reflected, scale, 1);
+  const EvenlyLitRoom light(room);
+  const ZoneMesh& mesh = light.solution.mesh;
   int looked_at = 0;
-  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
-    if (solution.mesh.zone_centroid(ZoneId(z)).x() < 1 || !solution.mesh.zone_is_front(ZoneId(z))) continue;
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+    if (mesh.zone_centroid(ZoneId(z)).x() < 1 || !mesh.zone_is_front(ZoneId(z))) continue;
     ++looked_at;
-    EXPECT_EQ(light.look(ZoneId(z)).misread, 0);
+    EXPECT_EQ(light.seen.look(ZoneId(z)).misread, 0);
   }
   EXPECT_EQ(looked_at, 128);
 }
