@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "mesh/zones/zone_mesh.h"
+#include "scenes/model/instruction_sets.h"
 
 namespace reemit {
 namespace {
@@ -13,12 +14,8 @@ inline std::uint32_t mask_of(bool condition) {
 }  // namespace
 
 // As zone_at, lane by lane, but all lanes go down the cells that are cut further together: which cells these
-// are nothing could predict, so a loop for each lane would end in a branch mispredicted. Compiled for several
-// instruction sets and chosen when the program starts. Every operation is correctly rounded and none is
-// contracted, so all versions return the same zones.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
+// are nothing could predict, so a loop for each lane would end in a branch mispredicted.
+REEMIT_FOR_INSTRUCTION_SETS
 void ZoneMesh::zones_at16(const TrianglePoints16& __restrict points, std::uint32_t* __restrict zone) const {
   static_assert(sizeof(ZoneId) == sizeof(std::uint32_t));
   if (sides_.empty()) {

@@ -1,11 +1,10 @@
 #include "solver/sampling/counter_rng.h"
 
+#include "scenes/model/instruction_sets.h"
+
 namespace reemit {
 
-// Integer arithmetic only: all versions return the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
+REEMIT_FOR_INSTRUCTION_SETS
 void CounterRng::bits4x16(const std::uint32_t* __restrict index, std::uint32_t batch, std::uint32_t step,
                           BitLanes& __restrict bits) const {
   for (int i = 0; i < 16; ++i) {

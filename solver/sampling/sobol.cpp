@@ -1,5 +1,7 @@
 #include "solver/sampling/sobol.h"
 
+#include "scenes/model/instruction_sets.h"
+
 namespace reemit {
 namespace {
 
@@ -75,9 +77,7 @@ SobolSequence::SobolSequence(std::uint64_t seed) {
   }
 }
 
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
+REEMIT_FOR_INSTRUCTION_SETS
 void SobolSequence::sample16(std::uint32_t first_index, int dimension, float* out) const {
   const auto d = static_cast<std::size_t>(dimension);
   // As sobol_bits, but without a branch on random bits.

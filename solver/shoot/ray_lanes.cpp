@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scenes/model/instruction_sets.h"
+
 namespace reemit {
 namespace {
 
@@ -16,14 +18,9 @@ inline float height_of(const ZoneLanes& zones, const Ray16& rays, int i) {
 
 }  // namespace
 
-// Compiled for several instruction sets and chosen when the program starts. Every operation is correctly
-// rounded and none is contracted, so all versions return the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
-std::uint32_t
-start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restrict numbers,
-           Ray16& __restrict rays) {
+REEMIT_FOR_INSTRUCTION_SETS
+std::uint32_t start_rays(const ZoneLanes& __restrict zones, const UniformLanes& __restrict numbers,
+                         Ray16& __restrict rays) {
   constexpr float kQuarter = std::numbers::pi_v<float> / 4;
   std::uint32_t any_behind = 0;
   for (int i = 0; i < 16; ++i) {

@@ -9,7 +9,7 @@ namespace reemit {
 // checksum of the superblock (seen in HDF5 1.10.8).
 struct Hdf5MemoryFile::Image {
   struct Free {
-    void operator()(void* memory) const { std::free(memory); }
+    void operator()(void* block) const { std::free(block); }
   };
   std::unique_ptr<void, Free> memory;
   std::size_t size = 0;  // of the memory that grew last, which is that of the file

@@ -2,15 +2,12 @@
 
 #include <cstdint>
 
+#include "scenes/model/instruction_sets.h"
 #include "solver/trace/ray_tracer.h"
 
 namespace reemit {
 
-// Compiled for several instruction sets and chosen when the program starts. Every operation is correctly
-// rounded and none is contracted, so all versions return the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
+REEMIT_FOR_INSTRUCTION_SETS
 void read_flat_hits(const FacePlane* __restrict faces, const Ray16& __restrict rays, Hit16& __restrict hits) {
   static_assert(sizeof(FacePlane) == 4 * sizeof(float));
   const auto* __restrict const numbers = reinterpret_cast<const float*>(faces);
