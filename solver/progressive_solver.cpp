@@ -82,10 +82,10 @@ void run_matrix(const PreparedRoom& room, Solution& solution, const ProgressCall
 }
 
 /// What follows the last batch, or the matrix, in the arena of the run.
-void examine_zones(const PreparedRoom& room, const Schedule& schedule, const ProgressCallback& progress,
-                   const std::atomic<bool>& interrupt, Solution& solution) {
+void examine(const PreparedRoom& room, const Schedule& schedule, const ProgressCallback& progress,
+             const std::atomic<bool>& interrupt, Solution& solution) {
   if (progress && !interrupt) tell_of_examination(solution, progress);
-  compare_points_with_zones(room.room, schedule, interrupt, solution);
+  examine_zones(room.room, schedule, interrupt, solution);
 }
 
 Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& watch,
@@ -106,7 +106,7 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
   arena.execute([&] {
     run_matrix(room, solution, watch.progress, interrupt);
     if (examination == Examination::kWhole)
-      examine_zones(room, Schedule(start, solution), watch.progress, interrupt, solution);
+      examine(room, Schedule(start, solution), watch.progress, interrupt, solution);
     record_error(room.room.surfaces(), solution);
     solution.record.seconds = seconds_since(start);
   });
@@ -190,8 +190,7 @@ class ProgressiveSolver::Run {
     if (record().stopped == StopReason::kUnderWay) end_batches(StopReason::kInterrupted);
     arena_.execute([&] {
       gather_what_is_small(room_.room, schedule_, interrupt_, solution_);
-      if (examination == Examination::kWhole)
-        examine_zones(room_, schedule_, progress, interrupt_, solution_);
+      if (examination == Examination::kWhole) examine(room_, schedule_, progress, interrupt_, solution_);
       record_error(room_.room.surfaces(), solution_);
       record().seconds = seconds_since(begin_);
     });
@@ -220,6 +219,7 @@ class ProgressiveSolver::Run {
     record.gathered_zones = 0;
     record.discretisation.reset();
     record.gather_bias.reset();
+    start.gather_plan = {};
     start.light_warnings.clear();
     return start;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -17,16 +18,50 @@ namespace {
 constexpr std::uint32_t kPacketsPerTask = 1U << 14;
 /// Packets between mirrors end there: what is left of them lights nothing that could be seen.
 constexpr std::uint32_t kMostSteps = 1024;
+constexpr std::uint32_t kAll16 = 0xffff;
+constexpr float kCodesPerOctave = 24;
 
-void append(CausticPhotons& all, const CausticPhotons& more) {
-  all.places.insert(all.places.end(), more.places.begin(), more.places.end());
-  all.normals.insert(all.normals.end(), more.normals.begin(), more.normals.end());
-  all.triangles.insert(all.triangles.end(), more.triangles.begin(), more.triangles.end());
-  all.luminaires.insert(all.luminaires.end(), more.luminaires.begin(), more.luminaires.end());
-  all.power.insert(all.power.end(), more.power.begin(), more.power.end());
+/// Of packets first .. first+15 of those that there are, by bit. Pre: first is a multiple of 16.
+std::uint32_t marks_of16(const CausticShooter::Marks& marks, std::uint32_t first) {
+  const std::size_t byte = first / 8;
+  std::uint32_t bits = marks[byte];
+  if (byte + 1 < marks.size()) bits |= static_cast<std::uint32_t>(marks[byte + 1]) << 8U;
+  return bits;
 }
 
 }  // namespace
+
+float photon_radius(std::uint8_t code) {
+  return kLargestPhotonRadius * std::exp2(-static_cast<float>(code) / kCodesPerOctave);
+}
+
+std::uint8_t photon_radius_code(float radius) {
+  const float code = std::round(kCodesPerOctave * std::log2(kLargestPhotonRadius / radius));
+  return static_cast<std::uint8_t>(std::clamp(code, 0.0F, 255.0F));
+}
+
+bool CausticPhotons::is_on_face(std::uint32_t i, const Vec3f& normal, const Vec3f& place,
+                                float radius) const {
+  constexpr float kFlat = 0.15F;
+  return normals[i].dot(normal) > kSameFace && std::fabs((places[i] - place).dot(normal)) < kFlat * radius;
+}
+
+void CausticPhotons::append(const CausticPhotons& more) {
+  places.insert(places.end(), more.places.begin(), more.places.end());
+  normals.insert(normals.end(), more.normals.begin(), more.normals.end());
+  triangles.insert(triangles.end(), more.triangles.begin(), more.triangles.end());
+  luminaires.insert(luminaires.end(), more.luminaires.begin(), more.luminaires.end());
+  power.insert(power.end(), more.power.begin(), more.power.end());
+  radius_codes.insert(radius_codes.end(), more.radius_codes.begin(), more.radius_codes.end());
+}
+
+CausticPhotons mean_of(std::vector<CausticPhotons> estimates) {
+  if (estimates.size() == 1) return std::move(estimates.front());
+  CausticPhotons mean;
+  for (const CausticPhotons& estimate : estimates) mean.append(estimate);
+  for (float& watts : mean.power) watts /= static_cast<float>(estimates.size());
+  return mean;
+}
 
 CausticShooter::CausticShooter(const Room& room, std::uint64_t seed)
     : transport_(room), emission_(collect_packet_sources(transport_)), seed_(seed) {}
@@ -52,12 +87,17 @@ std::vector<float> CausticShooter::density_of_surfaces(double packets) const {
 }
 
 CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
-                                     const StopToken* stop) const {
+                                     const Options& options) const {
   CausticPhotons all;
   if (emission_.sources.empty()) return all;
   const Channels channels = transport_.channels();
   const double offset = static_cast<double>(CounterRng(seed_, RngPurpose::kCaustic).uniform4(0, batch, 0)[0]);
   const Flight flight = plan_first_flight(emission_, packets, offset);
+  const std::size_t mark_bytes = (flight.packets() + std::size_t{7}) / 8;
+  const Marks* marked = options.marked;
+  if (marked != nullptr && marked->size() != mark_bytes) marked = nullptr;
+  Marks* brought = options.brought;
+  if (brought != nullptr) brought->assign(mark_bytes, 0);
   const FlightNumbers numbers(SamplingKind::kSobol, seed_ ^ 0x9e3779b97f4a7c15ULL, batch, 0);
   const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
   std::vector<CausticPhotons> of_task(tasks);
@@ -66,18 +106,17 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
     const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
     FlightCursor cursor(transport_, flight, begin);
     Ray16 rays;
-    Hit16 hits;
     std::vector<std::int64_t> quanta(16 * channels.count());
     std::vector<float> power(channels.bands());
     for (std::uint32_t first = begin; first < end; first += 16) {
-      if (stop != nullptr && stop->requested()) return;
+      if (options.stop != nullptr && options.stop->requested()) return;
       const int count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
+      std::uint32_t followed = marked != nullptr ? marks_of16(*marked, first) : kAll16;
+      if (followed == 0) continue;
       cursor.start16(first, count, numbers, rays, quanta.data());
-      transport_.rays().closest16(rays, count, hits);
+      if (marked == nullptr) followed = meet_mirrors(rays, count);
       for (int lane = 0; lane < count; ++lane) {
-        if (hits.triangle[lane] == RayTracer::kMiss ||
-            !transport_.surface_model().is_specular(TriangleId(hits.triangle[lane]), hits.front[lane]))
-          continue;
+        if ((followed >> lane & 1U) == 0) continue;
         const std::uint32_t id = first + static_cast<std::uint32_t>(lane);
         const auto source = static_cast<std::size_t>(
             std::upper_bound(flight.first_packet.begin(), flight.first_packet.end(), id) -
@@ -90,12 +129,27 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
         channels.for_each([&](std::size_t c, std::size_t band) {
           power[band] += static_cast<float>(emission_.watts_per_quantum[c] * static_cast<double>(own[c]));
         });
+        const std::size_t before = of_task[task].size();
         follow(rays.origin(lane), rays.direction(lane), id, batch, luminaire, power, of_task[task]);
+        // A task has bytes of its own.
+        if (brought != nullptr && of_task[task].size() > before)
+          (*brought)[id / 8] = static_cast<std::uint8_t>((*brought)[id / 8] | 1U << (id % 8));
       }
     }
   });
-  for (const CausticPhotons& photons : of_task) append(all, photons);
+  for (const CausticPhotons& photons : of_task) all.append(photons);
   return all;
+}
+
+std::uint32_t CausticShooter::meet_mirrors(const Ray16& rays, int count) const {
+  Hit16 hits;
+  transport_.rays().closest16(rays, count, hits);
+  std::uint32_t met = 0;
+  for (int lane = 0; lane < count; ++lane)
+    if (hits.triangle[lane] != RayTracer::kMiss &&
+        transport_.surface_model().is_specular(TriangleId(hits.triangle[lane]), hits.front[lane]))
+      met |= 1U << lane;
+  return met;
 }
 
 void CausticShooter::follow(const Vec3f& origin, const Vec3f& direction, std::uint32_t id,

@@ -17,11 +17,22 @@ std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight&
   std::vector<float> reach(mesh.zone_count(), 0.0F);
   if (settings.close_hit == 0) return reach;
   std::vector<std::uint8_t> uneven(mesh.zone_count(), 0);
-  if (settings.continue_uneven) uneven = uneven_zones(field, direct, settings.seed, stop);
+  if (settings.continue_uneven)
+    uneven = settings.plan != nullptr && settings.plan->uneven.size() == uneven.size()
+                 ? settings.plan->uneven
+                 : uneven_zones(field, direct, settings.seed, stop);
   for (std::size_t z = 0; z < reach.size(); ++z)
     reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
                               : static_cast<float>(settings.close_hit) * field.zone_size(ZoneId(z));
   return reach;
+}
+
+CausticMap caustic_map(const RadianceField& field, const GatherSettings& settings, const StopToken* stop) {
+  if (!settings.caustics) return {};
+  const GatherPlan* plan = settings.plan;
+  const bool is_known = plan != nullptr && plan->caustics;
+  return {field.room(), field.parts(), is_known ? plan->seed : settings.seed,
+          is_known ? &*plan->caustics : nullptr, stop};
 }
 
 }  // namespace
@@ -30,8 +41,7 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
                                    const GatherSettings& settings, const StopToken* stop)
     : field_(&field),
       direct_(&direct),
-      caustics_(settings.caustics ? CausticMap(field.room(), field.parts(), settings.seed, stop)
-                                  : CausticMap()),
+      caustics_(caustic_map(field, settings, stop)),
       white_(field.band_count(), 1.0F),
       reach_(reach_of_zones(field, direct, settings, stop)),
       most_bounces_(settings.most_bounces),

@@ -11,6 +11,7 @@
 #include "solver/gather/radiance_field.h"
 #include "solver/gather/specular_path.h"
 #include "solver/sampling/counter_rng.h"
+#include "solver/solution/gather_plan.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
@@ -26,6 +27,9 @@ struct GatherSettings {
   /// Shoot photons for light over mirrors and glass before the first ray (CausticMap); else rays find it.
   bool caustics = false;
   std::uint64_t seed = 1;
+  /// What was found before of the solution and the room, needed by the constructor alone; null: nothing. What
+  /// it lacks is found with `seed`.
+  const GatherPlan* plan = nullptr;
 };
 
 /// Indirect light at points: cosine-distributed rays that read the *reflected* radiance of the zones they hit

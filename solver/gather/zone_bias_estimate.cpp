@@ -104,7 +104,8 @@ std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& sol
   if (probes.size() < ZoneBiasEffort::kPoints) return std::nullopt;
   const RadianceField field(room, solution, ZoneSums::kGroups);
   const DirectLight direct(room);
-  const HemisphereGather gather(field, direct, GatherSettings{.seed = seed}, &stop);
+  const HemisphereGather gather(field, direct, GatherSettings{.seed = seed, .plan = &solution.gather_plan},
+                                &stop);
   if (stop.requested()) return std::nullopt;
   const PathTracer path(room, direct, seed);
 

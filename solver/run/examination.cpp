@@ -6,6 +6,7 @@
 
 #include "scenes/model/interrupted.h"
 #include "solver/gather/discretisation.h"
+#include "solver/gather/plan_gathers.h"
 #include "solver/gather/small_zones.h"
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/losses/lost_light.h"
@@ -34,19 +35,17 @@ void gather_what_is_small(const Room& room, const Schedule& schedule, const std:
   if (clock_had_a_say && !interrupt) record.stopped = StopReason::kTimeLimit;
 }
 
-void compare_points_with_zones(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
-                               Solution& solution) {
-  SolveRecord& record = solution.record;
-  if (solution.settings.method == SolveMethod::kMatrix) {
-    record.discretisation = discretisation_error(room, solution, StopToken(interrupt));
-    record.gather_bias = estimate_zone_bias(room, solution, StopToken(interrupt));
-    return;
-  }
-  // Short runs may spend a moment more on it.
+void examine_zones(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
+                   Solution& solution) {
+  // Short runs may spend a moment more on it; the matrix method has no limit.
   constexpr double kMoment = 0.5;
-  const StopToken stop = schedule.token(schedule.limit_s + kMoment, interrupt);
-  record.discretisation = discretisation_error(room, solution, stop);
-  record.gather_bias = estimate_zone_bias(room, solution, stop);
+  const StopToken stop = solution.settings.method == SolveMethod::kMatrix
+                             ? StopToken(interrupt)
+                             : schedule.token(schedule.limit_s + kMoment, interrupt);
+  plan_uneven_zones(room, stop, solution);
+  solution.record.discretisation = discretisation_error(room, solution, stop);
+  solution.record.gather_bias = estimate_zone_bias(room, solution, stop);
+  plan_caustic_packets(room, stop, solution);
 }
 
 void look_for_lost_light(const PreparedRoom& room, const std::atomic<bool>& interrupt, Solution& solution) {

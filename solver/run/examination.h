@@ -15,9 +15,10 @@ void record_error(const SurfaceModel& surfaces, Solution& solution);
 void gather_what_is_small(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
                           Solution& solution);
 
-/// Notes how far points differ from the zones they are in.
-void compare_points_with_zones(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
-                               Solution& solution);
+/// Looks at the zones as those will who gather light from them: which of them mislead, how far points differ
+/// from the zones they are in, and which packets come over mirrors.
+void examine_zones(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
+                   Solution& solution);
 
 /// Notes where light is lost, or that nobody looked.
 void look_for_lost_light(const PreparedRoom& room, const std::atomic<bool>& interrupt, Solution& solution);

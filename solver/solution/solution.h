@@ -13,6 +13,7 @@
 #include "solver/solution/channels.h"
 #include "solver/solution/energy_audit.h"
 #include "solver/solution/form_factor_report.h"
+#include "solver/solution/gather_plan.h"
 #include "solver/solution/solver_settings.h"
 #include "solver/solution/zone_bias.h"
 
@@ -150,6 +151,7 @@ struct Solution {
   ZoneSums sums;
   GatheredZones gathered;
   EnergyAudit audit;
+  GatherPlan gather_plan;
   std::vector<std::string> light_warnings;  ///< Of light that is lost where it should not be (lost_light.h).
   std::optional<FormFactorReport> form_factors;  ///< Of the matrix method; not kept in the file.
 

@@ -8,6 +8,7 @@
 #include "solver/solution/audit_group.h"
 #include "solver/solution/file_damage.h"
 #include "solver/solution/file_seal.h"
+#include "solver/solution/gather_plan_group.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/shape_rows.h"
 #include "solver/solution/solution_file.h"
@@ -348,6 +349,7 @@ Solution read_all(const Hdf5Group& root) {
   solution.mesh = read_mesh(root, solution, solution.sums.direct.size() / channels.count());
   read_textures(root, solution);
   solution.gathered = read_gathered(root, solution);
+  read_gather_plan(root, solution);
   read_audit(root, solution);
   return solution;
 }

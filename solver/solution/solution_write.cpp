@@ -7,6 +7,7 @@
 #include "scenes/model/error.h"
 #include "solver/solution/audit_group.h"
 #include "solver/solution/file_seal.h"
+#include "solver/solution/gather_plan_group.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/hdf5_memory_file.h"
 #include "solver/solution/shape_rows.h"
@@ -78,6 +79,9 @@ void check_consistent(const Solution& solution) {
   require(solution.gathered.sums.size() == gathered * sums.columns().size() &&
               solution.gathered.group_total.size() == gathered * ZoneSums::kGroups,
           "one row per gathered zone expected");
+  require(
+      solution.gather_plan.uneven.empty() || solution.gather_plan.uneven.size() == solution.mesh.zone_count(),
+      "one mark per zone expected in the plan of gathers");
   require(solution.audit.bands.size() == channels, "one audit per channel expected");
   for (const BandAudit& audit : solution.audit.bands)
     require(audit.absorbed.size() == surfaces && audit.absorbed_on_backs.size() == surfaces,
@@ -385,6 +389,7 @@ void write_all(const Hdf5Group& root, const Solution& solution) {
   write_textures(root, solution);
   write_sums(root, solution);
   write_gathered(root, solution);
+  write_gather_plan(root, solution);
   write_audit(root, solution);
 }
 

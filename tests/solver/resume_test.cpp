@@ -19,6 +19,7 @@ namespace reemit {
 namespace {
 
 using test::expect_same_light;
+using test::expect_same_plan;
 using test::expect_same_record;
 using test::RoomBuilder;
 using test::TempFolder;
@@ -27,6 +28,7 @@ using test::VariableFurnace;
 void expect_same_result(const Solution& a, const Solution& b) {
   expect_same_record(a.record, b.record);
   expect_same_light(a, b);
+  expect_same_plan(a.gather_plan, b.gather_plan);
   EXPECT_EQ(a.light_warnings, b.light_warnings);
 }
 

@@ -50,4 +50,15 @@ inline void expect_same_record(const SolveRecord& a, const SolveRecord& b) {
   EXPECT_EQ(a.discretisation, b.discretisation);
 }
 
+/// What stills of the two would begin with.
+inline void expect_same_plan(const GatherPlan& a, const GatherPlan& b) {
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(a.uneven, b.uneven);
+  ASSERT_EQ(a.caustics.has_value(), b.caustics.has_value());
+  if (!a.caustics) return;
+  EXPECT_EQ(a.caustics->packets, b.caustics->packets);
+  EXPECT_EQ(a.caustics->brings, b.caustics->brings);
+  EXPECT_EQ(a.caustics->radius_codes, b.caustics->radius_codes);
+}
+
 }  // namespace reemit::test

@@ -28,7 +28,8 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
               // Means of zones gather nothing; without close hits there is nothing to prepare.
               GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit,
                              .caustics = true,
-                             .seed = settings.seed},
+                             .seed = settings.seed,
+                             .plan = &solution.gather_plan},
               &stop),
       path_(room, direct_, settings.seed),
       bands_(room.band_count()),

@@ -75,13 +75,14 @@ double gathered(const HemisphereGather& gather, const Vec3& at, std::size_t numb
 }
 
 /// Irradiance over the mirror by what is gathered at points of the floor, over that of the image.
-MeanTest over_truth(const std::vector<Vec3>& points, bool screen = false) {
+MeanTest over_truth(const std::vector<Vec3>& points, bool screen = false, std::uint64_t seed = 1) {
   const RoomBuilder room = room_with(true, 1, screen);
   const Solution dark = test::dark_solution(room);
   const Room walls(room.scene(), dark.mesh);
   const DirectLight direct(walls);
   const RadianceField field(walls, dark);
-  const HemisphereGather gather(field, direct, GatherSettings{.close_hit = 0, .caustics = true});
+  const HemisphereGather gather(field, direct,
+                                GatherSettings{.close_hit = 0, .caustics = true, .seed = seed});
   EXPECT_TRUE(gather.caustics().exists());
   EXPECT_LT(gather.caustics().left_to_rays(SurfaceId(screen ? 2 : 1)), 0.1F);
   const RoomBuilder behind = room_with(false, -1, screen);
@@ -108,10 +109,12 @@ TEST(CausticPower, MirrorShowsTheLampBehindIt) {
 
 TEST(CausticMap, LosesNothingWhereAFaceEnds) {
   std::vector<Vec3> points;
-  for (int i = 0; i < 300; ++i) points.emplace_back(kFloor - 0.01, -1.8 + 3.6 * i / 299, 0);
-  const MeanTest mean = over_truth(points);
-  // Without a look for the end of the face, 0.55.
-  EXPECT_NEAR(mean.mean(), 1, 5 * mean.standard_error() + 0.05);
+  for (int i = 0; i < 100; ++i) points.emplace_back(kFloor - 0.01, -1.8 + 3.6 * i / 99, 0);
+  // By 2 sets of photons, whose noise all points of one share. At the very end a tenth is missing; without a
+  // look for the end it is 0.45.
+  MeanTest mean;
+  for (const std::uint64_t seed : {1, 2}) mean.add(over_truth(points, false, seed).mean());
+  EXPECT_NEAR(mean.mean(), 0.95, 0.07);
   EXPECT_LT(mean.standard_error(), 0.02);
 }
 
@@ -200,7 +203,7 @@ TEST(CausticMap, IsEmptyWithoutMirrors) {
   const RoomBuilder room = room_with(false, 1);
   const ZoneMesh mesh = room.mesh().mesh;
   const Room walls(room.scene(), mesh);
-  EXPECT_FALSE(CausticMap(walls, 2, 1, nullptr).exists());
+  EXPECT_FALSE(CausticMap(walls, 2, 1, nullptr, nullptr).exists());
   EXPECT_FALSE(CausticMap().exists());
 }
 

@@ -103,6 +103,12 @@ inline Solution sample_solution(const BandSet& bands) {
   s.gathered.keep(s.sums, {ZoneId(3), ZoneId(1)});
   s.gathered.rays = 9;
 
+  s.gather_plan.seed = 11;
+  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)
+    s.gather_plan.uneven.push_back(static_cast<std::uint8_t>(z % 3 == 0));
+  if (bands.kind() == BandKind::kRgb)
+    s.gather_plan.caustics = CausticPackets{20, {{1, 128}, {}}, {0, 255, 3}};
+
   s.light_warnings = {"light 'spot': 40 % of its light is lost", "", "5 % leaves the room"};
   s.audit.batches = 4;
   s.audit.weight = 7;

@@ -23,6 +23,7 @@ namespace reemit {
 namespace {
 
 using test::expect_same_light;
+using test::expect_same_plan;
 using test::read_bytes;
 using test::sample_solution;
 using test::SmallDisk;
@@ -136,6 +137,7 @@ TEST_F(SolutionFile, KeepsEverythingForEveryKindOfBands) {
     expect_same_settings(saved, loaded);
     expect_same_room(saved, loaded);
     expect_same_light(saved, loaded);
+    expect_same_plan(saved.gather_plan, loaded.gather_plan);
   }
 }
 
@@ -284,13 +286,15 @@ TEST_F(SolutionFile, RefusesOtherVersions) {
 }
 
 TEST_F(SolutionFile, RefusesIndicesOutOfRangeAndAbsurdCounts) {
-  Solution solution = sample_solution(BandSet::grey());
+  Solution solution = sample_solution(BandSet::rgb());
   // Of a run so long that its books have high parts.
   BandAudit& books = solution.audit.bands[0];
   books.emitted = books.absorbed[0] = books.absorbed_on_backs[0] = books.escaped[0] = RunQuanta{1} << 70;
   const std::uint32_t bad_index[] = {77, 77, 77, 77, 77, 77};
   const std::uint32_t bad_divisions[] = {50000, 50000};
   const std::uint32_t zero_divisions[] = {0, 3};
+  const std::uint64_t bad_sizes[] = {2, 1};
+  const std::uint8_t bad_marks[64] = {2};
   const double not_a_number[64] = {std::numeric_limits<double>::quiet_NaN()};
   std::int64_t most_quanta[64];
   std::ranges::fill(most_quanta, std::numeric_limits<std::int64_t>::max());
@@ -307,6 +311,8 @@ TEST_F(SolutionFile, RefusesIndicesOutOfRangeAndAbsurdCounts) {
                {"/surfaces/material", H5T_NATIVE_UINT32, bad_index},
                {"/materials/reflectance", H5T_NATIVE_DOUBLE, not_a_number},
                {"/sums/direct", H5T_NATIVE_DOUBLE, not_a_number},
+               {"/gather_plan/uneven", H5T_NATIVE_UINT8, bad_marks},
+               {"/gather_plan/caustic_part_bytes", H5T_NATIVE_UINT64, bad_sizes},
                {"/audit/watts_per_quantum", H5T_NATIVE_DOUBLE, not_a_number},
                {"/audit/emitted_high", H5T_NATIVE_INT64, most_quanta},
                {"/audit/absorbed_high", H5T_NATIVE_INT64, most_quanta},
@@ -386,6 +392,9 @@ TEST_F(SolutionFile, RefusesToSaveWhatDoesNotFitTogether) {
   EXPECT_THROW(save_solution(solution, file_), std::invalid_argument);
   solution = sample_solution(BandSet::grey());
   solution.surface_materials.clear();
+  EXPECT_THROW(save_solution(solution, file_), std::invalid_argument);
+  solution = sample_solution(BandSet::grey());
+  solution.gather_plan.uneven.pop_back();
   EXPECT_THROW(save_solution(solution, file_), std::invalid_argument);
   EXPECT_EQ(folder_.listing().size(), 0U);
 }

@@ -1,0 +1,38 @@
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "scenes/model/stop_token.h"
+#include "solver/gather/caustic_photons.h"
+#include "solver/gather/photon_grid.h"
+
+namespace reemit {
+
+/// Photons of all parts together that lie in the radius of one, if that is not the largest.
+inline constexpr int kPhotonsInRadius = 160;
+
+/// Radii that halve from one to the next, from the largest on.
+inline constexpr std::size_t kRadiusLevels = 6;
+constexpr float radius_of_level(std::size_t level) {
+  return kLargestPhotonRadius / static_cast<float>(1U << level);
+}
+
+/// Sets the radii of photons by how densely those of a pilot lie around them.
+class PhotonRadii {
+ public:
+  /// `share`: packets of the pilot over those of all parts together.
+  PhotonRadii(CausticPhotons pilot, float share);
+
+  /// Sets CausticPhotons::radius_codes. When `stop` (may be null) is requested some may be those of others.
+  void set(CausticPhotons& photons, const StopToken* stop) const;
+
+ private:
+  /// `levels`: with photons enough at a place nearby, from the largest on; becomes that of this place.
+  float radius_at(const Vec3f& normal, const Vec3f& place, std::size_t& levels) const;
+
+  CausticPhotons pilot_;
+  float enough_;  // photons of the pilot in the radius
+  std::array<PhotonGrid, kRadiusLevels> grids_;
+};
+
+}  // namespace reemit
