@@ -54,10 +54,11 @@ CausticMap::Photons CausticMap::of_part(CausticPhotons photons) {
   Photons result;
   result.all = std::move(photons);
   result.gain = std::make_unique<std::atomic<float>[]>(result.all.size());
+  for (const std::uint8_t code : result.all.radius_codes) result.radius.push_back(photon_radius(code));
   std::array<std::vector<std::uint32_t>, kRadiusLevels> of_level;
-  for (std::uint32_t i = 0; i < result.all.size(); ++i) {
+  for (std::uint32_t i = 0; i < result.radius.size(); ++i) {
     std::size_t level = 0;
-    while (level + 1 < kRadiusLevels && radius_of_level(level + 1) >= result.all.radius(i)) ++level;
+    while (level + 1 < kRadiusLevels && radius_of_level(level + 1) >= result.radius[i]) ++level;
     of_level[level].push_back(i);
   }
   for (std::size_t level = 0; level < kRadiusLevels; ++level)
@@ -70,7 +71,7 @@ float CausticMap::gain_of(const Photons& photons, std::uint32_t i) const {
   if (const float known = gain.load(std::memory_order_relaxed); known != 0) return known;
   const Vec3f& normal = photons.all.normals[i];
   const Vec3f& place = photons.all.places[i];
-  const float radius = photons.all.radius(i);
+  const float radius = photons.radius[i];
   const bool walled = is_beside_wall(normal, place, radius);
   float found = 1;
   if (walled || !is_inside_triangle(photons.all.triangles[i], place, radius)) {
@@ -164,7 +165,7 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
   std::vector<float> found;        // by band
   for (std::size_t level = 0; level < kRadiusLevels; ++level)
     photons.grids[level].visit(place, radius_of_level(level), [&](std::uint32_t i, float d2) {
-      const float radius = photons.all.radius(i);
+      const float radius = photons.radius[i];
       if (d2 >= radius * radius || !photons.all.is_on_face(i, x.normal, place, radius)) return;
       const float gain = gain_of(photons, i);
       if (gain < 0) {

@@ -52,6 +52,7 @@ class CausticMap {
  private:
   struct Photons {
     CausticPhotons all;
+    std::vector<float> radius;  ///< By photon.
     /// By photon: gain_of() where it has been asked for, else 0.
     std::unique_ptr<std::atomic<float>[]> gain;
     /// Of the photons of all radii down to half that of the level.

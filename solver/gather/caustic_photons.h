@@ -30,8 +30,6 @@ struct CausticPhotons {
 
   std::size_t size() const { return places.size(); }
   void append(const CausticPhotons& more);
-  /// Normalised. Pre: it is set.
-  float radius(std::uint32_t i) const { return photon_radius(radius_codes[i]); }
   /// True if photon i, within a radius of a place, met the face there or one that goes on as it does.
   bool is_on_face(std::uint32_t i, const Vec3f& normal, const Vec3f& place, float radius) const;
 };

@@ -59,8 +59,9 @@ CausticShots shoot_all(const CausticShooter& shooter, std::vector<CausticShooter
 
 CausticShots shoot_caustics(const CausticShooter& shooter, const CausticPackets* known,
                             const StopToken* stop) {
-  if (known == nullptr || known->brings.size() != CausticShots::kParts)
-    return known != nullptr && known->packets == 0 ? CausticShots{} : shoot_all(shooter, nullptr, stop);
+  if (known != nullptr && known->packets == 0) return {};
+  if (known == nullptr || known->brings.size() != CausticShots::kParts || known->packets > kMostPackets)
+    return shoot_all(shooter, nullptr, stop);
   CausticShots shots;
   shots.packets = known->packets;
   tbb::parallel_for(std::size_t{0}, CausticShots::kParts, [&](std::size_t p) {
