@@ -1,5 +1,8 @@
 #include "viewer_export/cli/solution_report.h"
 
+#include <algorithm>
+#include <cstdint>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -56,6 +59,23 @@ Json record_json(const Solution& solution) {
 bool lacks_unshot_power(const Solution& solution) {
   return solution.settings.method != SolveMethod::kMatrix &&
          solution.audit.unshot_share() > solution.settings.stop_share;
+}
+
+/// Stills and exports need not look for what belongs to the room.
+bool is_ready_for_views(const Solution& solution) {
+  const GatherPlan& plan = solution.gather_plan;
+  return !plan.uneven.empty() && (plan.caustics || !solution.sums.has_caustics());
+}
+
+std::string view_text(const Solution& solution) {
+  const GatherPlan& plan = solution.gather_plan;
+  if (!is_ready_for_views(solution))
+    return "every still and export looks for uneven zones or photons first: the solve was cut short\n";
+  std::string text = fmt::format("begin at once: {} uneven zones",
+                                 std::count(plan.uneven.begin(), plan.uneven.end(), std::uint8_t{1}));
+  if (plan.caustics)
+    text += fmt::format(" and {} photons behind mirrors and glass", plan.caustics->radius_codes.size());
+  return text + " are known\n";
 }
 
 std::string deviation_text(const RowSums& sums) {
@@ -161,6 +181,7 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
   text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",
                       solution.mesh.triangle_count(), solution.mesh.zone_count(), record.unreached_zones);
   text += shared_zones_text(solution.mesh, kHeadWidth, sealed_light_share(solution));
+  if (solution.sums.batches > 0) text += "views     " + view_text(solution);
   if (lacks_unshot_power(solution))
     text += fmt::format("unshot    {} of the emitted power; radiosities are too low by about that\n",
                         percent_text(solution.audit.worst_unshot_share()));
@@ -177,6 +198,7 @@ Json solution_json(const Solution& solution, const std::filesystem::path& file,
   json.update(record_json(solution));
   json["base_triangles"] = solution.mesh.triangle_count();
   add_shared_zones(json, solution.mesh, sealed_light_share(solution));
+  json["ready_for_views"] = is_ready_for_views(solution);
   json["warnings"] = solution.mesh_report.warnings;
   for (const std::string& warning : solution.light_warnings) json["warnings"].push_back(warning);
   return json;

@@ -357,7 +357,10 @@ TEST_F(Pipeline, InfoOfASolution) {
   EXPECT_EQ(info["seed"], 77);
   EXPECT_EQ(info["room_status"], "unchanged");
   EXPECT_EQ(info["method"], "shooting");
-  EXPECT_THAT(output_of({"info", path("room.h5")}), HasSubstr("seed 77"));
+  EXPECT_EQ(info["ready_for_views"], true);
+  const std::string text = output_of({"info", path("room.h5")});
+  EXPECT_THAT(text, HasSubstr("seed 77"));
+  EXPECT_THAT(text, HasSubstr("views     begin at once"));
 }
 
 TEST_F(Pipeline, SeveralMgfFilesAreOneRoomForAllCommands) {
