@@ -33,7 +33,7 @@ test::RoomBuilder room_with_a_mirror(double mirror_at = 0.2) {
   return room;
 }
 
-Solution solved(const test::RoomBuilder& room) {
+Solution solved_quickly(const test::RoomBuilder& room) {
   SolverSettings settings;
   settings.packets = 2'500;  // so few that some zones seem uneven
   return solve(room.scene(), room.mesh(), settings, {}, test::kNever);
@@ -60,7 +60,7 @@ std::size_t zones_continued(const HemisphereGather& gather) {
 
 TEST(PlanGathers, a_solve_ends_with_what_gathers_would_find) {
   const test::RoomBuilder room = room_with_a_mirror();
-  const Solution solution = solved(room);
+  const Solution solution = solved_quickly(room);
   const Room walls(room.scene(), solution.mesh);
   const RadianceField field(walls, solution, ZoneSums::kGroups);
   const DirectLight direct(walls);
@@ -79,7 +79,7 @@ TEST(PlanGathers, a_solve_ends_with_what_gathers_would_find) {
 
 TEST(PlanGathers, what_the_plan_says_of_zones_is_done) {
   const test::RoomBuilder room = room_with_a_mirror();
-  Solution solution = solved(room);
+  Solution solution = solved_quickly(room);
   solution.gather_plan.uneven.assign(solution.mesh.zone_count(), 1);
   const Room walls(room.scene(), solution.mesh);
   const RadianceField field(walls, solution, ZoneSums::kGroups);
@@ -115,7 +115,7 @@ TEST(PlanGathers, packets_of_another_room_are_noticed) {
 
 TEST(PlanGathers, a_run_that_is_stopped_leaves_them_to_others) {
   const test::RoomBuilder room = room_with_a_mirror();
-  Solution solution = solved(room);
+  Solution solution = solved_quickly(room);
   const Room walls(room.scene(), solution.mesh);
   const std::atomic<bool> stopped{true};
   const StopToken stop(stopped);
