@@ -19,7 +19,6 @@ constexpr std::uint32_t kPacketsPerTask = 1U << 14;
 /// Packets between mirrors end there: what is left of them lights nothing that could be seen.
 constexpr std::uint32_t kMostSteps = 1024;
 constexpr std::uint32_t kAll16 = 0xffff;
-constexpr float kCodesPerOctave = 24;
 
 /// Of packets first .. first+15 of those that there are, by bit. Pre: first is a multiple of 16.
 std::uint32_t marks_of16(const CausticShooter::Marks& marks, std::uint32_t first) {
@@ -30,15 +29,6 @@ std::uint32_t marks_of16(const CausticShooter::Marks& marks, std::uint32_t first
 }
 
 }  // namespace
-
-float photon_radius(std::uint8_t code) {
-  return kLargestPhotonRadius * std::exp2(-static_cast<float>(code) / kCodesPerOctave);
-}
-
-std::uint8_t photon_radius_code(float radius) {
-  const float code = std::round(kCodesPerOctave * std::log2(kLargestPhotonRadius / radius));
-  return static_cast<std::uint8_t>(std::clamp(code, 0.0F, 255.0F));
-}
 
 bool CausticPhotons::is_on_face(std::uint32_t i, const Vec3f& normal, const Vec3f& place,
                                 float radius) const {

@@ -12,12 +12,6 @@ namespace reemit {
 /// Least cosine between normals of points of one face, or of faces that go on about as each other do.
 inline constexpr float kSameFace = 0.8F;
 
-/// Radius of the kernel of a photon [normalised: half the longest side of the room is 1], from a byte: 0 for
-/// the largest, each step a 24th of an octave less.
-inline constexpr float kLargestPhotonRadius = 0.025F;
-float photon_radius(std::uint8_t code);
-std::uint8_t photon_radius_code(float radius);
-
 /// Packets of luminaires that came to Lambertian surfaces over mirrors, glass or narrow gloss.
 struct CausticPhotons {
   std::vector<Vec3f> places;          ///< Normalised.

@@ -19,6 +19,14 @@ constexpr std::uint32_t kMostOfCell = 64;
 /// Photons one after the other in order of their places, each of which begins with the radius of the last.
 constexpr std::size_t kNeighbours = 64;
 
+constexpr float kCodesPerOctave = 24;
+
+/// The code of the radius that is closest.
+std::uint8_t code_of_radius(float radius) {
+  const float code = std::round(kCodesPerOctave * std::log2(kLargestPhotonRadius / radius));
+  return static_cast<std::uint8_t>(std::clamp(code, 0.0F, 255.0F));
+}
+
 std::vector<std::uint32_t> numbers_below(std::size_t end) {
   std::vector<std::uint32_t> numbers(end);
   std::iota(numbers.begin(), numbers.end(), 0U);
@@ -26,6 +34,10 @@ std::vector<std::uint32_t> numbers_below(std::size_t end) {
 }
 
 }  // namespace
+
+float photon_radius(std::uint8_t code) {
+  return kLargestPhotonRadius * std::exp2(-static_cast<float>(code) / kCodesPerOctave);
+}
 
 PhotonRadii::PhotonRadii(CausticPhotons pilot, float share)
     : pilot_(std::move(pilot)), enough_(share * kPhotonsInRadius) {
@@ -44,7 +56,7 @@ void PhotonRadii::set(CausticPhotons& photons, const StopToken* stop) const {
     for (std::size_t k = begin; k < end; ++k) {
       if (stop != nullptr && stop->requested()) return;
       const std::uint32_t i = order[k];
-      photons.radius_codes[i] = photon_radius_code(radius_at(photons.normals[i], photons.places[i], levels));
+      photons.radius_codes[i] = code_of_radius(radius_at(photons.normals[i], photons.places[i], levels));
     }
   });
 }

@@ -1,12 +1,18 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "scenes/model/stop_token.h"
 #include "solver/gather/caustic_photons.h"
 #include "solver/gather/photon_grid.h"
 
 namespace reemit {
+
+/// Radius of the kernel of a photon [normalised: half the longest side of the room is 1], from a byte: 0 for
+/// the largest, each step a 24th of an octave less.
+inline constexpr float kLargestPhotonRadius = 0.025F;
+float photon_radius(std::uint8_t code);
 
 /// Photons of all parts together that lie in the radius of one, if that is not the largest.
 inline constexpr int kPhotonsInRadius = 160;

@@ -70,7 +70,7 @@ bool is_ready_for_views(const Solution& solution) {
 std::string view_text(const Solution& solution) {
   const GatherPlan& plan = solution.gather_plan;
   if (!is_ready_for_views(solution))
-    return "every still and export looks for uneven zones or photons first: the solve was cut short\n";
+    return "every still and export looks for uneven zones or photons first: the file has not all of them\n";
   std::string text = fmt::format("begin at once: {} uneven zones",
                                  std::count(plan.uneven.begin(), plan.uneven.end(), std::uint8_t{1}));
   if (plan.caustics)

@@ -109,12 +109,12 @@ TEST(CausticPower, MirrorShowsTheLampBehindIt) {
 
 TEST(CausticMap, LosesNothingWhereAFaceEnds) {
   std::vector<Vec3> points;
-  for (int i = 0; i < 100; ++i) points.emplace_back(kFloor - 0.01, -1.8 + 3.6 * i / 99, 0);
-  // By 2 sets of photons, whose noise all points of one share. At the very end a tenth is missing; without a
-  // look for the end it is 0.45.
+  for (int i = 0; i < 300; ++i) points.emplace_back(kFloor - 0.01, -1.8 + 3.6 * i / 299, 0);
+  // By 3 sets of photons, as all points of one share its noise. A tenth less at the very end is known.
   MeanTest mean;
-  for (const std::uint64_t seed : {1, 2}) mean.add(over_truth(points, false, seed).mean());
-  EXPECT_NEAR(mean.mean(), 0.95, 0.07);
+  for (const std::uint64_t seed : {1, 2, 3}) mean.add(over_truth(points, false, seed).mean());
+  // Without a look for the end of the face, 0.55.
+  EXPECT_NEAR(mean.mean(), 1, 5 * mean.standard_error() + 0.05);
   EXPECT_LT(mean.standard_error(), 0.02);
 }
 

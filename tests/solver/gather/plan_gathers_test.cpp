@@ -2,6 +2,7 @@
 
 #include "solver/gather/plan_gathers.h"
 
+#include <atomic>
 #include <bit>
 #include <limits>
 
