@@ -21,6 +21,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/room/room.h"
+#include "solver/shoot/open_room.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/tally/batch_plan.h"
 #include "solver/zoning/build_zones.h"
@@ -113,9 +114,10 @@ void measure(const Case& c, int threads, int rounds) {
   MeshSettings mesh_settings;
   mesh_settings.default_zone_count = static_cast<int>(c.zones);
   const MeshResult built = build_zones(scene, mesh_settings);
-  const Room walls(scene, built.mesh);
+  Room walls(scene, built.mesh);
   const PacketRoom transport(walls);
   const PacketSources emission = collect_packet_sources(transport);
+  if (is_open(transport, emission)) walls.believe_misses();
   SolverSettings settings;
   settings.method = c.method;
   const auto packets = static_cast<std::uint32_t>(

@@ -154,12 +154,6 @@ void IntensityTable::angles(const Vec3& direction, double& polar, double& azimut
   while (azimuth >= azimuth_.front() - kAngleSlack + 2 * pi) azimuth -= 2 * pi;
 }
 
-Vec3 IntensityTable::direction(double polar, double azimuth) const {
-  const double s = std::sin(polar);
-  return std::cos(polar) * axes_.pole + s * std::cos(azimuth) * axes_.zero +
-         s * std::sin(azimuth) * axes_.ninety;
-}
-
 double IntensityTable::intensity(const Vec3& direction) const {
   double theta = 0;
   double phi = 0;

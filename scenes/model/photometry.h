@@ -57,8 +57,16 @@ class IntensityTable {
   }
   /// Polar angle and azimuth [rad] of a direction; the azimuth lies in the turn that begins at azimuth()[0].
   void angles(const Vec3& direction, double& polar, double& azimuth) const;
-  /// Unit direction in luminaire coordinates.
-  Vec3 direction(double polar, double azimuth) const;
+  /// Unit direction in luminaire coordinates, of angles [rad].
+  Vec3 direction(double polar, double azimuth) const {
+    return direction(std::sin(polar), std::cos(polar), azimuth);
+  }
+  /// The same, of a polar angle by its sine and cosine and of an azimuth
+  /// [rad].
+  Vec3 direction(double polar_sine, double polar_cosine, double azimuth) const {
+    return polar_cosine * axes_.pole +
+           polar_sine * (std::cos(azimuth) * axes_.zero + std::sin(azimuth) * axes_.ninety);
+  }
 
   /// Integral of the bilinear interpolant over all directions [lm], in closed form.
   double total_flux() const { return flux_below_.back(); }

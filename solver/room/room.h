@@ -11,7 +11,7 @@
 namespace reemit {
 
 /// The room as every stage meets it: what was read, its zones, the rays in it and what its surfaces do with
-/// light. Does not change. Const members may be called from any thread.
+/// light. Does not change but by believe_misses. Const members may be called from any thread.
 class Room {
  public:
   /// Builds the tree for rays. Scene and mesh must outlive the room.
@@ -33,6 +33,8 @@ class Room {
   const SurfaceModel& surfaces() const { return surfaces_; }
   /// What stands around the room; null if nothing does.
   const SkyLight* sky() const { return sky_.get(); }
+  /// As RayTracer::believe_misses: for rooms that are open (is_open).
+  void believe_misses() { rays_.believe_misses(); }
   std::size_t band_count() const { return scene_->bands.count(); }
   /// Diffuse reflectance of a zone, one number per band [0,1].
   const float* zone_reflectance(ZoneId z) const {

@@ -50,8 +50,8 @@ bool PacketRoom::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ra
 
 bool PacketRoom::start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays,
                           int lane) const {
-  const Vec3f origin = rays_->ray_origin(t, u, v, front);
-  const Vec3f normal = rays_->normal(t, u, v);
+  Vec3f normal;
+  const Vec3f origin = rays_->ray_origin(t, u, v, front, normal);
   const Vec3f direction = Frame(front ? normal : Vec3f(-normal)).to_world(local);
   rays.set(lane, origin, direction);
   return rays_->starts_behind(t, front, origin);

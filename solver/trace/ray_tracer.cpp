@@ -117,7 +117,7 @@ RayTracer::RayTracer(const ZoneMesh& mesh, const RoomTextures& textures)
     shapes_.emplace_back(shapes.back());
   }
   for (std::size_t t = flat_count_; t < base.triangles.size(); ++t)
-    patch_middles_.push_back(curved_point(TriangleId(t), kMiddle, kMiddle));
+    patch_middles_.push_back(curved_point(TriangleId(t), kMiddle, kMiddle).cast<float>());
   if (!shapes.empty()) feet_ = ShapeFeet(mesh, corners_, shapes);
 
   std::vector<Vec3f> vertices;
@@ -207,20 +207,28 @@ void RayTracer::move_off_edges(TriangleId t, float& u, float& v) const {
   v = weight[2];
 }
 
-Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front) const {
-  if (is_curved(t)) {
-    // Drawn inwards along the shape, so that the start stays on its side of faces that the shape stands on.
-    const float inset = inset_share((patch_middles_[t.index() - flat_count_] - curved_point(t, u, v)).norm());
-    const float s = u + inset * (kMiddle - u);
-    const float r = v + inset * (kMiddle - v);
-    Vec3 p = curved_point(t, s, r);
-    Vec3 n = shapes_[shape_of(t)].normal(mesh_->triangle(t).patch, s, r, p).cast<float>().cast<double>();
-    if (feet_.touches_others(shape_of(t))) {
-      p = feet_.clear_of_others(shape_of(t), p);
-      n = shapes_[shape_of(t)].normal_at(p);
-    }
-    return (p + (front ? kLift : -kLift) * n).cast<float>();
+Vec3f RayTracer::curved_ray_origin(TriangleId t, float u, float v, bool front, Vec3f& normal) const {
+  // Drawn inwards along the shape, so that the start stays on its side of faces that the shape stands on. How
+  // far the middle is, is asked of the triangle that stands for the patch: where it matters, near its edges,
+  // the two differ by a few per cent.
+  const Vec3f on_chord = (1 - u - v) * corner(t, 0) + u * corner(t, 1) + v * corner(t, 2);
+  const float inset = inset_share((patch_middles_[t.index() - flat_count_] - on_chord).norm());
+  const float s = u + inset * (kMiddle - u);
+  const float r = v + inset * (kMiddle - v);
+  const CurvedPatches& shape = shapes_[shape_of(t)];
+  Vec3 p = curved_point(t, s, r);
+  Vec3 n = shape.normal(mesh_->triangle(t).patch, s, r, p).cast<float>().cast<double>();
+  normal = n.cast<float>();
+  if (feet_.touches_others(shape_of(t))) {
+    p = feet_.clear_of_others(shape_of(t), p);
+    n = shape.normal_at(p);
   }
+  return (p + (front ? kLift : -kLift) * n).cast<float>();
+}
+
+Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front, Vec3f& front_normal) const {
+  if (is_curved(t)) return curved_ray_origin(t, u, v, front, front_normal);
+  front_normal = normal(t);
   if (std::min({u, v, 1 - u - v}) < edge_share(t)) move_off_edges(t, u, v);
   const Vec3f& n = normal(t);
   const Vec3f start =

@@ -7,6 +7,7 @@
 #include "mesh/zones/zone_mesh.h"
 #include "solver/texture/room_textures.h"
 #include "solver/trace/flat_hits.h"
+#include "solver/trace/ray16.h"
 #include "solver/trace/shape_feet.h"
 
 namespace reemit {
@@ -20,36 +21,6 @@ struct Hit {
   float v = 0;
   float distance = 0;  ///< In normalised units (RayTracer::metres_per_unit).
   bool front = true;   ///< The ray came from the front of the triangle.
-};
-
-/// 16 rays in the layout that packet tracing wants (normalised space, unit directions).
-struct alignas(64) Ray16 {
-  float ox[16], oy[16], oz[16];
-  float dx[16], dy[16], dz[16];
-  /// What decides at cut-outs, where a ray is one that was turned (RayTracer::cut_out_key); 0 for others.
-  std::uint32_t key[16] = {};
-
-  void set(int lane, const Vec3f& origin, const Vec3f& direction, std::uint32_t cut_out_key = 0) {
-    key[lane] = cut_out_key;
-    ox[lane] = origin.x();
-    oy[lane] = origin.y();
-    oz[lane] = origin.z();
-    dx[lane] = direction.x();
-    dy[lane] = direction.y();
-    dz[lane] = direction.z();
-  }
-  Vec3f origin(int lane) const { return {ox[lane], oy[lane], oz[lane]}; }
-  Vec3f direction(int lane) const { return {dx[lane], dy[lane], dz[lane]}; }
-};
-
-/// What 16 rays met. Lanes beyond the count of rays are as those of rays that left the room.
-struct alignas(64) Hit16 {
-  std::uint32_t triangle[16];  ///< RayTracer::kMiss where the ray left the room.
-  float u[16], v[16];          ///< 0 where the ray left the room.
-  float distance[16];
-  bool front[16];      ///< False where the ray left the room.
-  bool near_edge[16];  ///< Below edge_share: the hit may be RayTracer::is_at_edge.
-  TrianglePoints16 points() const { return {triangle, u, v, front}; }
 };
 
 /// Owner of the ray-tracing structure over the base triangles and curved shapes. Rays live in a normalised
@@ -116,7 +87,12 @@ class RayTracer {
     return (front ? height : -height) < 0;
   }
   /// Start of a ray that leaves the given side at (u,v).
-  Vec3f ray_origin(TriangleId t, float u, float v, bool front) const;
+  Vec3f ray_origin(TriangleId t, float u, float v, bool front) const {
+    Vec3f normal;
+    return ray_origin(t, u, v, front, normal);
+  }
+  /// Also tells the unit normal of the front there; on curved shapes within 4 kLift of it, for less.
+  Vec3f ray_origin(TriangleId t, float u, float v, bool front, Vec3f& front_normal) const;
 
   /// Nearest hit along a ray of unit direction, after a second look if needed. False if there is none.
   bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
@@ -128,8 +104,15 @@ class RayTracer {
   bool is_doubtful(std::uint32_t triangle, float u, float v, bool front) const {
     return !has_left(triangle) && (is_lost(triangle, front) || is_at_edge(triangle, u, v));
   }
-  /// True if a ray that met this, or nothing, has left the room: it cannot have slipped through a hairline.
-  bool has_left(std::uint32_t triangle) const { return triangle == kMiss && !misses_are_doubtful_; }
+  /// True if a ray that met this, or nothing, has left the room: it cannot have slipped through a hairline,
+  /// or would be lost among those that leave (believe_misses).
+  bool has_left(std::uint32_t triangle) const {
+    return triangle == kMiss && (!misses_are_doubtful_ || misses_are_believed_);
+  }
+  /// For rooms that much light leaves: hairlines take less than a millionth of the rays, so that a second
+  /// look at each that meets nothing changes nothing that could be measured. Cameras and `escapes` look all
+  /// the same. Not to be called while others trace.
+  void believe_misses() { misses_are_believed_ = true; }
   /// True if (u,v) is so near an edge of a flat triangle that rounding decides which of the faces that meet
   /// there a ray seems to meet first.
   bool is_at_edge(std::uint32_t triangle, float u, float v) const {
@@ -174,6 +157,7 @@ class RayTracer {
   static std::uint32_t key_of(const Vec3f& origin, const Vec3f& direction);
   Vec3 curved_point(TriangleId t, float u, float v) const;
   Vec3f curved_normal(TriangleId t, float u, float v) const;
+  Vec3f curved_ray_origin(TriangleId t, float u, float v, bool front, Vec3f& front_normal) const;
   bool is_lost(std::uint32_t triangle, bool front) const {
     return triangle == kMiss || !mesh_->has_zones(TriangleId(triangle), front);
   }
@@ -190,9 +174,10 @@ class RayTracer {
   std::vector<Vec3f> corners_;
   std::vector<FacePlane> faces_;  // one at least
   std::size_t flat_count_ = 0;
-  bool misses_are_doubtful_ = true;    // there may be hairlines (may_have_hairlines)
+  bool misses_are_doubtful_ = true;  // there may be hairlines (may_have_hairlines)
+  bool misses_are_believed_ = false;
   std::vector<CurvedPatches> shapes_;  // normalised, as BaseMesh::shapes
-  std::vector<Vec3> patch_middles_;    // of curved patches
+  std::vector<Vec3f> patch_middles_;   // of curved patches
   ShapeFeet feet_;
   std::unique_ptr<EmbreeTree> embree_;
 };

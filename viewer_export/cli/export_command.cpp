@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
+#include "solver/shoot/open_room.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"
@@ -93,7 +94,8 @@ ExitCode run_export(const ExportOptions& options) {
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs)
     check_output_file(output, scene.source);  // a .glb may be the room
-  const Room room = build_room(scene, solution.mesh, options.style);
+  Room room = build_room(scene, solution.mesh, options.style);
+  if (is_open(solution.audit)) room.believe_misses();
 
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;

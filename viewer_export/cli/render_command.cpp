@@ -16,6 +16,7 @@
 #include "scenes/model/error.h"
 #include "scenes/model/memory.h"
 #include "solver/progressive_solver.h"
+#include "solver/shoot/open_room.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
@@ -234,7 +235,8 @@ ExitCode run_render(RenderOptions options) {
   };
   if (!into_folder) check_output(options.output);
   const auto [scene, solution] = load_source(options);
-  const Room room = build_room(scene, solution.mesh, options.style);
+  Room room = build_room(scene, solution.mesh, options.style);
+  if (is_open(solution.audit)) room.believe_misses();
   const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, room, into_folder));
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) check_output(job.file);
