@@ -28,10 +28,10 @@ double guess_polar(const PolarCell& c, double share) {
 
 /// Angle from where the cell begins [rad] at which the integral reaches `wanted` of `whole`. Newton steps
 /// that leave the bracket are replaced by its middle; each squares the error, so the last one leaves some
-/// 1e-7 of the width or less.
+/// 1e-8 of the width or less.
 double invert_polar(const PolarCell& c, double wanted, double whole) {
   constexpr int kMostSteps = 60;
-  constexpr double kEnough = 3e-4;
+  constexpr double kEnough = 1e-4;
   const double slope = (c.end_f - c.f) / c.width;
   double low = 0;
   double high = c.width;
