@@ -27,7 +27,7 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
       gather_(field_, direct_,
               // Means of zones gather nothing; without close hits there is nothing to prepare.
               GatherSettings{.close_hit = settings.average_zones ? 0 : settings.close_hit,
-                             .caustics = true,
+                             .caustics = !settings.average_zones,
                              .seed = settings.seed,
                              .plan = &solution.gather_plan},
               &stop),
