@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/losses/open_room.h"
 #include "solver/shoot/closed_room_check.h"
-#include "solver/shoot/open_room.h"
 #include "solver/texture/zone_means.h"
 
 namespace reemit {
@@ -49,7 +49,7 @@ PreparedRoom::PreparedRoom(const Scene& scene, Solution& solution, const WorkWat
     solution.record.unreached_zones = solution.mesh.zone_count();
   } else {
     refuse_closed_perfect_reflector(transport, emission, solution.settings.seed);
-    if (is_open(transport, emission)) room.believe_misses();
+    if (!room.rays().has_left(RayTracer::kMiss) && is_open(transport, emission)) room.believe_misses();
   }
   preparing.at(1);
 }

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
-#include "solver/shoot/open_room.h"
+#include "solver/losses/open_room.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"

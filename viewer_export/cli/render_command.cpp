@@ -15,8 +15,8 @@
 
 #include "scenes/model/error.h"
 #include "scenes/model/memory.h"
+#include "solver/losses/open_room.h"
 #include "solver/progressive_solver.h"
-#include "solver/shoot/open_room.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"

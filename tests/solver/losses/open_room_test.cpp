@@ -1,7 +1,7 @@
 // Rooms that much light leaves are told from those whose few rays that meet nothing may have slipped through
 // a hairline.
 
-#include "solver/shoot/open_room.h"
+#include "solver/losses/open_room.h"
 
 #include <atomic>
 
