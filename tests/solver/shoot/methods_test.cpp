@@ -384,13 +384,14 @@ TEST(Methods, PerfectReflectorIsRefusedWhenClosedAndSolvedWhenOpen) {
 /// Checks that these kinds of ends are counted, the same on any number of threads, and that `doubtful` of
 /// them, and few other rays, had a second look.
 template <class Doubtful>
-void expect_counted(const RoomBuilder& room, std::uint64_t packets, const Doubtful& doubtful) {
+void expect_counted(const RoomBuilder& room, std::uint64_t packets, std::uint64_t least_escapes,
+                    const Doubtful& doubtful) {
   for (const SolveMethod method : kMethods) {
     SolverSettings settings = settings_of(method, packets);
     const RareEvents events = run(room, settings).audit.events;
     EXPECT_GT(events.back_hits, 100U) << to_string(method);
-    EXPECT_GT(events.escapes, 100U);
-    EXPECT_GE(events.second_looks, doubtful(events));
+    EXPECT_GT(events.escapes, least_escapes);
+    EXPECT_GE(events.second_looks, doubtful(events)) << "each had a second look";
     EXPECT_LT(static_cast<double>(events.second_looks),
               static_cast<double>(doubtful(events)) +
                   0.05 * static_cast<double>(events.back_hits + events.escapes));
@@ -412,10 +413,10 @@ TEST(Methods, PacketsThatEndWhereTheyShouldNotAreCounted) {
   room.box(Vec3::Zero(), Vec3(1, 1, 1), {wall, wall, wall, wall, wall, MaterialId()}, 2);
   add_back(room);
   const auto backs = [](const RareEvents& events) { return events.back_hits; };
-  expect_counted(room, 20'000, backs);
+  expect_counted(room, 20'000, 1000, backs);
   // There may be hairlines beside a round shape, but much light leaves.
   room.shape(wall, Sphere{{0.5, 0.5, 0.8}, 0.05, false}, 1);
-  expect_counted(room, 20'000, backs);
+  expect_counted(room, 20'000, 1000, backs);
 }
 
 TEST(Methods, FewPacketsThatMeetNothingAreLookedAtTwice) {
@@ -426,7 +427,8 @@ TEST(Methods, FewPacketsThatMeetNothingAreLookedAtTwice) {
   room.shape(wall, Sphere{{0.5, 0.5, 0.8}, 0.05, false}, 1);
   // A lid that leaves a gap of a four hundredth of it.
   room.quad(wall, {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(0.9975, 1, 1), Vec3(0.9975, 0, 1)}, 2);
-  expect_counted(room, 300'000, [](const RareEvents& events) { return events.back_hits + events.escapes; });
+  expect_counted(room, 300'000, 100,
+                 [](const RareEvents& events) { return events.back_hits + events.escapes; });
 }
 
 TEST(Methods, InterruptKeepsTheBatchesThatAreDone) {
