@@ -36,23 +36,26 @@ class Wanderers {
     const auto [back, across] = chances(zone, probe);
     const std::array<float, 4> u = rng_.uniform4(id, 0, surfaces);
     if (!(u[0] < back + across)) return;
-    const bool front = probe.hit.front != (u[1] * (back + across) >= back);
-    const RayTracer& rays = transport_.rays();
-    Vec3f normal;
-    const Vec3f origin = rays.ray_origin(probe.hit.triangle, probe.hit.u, probe.hit.v, front, normal);
-    const Frame frame(front ? normal : Vec3f(-normal));
-    waiting_.push_back({origin, frame.to_world(sample_cosine_hemisphere(u[2], u[3])), id});
+    Start start{probe.hit, {u[2], u[3]}, id};
+    if (u[1] * (back + across) >= back) start.from.front = !start.from.front;
+    waiting_.push_back(start);
   }
 
   void go_on(std::uint32_t surfaces) {
     const std::vector<Start> starts = std::exchange(waiting_, {});
     for (std::size_t first = 0; first < starts.size(); first += 16) {
       const int count = static_cast<int>(std::min<std::size_t>(16, starts.size() - first));
-      Ray16 rays;
+      ZoneLanes lanes{};
+      UniformLanes numbers{};
       for (int lane = 0; lane < count; ++lane) {
-        const Start& start = starts[first + static_cast<std::size_t>(lane)];
-        rays.set(lane, start.origin, start.direction);
+        const auto& [from, u, id] = starts[first + static_cast<std::size_t>(lane)];
+        transport_.put_hit(static_cast<std::uint32_t>(from.triangle.index()), from.u, from.v, from.front,
+                           lanes, lane);
+        numbers.u[2][lane] = u[0];
+        numbers.u[3][lane] = u[1];
       }
+      Ray16 rays;
+      transport_.start(lanes, numbers, rays);
       trace_probes(transport_.rays(), rays, count, [&](int lane, const ProbeRay& probe) {
         arrive(probe, starts[first + static_cast<std::size_t>(lane)].id, surfaces);
       });
@@ -61,7 +64,8 @@ class Wanderers {
 
  private:
   struct Start {
-    Vec3f origin, direction;
+    Hit from;
+    std::array<float, 2> u;  // of the direction
     std::uint32_t id;
   };
 
