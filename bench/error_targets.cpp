@@ -1,6 +1,7 @@
 // Are --error targets met by the true error? Many seeds of solve and render against long references.
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <exception>
@@ -10,10 +11,10 @@
 #include <fmt/format.h>
 
 #include "bench/program_options.h"
-#include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "solver/zoning/build_zones.h"
 #include "viewer_export/still/render_still.h"
 
 namespace {
@@ -28,30 +29,36 @@ struct Options {
   double zone_area = 0;  ///< [m2], 0 = default.
   int size = 128;
   int reference_samples = 4096;
+  bool only_solve = false;
 };
 
-/// The true relative error of one run in one band, and what the run said.
+/// The true relative error of one run in one band, what the run said, and how long it took.
 struct Outcome {
   double true_error = 0;
   double stated_error = 0;
+  double seconds = 0;
 };
 
 void print(const std::string& what, double target, const std::vector<Outcome>& runs, double reference_error) {
   std::vector<double> errors;
+  std::vector<double> seconds;
   double sum = 0;
   double stated = 0;
   std::size_t met = 0;
   for (const Outcome& run : runs) {
     errors.push_back(run.true_error);
+    seconds.push_back(run.seconds);
     sum += run.true_error;
     stated += run.stated_error;
     if (run.true_error <= target) ++met;
   }
   const auto n = static_cast<double>(runs.size());
   const auto [least, most] = std::minmax_element(errors.begin(), errors.end());
-  fmt::print("| {} | {:g} % | {} of {} | {:.3f} % | {:.3f} % .. {:.3f} % | {:.3f} % | {:.3f} % |\n", what,
-             100 * target, met, runs.size(), 100 * sum / n, 100 * *least, 100 * *most, 100 * stated / n,
-             100 * reference_error);
+  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  fmt::print("| {} | {:g} % | {} of {} | {:.3f} % | {:.3f} % .. {:.3f} % | {:.3f} % | {:.3f} % | {:.2f} |\n",
+             what, 100 * target, met, runs.size(), 100 * sum / n, 100 * *least, 100 * *most, 100 * stated / n,
+             100 * reference_error, *middle);
   std::fflush(stdout);
 }
 
@@ -110,27 +117,37 @@ void measure(const Options& options) {
   const Scene scene = read_scene(options.room);
   MeshSettings mesh_settings;
   if (options.zone_area > 0) mesh_settings.zone_area = options.zone_area;
-  const MeshResult mesh = build_mesh(scene, mesh_settings);
+  const MeshResult mesh = build_zones(scene, mesh_settings);
   const std::atomic<bool> never{false};
   fmt::print("{}: {} zones, {} seeds\n\n", options.room, mesh.mesh.zone_count(), options.seeds);
   fmt::print(
       "| command | target | met by the true error | mean true error | least .. most | mean stated error |"
-      " error of the reference |\n|---|---|---|---|---|---|---|\n");
+      " error of the reference | median time [s] |\n|---|---|---|---|---|---|---|---|\n");
 
   SolverSettings settings;
+  settings.direct = DirectSource::kPackets;
   settings.error_target = options.solve_target / 6;
   settings.seed = 1'000'000;
   const Solution reference = solve(scene, mesh, settings, {}, never);
   settings.error_target = options.solve_target;
+  std::vector<Outcome> by_packets;
   std::vector<Outcome> solves;
   std::vector<Solution> solutions;
   for (int seed = 1; seed <= options.seeds; ++seed) {
     settings.seed = static_cast<std::uint64_t>(seed);
+    const auto outcome = [&](const Solution& s) {
+      return Outcome{true_zone_error(s, reference), s.record.error, s.record.seconds};
+    };
+    settings.direct = DirectSource::kPackets;
+    by_packets.push_back(outcome(solve(scene, mesh, settings, {}, never)));
+    settings.direct = DirectSource::kBest;
     solutions.push_back(solve(scene, mesh, settings, {}, never));
-    solves.push_back({true_zone_error(solutions.back(), reference), solutions.back().record.error});
+    solves.push_back(outcome(solutions.back()));
   }
-  print(fmt::format("solve --error {:g}%", 100 * options.solve_target), options.solve_target, solves,
-        reference.record.error);
+  const std::string command = fmt::format("solve --error {:g}%", 100 * options.solve_target);
+  print(command + " --direct packets", options.solve_target, by_packets, reference.record.error);
+  print(command, options.solve_target, solves, reference.record.error);
+  if (options.only_solve) return;
 
   const Room walls(scene, solutions.front().mesh);
   StillSettings still;
@@ -146,10 +163,12 @@ void measure(const Options& options) {
   std::vector<Outcome> stills;
   for (int seed = 1; seed <= options.seeds; ++seed) {
     still.seed = static_cast<std::uint64_t>(seed);
+    const auto begin = std::chrono::steady_clock::now();
     const StillImage image =
         render_still(walls, solutions[static_cast<std::size_t>(seed - 1)], camera, still, {}, never);
-    stills.push_back(
-        {true_still_error(image, traced, still.error_floor, &reference_error), image.info.error});
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    stills.push_back({true_still_error(image, traced, still.error_floor, &reference_error), image.info.error,
+                      seconds.count()});
   }
   print(fmt::format("render --error {:g}% --size {}x{}, against path tracing", 100 * options.render_target,
                     options.size, options.size),
@@ -170,6 +189,7 @@ int main(int argc, char** argv) {
   app.add_option("--reference-samples", options.reference_samples,
                  "Path-traced samples per pixel of the reference")
       .show_default();
+  app.add_flag("--only-solve", options.only_solve, "No stills");
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
     measure(options);

@@ -13,6 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include "bench/program_options.h"
+#include "solver/gather/sampled_direct_light.h"
 #include "solver/room/room.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/solution/room_of_solution.h"
@@ -79,7 +80,9 @@ struct Run {
         scene(read_room_of(solution, file)),
         room(scene, solution.mesh),
         transport(room),
-        emission(collect_packet_sources(transport)) {
+        emission(collect_packet_sources(transport)),
+        direct(sampled_direct_light(transport, emission, solution.settings,
+                                    static_cast<std::uint32_t>(solution.record.unit_packets))) {
     if (solution.settings.method == SolveMethod::kMatrix)
       throw std::invalid_argument("the solution is of the matrix method, which has no packets");
   }
@@ -88,6 +91,8 @@ struct Run {
     BatchBooks books = transport.new_books();
     BatchTask task{transport, emission, solution.settings, batch, packets};
     task.ray_observer = &observer;
+    if (direct && direct->is_for(packets / static_cast<std::int64_t>(solution.record.unit_packets)))
+      task.first_together = SampledDirectLight::kFirstTogether;
     if (solution.settings.method == SolveMethod::kShooting)
       shoot_batch(task, books);
     else
@@ -99,6 +104,7 @@ struct Run {
   Room room;
   PacketRoom transport;
   PacketSources emission;
+  std::optional<SampledDirectLight> direct;
 };
 
 /// Whether a ray ends where light should not get: outside, on a side without zones, or on one that is sealed.

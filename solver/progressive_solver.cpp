@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
+#include "solver/gather/sampled_direct_light.h"
 #include "solver/matrix/matrix_solve.h"
 #include "solver/run/examination.h"
 #include "solver/run/prepared_room.h"
@@ -144,6 +145,10 @@ class ProgressiveSolver::Run {
         rule_(solution_.settings, plan_, schedule_.batches_s) {
     if (room_.is_dark()) return;
     record().unit_packets = plan_.unit_packets();
+    arena_.execute([&] {
+      direct_ =
+          sampled_direct_light(room_.transport, room_.emission, solution_.settings, plan_.unit_packets());
+    });
     state_.seconds = seconds_since(begin_);
     stop_.emplace(schedule_.token(end_of_batches(), interrupt));
     ahead_.emplace(room_.transport, room_.emission, solution_.settings, arena_.max_concurrency());
@@ -189,7 +194,7 @@ class ProgressiveSolver::Run {
     if (room_.is_dark()) return std::move(solution_);
     if (record().stopped == StopReason::kUnderWay) end_batches(StopReason::kInterrupted);
     arena_.execute([&] {
-      gather_what_is_small(room_.room, schedule_, interrupt_, solution_);
+      gather_what_is_small(room_.room, direct_.has_value(), schedule_, interrupt_, solution_);
       if (examination == Examination::kWhole) examine(room_, schedule_, progress, interrupt_, solution_);
       record_error(room_.room.surfaces(), solution_);
       record().seconds = seconds_since(begin_);
@@ -245,9 +250,18 @@ class ProgressiveSolver::Run {
       std::int64_t weight = drains_ ? 0 : rule_.next_weight(then);
       if (!ahead_->empty() && (weight == 0 || will_suffice(then))) return;
       weight = std::max<std::int64_t>(weight, 1);  // the clock went on since it was looked at
-      ahead_->start(static_cast<std::uint32_t>(then.batches),
-                    static_cast<std::uint32_t>(weight * plan_.unit_packets()), weight, *stop_);
+      const auto number = static_cast<std::uint32_t>(then.batches);
+      ahead_->start(number, static_cast<std::uint32_t>(weight * plan_.unit_packets()), weight, *stop_,
+                    direct_instead(number, weight));
     }
+  }
+
+  /// How a batch finds direct light, if not by its packets.
+  DirectInstead direct_instead(std::uint32_t number, std::int64_t weight) const {
+    if (!direct_ || !direct_->is_for(weight)) return {};
+    return {SampledDirectLight::kFirstTogether, [this, number, weight](BatchBooks& books) {
+              books.rays += direct_->put(number, weight, room_.emission.watts_per_quantum, books);
+            }};
   }
 
   /// Whether the error target is likely to be met once the batches on their way are added.
@@ -315,6 +329,7 @@ class ProgressiveSolver::Run {
   StopRule rule_;
   RunState state_;
   std::optional<StopToken> stop_;
+  std::optional<SampledDirectLight> direct_;
   std::optional<BatchesAhead> ahead_;
   bool drains_ = false;  // no more batches begin
   double bound_ = kUnknown;

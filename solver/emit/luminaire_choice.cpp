@@ -27,6 +27,16 @@ LuminaireChoice::LuminaireChoice(const LuminaireTable& table, Selection selectio
   if (selection == Selection::kSpatial) weigh_tree(u);
 }
 
+LuminaireChoice::LuminaireChoice(const LuminaireTable& table, std::span<const float> weights)
+    : table_(table), selection_(Selection::kLinear), count_(weights.size()) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    entry_[i] = static_cast<std::uint32_t>(i);
+    draw_weight_[i] = 1;
+    weight_[i] = weights[i];
+    total_ += weights[i];
+  }
+}
+
 void LuminaireChoice::add(std::size_t entry, float draw_weight) {
   const float weight = draw_weight * table_.brightness(entry) * table_.unoccluded(entry, x_, n_);
   if (!(weight > 0) || !std::isfinite(weight)) return;

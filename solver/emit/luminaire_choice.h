@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "solver/emit/luminaire_table.h"
 #include "solver/emit/selection.h"
@@ -28,6 +29,10 @@ class LuminaireChoice {
   /// `u` in [0,1) places the candidates of the tree.
   LuminaireChoice(const LuminaireTable& table, Selection selection, const Vec3f& x, const Vec3f& n, float u);
 
+  /// Linear by these weights, found beforehand, one for each entry of the table; entries of weight 0 keep a
+  /// part of the even share. Not all may be 0. Pre: as many as the table has, kMostLinear at most.
+  LuminaireChoice(const LuminaireTable& table, std::span<const float> weights);
+
   /// Picks an entry by u in [0,1) and stretches u over the interval that was hit, so that it can be used
   /// again ([SWZ96] Fig. 8). `inverse_probability` weighs a sample of it. False if no luminaire lights x.
   bool pick(float& u, std::size_t& entry, float& inverse_probability) const;
@@ -46,7 +51,7 @@ class LuminaireChoice {
 
   const LuminaireTable& table_;
   Selection selection_;
-  Vec3f x_, n_;
+  Vec3f x_{0, 0, 0}, n_{0, 0, 0};
   std::size_t count_ = 0;
   float total_ = 0;
   std::array<std::uint32_t, kMostLinear> entry_;

@@ -6,10 +6,12 @@
 #include <numeric>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
 #include "solver/gather/replicate_gather.h"
 #include "solver/gather/small_zones.h"
+#include "solver/shoot/packet_batch.h"
 #include "solver/tally/replicates.h"
 
 namespace reemit {
@@ -23,13 +25,77 @@ constexpr std::size_t kMostZonesAgain = 262144;
 /// What float arithmetic and the drawing of ray starts towards the middle of their triangles may shift.
 constexpr double kRounding = 0.003;
 
-/// Zones whose direct light is that of packets.
+/// Whether the direct light of the solution may be that of shadow rays.
+bool may_be_sampled(const Solution& solution) {
+  const SolverSettings& settings = solution.settings;
+  return settings.method == SolveMethod::kShooting && settings.direct == DirectSource::kBest;
+}
+
+/// Zones whose direct light is that of packets, or of which packets can be shot anew.
 std::vector<ZoneId> zones_to_compare(const Solution& solution) {
-  if (solution.record.gathered_zones > 0) return zones_left_to_packets(solution.mesh);
+  if (solution.record.gathered_zones > 0 && !may_be_sampled(solution))
+    return zones_left_to_packets(solution.mesh);
   std::vector<ZoneId> zones;
   for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) zones.emplace_back(z);
   return zones;
 }
+
+/// Irradiance that packets brought to zones straight from luminaires, all bands together [W/m2].
+class PacketsOfLuminaires {
+ public:
+  /// Shoots as many as the solution has, where its direct light may be that of shadow rays.
+  PacketsOfLuminaires(const Room& room, const Solution& solution, const std::atomic<bool>& interrupt)
+      : solution_(solution) {
+    if (may_be_sampled(solution))
+      tbb::task_arena().execute([&] { shoot(room, interrupt); });
+    else
+      packets_ = static_cast<double>(solution.record.packets);
+  }
+
+  double count() const { return packets_; }
+  double irradiance(ZoneId zone) const {
+    if (!shot_.empty()) return shot_[zone.index()];
+    double sum = 0;
+    for (std::size_t b = 0; b < solution_.bands.count(); ++b)
+      sum += solution_.direct_irradiance(zone, b).mean;
+    return sum;
+  }
+
+ private:
+  static constexpr std::uint64_t kPacketsPerBatch = std::uint64_t{1} << 22;
+
+  void shoot(const Room& room, const std::atomic<bool>& interrupt) {
+    const PacketRoom transport(room, Channels(solution_.bands.count()));
+    const PacketSources emission = collect_packet_sources(transport);
+    SolverSettings settings = solution_.settings;
+    settings.stop_share = 1;  // a batch ends after its first flight
+    const StopToken stop(interrupt);
+    const std::uint64_t wanted = solution_.record.packets;
+    const std::uint64_t batches = (wanted + kPacketsPerBatch - 1) / kPacketsPerBatch;
+    const std::size_t bands = emission.channels.count();
+    shot_.assign(transport.zones(), 0.0);
+    BatchBooks books = transport.new_books();
+    for (std::uint64_t k = 0; k < batches && !interrupt; ++k) {
+      books.clear();
+      shoot_batch({.transport = transport,
+                   .emission = emission,
+                   .settings = settings,
+                   .batch = static_cast<std::uint32_t>(k),
+                   .packets = static_cast<std::uint32_t>(wanted / batches),
+                   .stop = &stop},
+                  books);
+      packets_ += static_cast<double>(books.packets);
+      for (std::size_t z = 0; z < shot_.size(); ++z)
+        for (std::size_t b = 0; b < bands; ++b)
+          shot_[z] += static_cast<double>(books.direct[z * bands + b]) * emission.watts_per_quantum[b] /
+                      (room.mesh().zone_area(ZoneId(z)) * static_cast<double>(batches));
+    }
+  }
+
+  const Solution& solution_;
+  double packets_ = 0;
+  std::vector<double> shot_;  // by zone; empty: those of the solution
+};
 
 /// Mean over a zone of the irradiance from sampled luminaires, all bands together, and its standard error
 /// [W/m2].
@@ -66,7 +132,9 @@ DirectAudit audit_direct_light(const Room& room, const Solution& solution,
   const double emitted =
       std::transform_reduce(solution.audit.bands.begin(), solution.audit.bands.end(), 0.0, std::plus<>(),
                             [&](const BandAudit& band) { return solution.audit.watts(band, band.emitted); });
-  const double watts_per_packet = emitted / static_cast<double>(solution.record.packets);
+  const PacketsOfLuminaires of_luminaires(room, solution, interrupt);
+  if (interrupt) return {};
+  const double watts_per_packet = emitted / of_luminaires.count();
   // P(count - mean >= k sqrt(mean) + k^2/3) <= exp(-k^2/2), and the same below [BLM13, cor. 2.11].
   const double k = std::sqrt(
       2 * std::log(2 * static_cast<double>(std::max<std::size_t>(1, zones.size())) / settings.false_alarm));
@@ -86,9 +154,7 @@ DirectAudit audit_direct_light(const Room& room, const Solution& solution,
   std::vector<Found> found(zones.size());
   const auto compare = [&](std::size_t i, int points, std::uint64_t seed) {
     DirectDifference& d = found[i].difference;
-    d.by_packets = 0;
-    for (std::size_t b = 0; b < room.band_count(); ++b)
-      d.by_packets += solution.direct_irradiance(zones[i], b).mean;
+    d.by_packets = of_luminaires.irradiance(zones[i]);
     const ReplicateMean samples = sampled_irradiance(light, room, zones[i], points, seed);
     const double per_packet = watts_per_packet / mesh.zone_area(zones[i]);
     d.by_samples = samples.mean;

@@ -1,6 +1,7 @@
 #include "solver/gather/direct_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -32,8 +33,14 @@ std::size_t DirectLight::luminaires_weighed() const {
 
 DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin,
                                            const std::array<float, kDimensions>& u) const {
-  // u[0] chooses and is then used again; u[2] places the candidates where there are many luminaires.
-  const LuminaireChoice choice(table_, selection_, origin, x.normal, u[2]);
+  // u[2] places the candidates where there are many luminaires.
+  return estimate(x, origin, LuminaireChoice(table_, selection_, origin, x.normal, u[2]), u);
+}
+
+DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin,
+                                           const LuminaireChoice& choice,
+                                           const std::array<float, kDimensions>& u) const {
+  // u[0] chooses and is then used again.
   float u_choice = u[0];
   float inverse_probability = 0;
   std::size_t entry = 0;
@@ -89,7 +96,23 @@ bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample,
 void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
                              const float* weight, float* sum) const {
   if (empty()) return;
-  const Arrival light = estimate(x, ray_origin(*rays_, x), u);
+  add(estimate(x, ray_origin(*rays_, x), u), weight, sum);
+}
+
+void DirectLight::weigh(const SurfacePoint& x, float* weights) const {
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    const float weight = table_.brightness(i) * table_.unoccluded(i, ray_origin(*rays_, x), x.normal);
+    if (std::isfinite(weight)) weights[i] += weight;
+  }
+}
+
+void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
+                             std::span<const float> luminaire_weights, const float* weight,
+                             float* sum) const {
+  add(estimate(x, ray_origin(*rays_, x), LuminaireChoice(table_, luminaire_weights), u), weight, sum);
+}
+
+void DirectLight::add(const Arrival& light, const float* weight, float* sum) const {
   if (!light.arrives()) return;
   for (std::size_t b = 0; b < band_count(); ++b)
     sum[b] += weight[b] * light.factor * light.strength_in(b) * light.pane(b);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "solver/emit/luminaire_choice.h"
@@ -46,6 +47,19 @@ class DirectLight {
   /// nothing is added where no luminaire is visible.
   void add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
                   float* sum) const;
+
+  /// Whether a sample weighs all luminaires for its point; weights for many points near each other can then
+  /// be found once.
+  bool is_weighed_by_point() const {
+    return selection_ == Selection::kLinear && table_.size() > 1 &&
+           table_.size() <= LuminaireChoice::kMostLinear;
+  }
+  /// Adds the irradiance that each luminaire would bring to x if nothing hid it [W/m2], all bands together,
+  /// to one of the luminaires_weighed() weights. Pre: is_weighed_by_point().
+  void weigh(const SurfacePoint& x, float* weights) const;
+  /// add_sample with luminaires chosen by such weights, which may be those of other points.
+  void add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u,
+                  std::span<const float> luminaire_weights, const float* weight, float* sum) const;
 
   /// One sample of what the surface at x sends towards x.towards of it: adds weight[b] f_b E_b / `chance` to
   /// sum[b], f the BRDF [1/sr].
@@ -95,6 +109,9 @@ class DirectLight {
   /// density.
   float left_by_lobe(const Arrival& light, const SpecularStep& step, const CausticShare& counted) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
+  Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
+                   const std::array<float, kDimensions>& u) const;
+  void add(const Arrival& light, const float* weight, float* sum) const;
 
   const RayTracer* rays_;
   const SurfaceModel* surfaces_;

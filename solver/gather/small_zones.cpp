@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -158,24 +159,26 @@ class Gatherer {
 
 /// What the pilot found out about a zone, all bands together.
 struct PilotResult {
-  double irradiance = 0;  // [W/m2]
-  double variance = 0;    // of its irradiance
+  double irradiance = 0;  // that packets bring [W/m2]
+  double variance = 0;    // of all its irradiance
 };
 
 /// Incident power that one ray of the solve carried on average [W].
-double power_per_ray(const Solution& solution) {
+double power_per_ray(const Solution& solution, bool direct_is_sampled) {
   const std::size_t bands = solution.bands.count();
   double power = 0;
   for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
     for (std::size_t b = 0; b < bands; ++b)
-      power += solution.mesh.zone_area(ZoneId(z)) * solution.irradiance(ZoneId(z), b).mean;
+      power += solution.mesh.zone_area(ZoneId(z)) * (direct_is_sampled
+                                                         ? solution.indirect_irradiance(ZoneId(z), b).mean
+                                                         : solution.irradiance(ZoneId(z), b).mean);
   return power / static_cast<double>(solution.record.rays);
 }
 
 /// True if gathering with `gain` times the rays of the pilot is foreseen to beat packets clearly.
 bool is_worthwhile(const PilotResult& pilot, double gain, double area, double watts_per_ray) {
-  const double packets = pilot.irradiance * area / watts_per_ray;
-  return pilot.variance / gain * packets * kWorthwhile <= pilot.irradiance * pilot.irradiance;
+  const double variance_of_packets = pilot.irradiance * watts_per_ray / area;
+  return pilot.variance / gain * kWorthwhile <= variance_of_packets;
 }
 
 }  // namespace
@@ -206,11 +209,13 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
       zones, 1, RngPurpose::kSmallZonePilot, [&](std::size_t i, std::size_t, const ZoneReplicates& x) {
         const ReplicateMean mean =
             mean_of_replicates(kReplicates, kReplicates, [&](std::size_t r) { return x.total(r); });
-        pilots[i].irradiance += mean.mean;
+        pilots[i].irradiance += limits.direct_is_sampled
+                                    ? std::reduce(x.indirect.begin(), x.indirect.end()) / double{kReplicates}
+                                    : mean.mean;
         pilots[i].variance += mean.squared_error;
       });
   const auto packet_rays = static_cast<double>(solution.record.rays);
-  const double watts_per_ray = power_per_ray(solution);
+  const double watts_per_ray = power_per_ray(solution, limits.direct_is_sampled);
   solution.gathered.rays = piloted * kRaysPerPoint;
   solution.record.rays += solution.gathered.rays;
   if (piloted < zones.size()) return true;

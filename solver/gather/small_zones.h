@@ -19,6 +19,8 @@ std::vector<ZoneId> zones_left_to_packets(const ZoneMesh& mesh);
 struct SmallZoneLimits {
   double solver_rays = 0;         ///< As much as this many rays of packets cost.
   std::optional<double> seconds;  ///< Wall time [s].
+  /// Packets brought little of the direct light: it is known well, and that of the packets is indirect.
+  bool direct_is_sampled = false;
 };
 
 /// Gives zones too small to meet enough packets their irradiance by gathering from the rest of the zone

@@ -23,11 +23,12 @@ void record_error(const SurfaceModel& surfaces, Solution& solution) {
   solution.record.unreached_zones = error.unreached;
 }
 
-void gather_what_is_small(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
-                          Solution& solution) {
+void gather_what_is_small(const Room& room, bool direct_is_sampled, const Schedule& schedule,
+                          const std::atomic<bool>& interrupt, Solution& solution) {
   if (interrupt || !gathers_small_zones(solution)) return;
   SolveRecord& record = solution.record;
   SmallZoneLimits limits;
+  limits.direct_is_sampled = direct_is_sampled;
   limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
   if (schedule.limit_s > 0) limits.seconds = schedule.gather_s - seconds_since(schedule.start);
   const bool clock_had_a_say =

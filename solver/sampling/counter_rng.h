@@ -34,6 +34,7 @@ enum class RngPurpose : std::uint32_t {
   kCaustic,
   kSeenLight,
   kSkySurvey,
+  kSampledDirect,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

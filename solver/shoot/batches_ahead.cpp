@@ -48,7 +48,7 @@ std::int64_t BatchesAhead::weight() const {
 }
 
 void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64_t weight,
-                         const StopToken& stop) {
+                         const StopToken& stop, DirectInstead direct) {
   Flight flight;
   if (spare_.empty()) {
     flight.batch = std::make_unique<Batch>(Batch{transport_.new_books()});
@@ -58,15 +58,17 @@ void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64
   }
   flight.batch->weight = weight;
   flight.done = std::async(std::launch::async, [this, number, packets, batch = flight.batch.get(),
-                                                token = stop.or_when(needless_)] {
+                                                token = stop.or_when(needless_), direct = std::move(direct)] {
     using Clock = StopToken::Clock;
     const Clock::time_point begin = Clock::now();
     batch->books.clear();
-    const BatchTask task{transport_, emission_, settings_, number, packets, &token};
+    BatchTask task{transport_, emission_, settings_, number, packets, &token};
+    task.first_together = direct.first_together;
     tbb::task_arena arena(threads_per_batch_);
     arena.execute([&] {
       batch->whole = settings_.method == SolveMethod::kShooting ? shoot_batch(task, batch->books)
                                                                 : walk_batch(task, batch->books);
+      if (batch->whole && direct.put) direct.put(batch->books);
     });
     batch->seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   });

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <vector>
@@ -10,6 +11,12 @@
 #include "solver/shoot/packet_batch.h"
 
 namespace reemit {
+
+/// What finds the direct light of zones in the place of packets.
+struct DirectInstead {
+  std::uint32_t first_together = 1;      ///< BatchTask::first_together.
+  std::function<void(BatchBooks&)> put;  ///< Replaces direct and adds to rays, in the batch's task arena.
+};
 
 /// Batches of a run that are on their way at the same time, taken back in the order of their numbers, so that
 /// a run is the same bits however many there are. A batch has parts that only one thread can do, at the ends
@@ -29,8 +36,9 @@ class BatchesAhead {
   std::int64_t batches() const { return static_cast<std::int64_t>(flights_.size()); }
   std::int64_t weight() const;  ///< Of all batches on their way (BatchPlan).
 
-  /// Starts a batch. Pre: not full().
-  void start(std::uint32_t number, std::uint32_t packets, std::int64_t weight, const StopToken& stop);
+  /// Starts a batch. `direct` may be empty; it is not asked for batches that are cut off. Pre: not full().
+  void start(std::uint32_t number, std::uint32_t packets, std::int64_t weight, const StopToken& stop,
+             DirectInstead direct = {});
 
   struct Batch {
     BatchBooks books;

@@ -32,6 +32,9 @@ struct BatchTask {
   /// Looked at in every sweep and bounce, and every few thousand packets; may be null.
   const StopToken* stop = nullptr;
   const RayObserver* ray_observer = nullptr;  ///< May be null.
+  /// Shooting: so many packets travel together on their way from a luminaire to the first surface, of which
+  /// little is needed where the direct light of zones is found otherwise.
+  std::uint32_t first_together = 1;
 };
 
 /// One batch of absorb-and-re-emit shooting: an independent estimate of the whole solution ([GI98] Monte

@@ -311,13 +311,15 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
   SweepAccounts accounts(transport.zones(), channels);
 
-  Flight flight = plan_first_flight(task.emission, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
+  Flight flight = plan_first_flight(task.emission, std::max(1U, task.packets / task.first_together),
+                                    offsets.uniform4(0, task.batch, 0)[0]);
   for (std::size_t i = 0; i < flight.quanta.size(); ++i)
     books.emitted[i % channels.count()] += flight.quanta[i];
   const auto emitted =
       static_cast<double>(std::accumulate(books.emitted.begin(), books.emitted.end(), std::int64_t{0}));
-  books.packets += flight.packets();
-  const double quantum = emitted / flight.packets();
+  const std::uint32_t packets = std::max(flight.packets(), task.first_together > 1 ? task.packets : 0);
+  books.packets += packets;
+  const double quantum = emitted / packets;
 
   Allocation allocation(transport.zones(), channels, transport.needs());
   std::optional<ArrivalPoints> arrivals;
@@ -343,8 +345,8 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
     whole = task.stop == nullptr || !task.stop->requested();
     if (!whole) break;
     // From here on the power is in the flight, which must be traced before the batch may end.
-    const double packets = std::max(1.0, std::round(left / quantum));
-    allocation.plan(accounts, left / packets, offsets.uniform4(0, task.batch, sweep + 1)[0], flight, books);
+    const double sent = std::max(1.0, std::round(left / quantum));
+    allocation.plan(accounts, left / sent, offsets.uniform4(0, task.batch, sweep + 1)[0], flight, books);
   }
   for (std::size_t i = 0; i < accounts.unshot.size(); ++i)
     books.unshot[i % channels.count()] += accounts.unshot[i];

@@ -108,7 +108,7 @@ std::string to_string(StopReason reason);  ///< In words, as printed and stored.
 /// How far a solve got.
 struct SolveRecord {
   StopReason stopped = StopReason::kUnderWay;
-  std::uint64_t packets = 0;  ///< Emitted by luminaires.
+  std::uint64_t packets = 0;  ///< As SolverSettings::packets counts them.
   std::uint64_t rays = 0;     ///< Traced in all.
   double seconds = 0;         ///< Wall time of the solve without meshing and saving, all sittings together.
   double error = 0;        ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.

@@ -43,6 +43,7 @@ void transfer_solver_settings(Archive& archive, Settings& settings) {
   archive.attribute("method", settings.method);
   archive.attribute("sampling", settings.sampling);
   archive.attribute("reemission", settings.reemission);
+  archive.attribute("direct", settings.direct);
   archive.attribute("error_target", settings.error_target);
   archive.attribute("time_limit_s", settings.time_limit_s);
   archive.attribute("packets", settings.packets);
@@ -99,6 +100,7 @@ inline constexpr SolveMethod kAllSolveMethods[] = {SolveMethod::kShooting, Solve
                                                    SolveMethod::kMatrix};
 inline constexpr SamplingKind kAllSamplingKinds[] = {SamplingKind::kRandom, SamplingKind::kSobol};
 inline constexpr Reemission kAllReemissions[] = {Reemission::kFromHits, Reemission::kFromZones};
+inline constexpr DirectSource kAllDirectSources[] = {DirectSource::kBest, DirectSource::kPackets};
 inline constexpr StopReason kAllStopReasons[] = {
     StopReason::kUnderWay,    StopReason::kErrorTarget, StopReason::kTimeLimit,
     StopReason::kPacketCount, StopReason::kBatchLimit,  StopReason::kBounceLimit,

@@ -22,4 +22,8 @@ std::string to_string(Reemission reemission) {
   return reemission == Reemission::kFromHits ? "hits" : "zones";
 }
 
+std::string to_string(DirectSource direct) {
+  return direct == DirectSource::kBest ? "best" : "packets";
+}
+
 }  // namespace reemit

@@ -70,8 +70,8 @@ void add_audit_command(CLI::App& program, Action& action) {
   audit.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
   auto* direct =
       audit.add_flag("--direct", options->direct,
-                     "Compare the direct light of every zone, which packets brought, with shadow rays\n"
-                     "to the luminaires, which stills and exports use");
+                     "Compare the direct light that packets bring to every zone with shadow rays to the\n"
+                     "luminaires, which stills and exports use");
   add_integer_option(audit, "--points", options->settings.points, 32, 1 << 20,
                      "Shadow rays per zone, rounded up")
       ->needs(direct);

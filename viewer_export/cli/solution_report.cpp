@@ -45,6 +45,7 @@ Json record_json(const Solution& solution) {
             {"method", to_string(solution.settings.method)},
             {"sampling", to_string(solution.settings.sampling)},
             {"reemission", to_string(solution.settings.reemission)},
+            {"direct", to_string(solution.settings.direct)},
             {"unshot_share", unshot_shares(solution.audit)},
             {"balanced", solution.audit.balanced()},
             {"bands", solution.bands.names()},

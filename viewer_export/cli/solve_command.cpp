@@ -313,8 +313,9 @@ void add_solve_command(CLI::App& program, Action& action) {
                     "worst band): 1% or 0.01");
   add_parsed_option(solve, "--time", options->solver.time_limit_s, parse_seconds, "TIME",
                     "Stop after this wall time: 60, 60s, 2min, 1h");
-  add_parsed_option(solve, "--packets", options->solver.packets, parse_count, "N",
-                    "Stop after this many packets from luminaires: 250000 or 1e6");
+  add_parsed_option(
+      solve, "--packets", options->solver.packets, parse_count, "N",
+      "Stop after this many packets, equal parts of the power of all luminaires: 250000 or 1e6");
 
   solve.option_defaults()->group("Method");
   add_choice_option<SolveMethod>(
@@ -331,6 +332,11 @@ void add_solve_command(CLI::App& program, Action& action) {
       {{"hits", Reemission::kFromHits}, {"zones", Reemission::kFromZones}},
       "Where zones send on the light they reflect: from where it met them, or evenly\n"
       "over each zone, which is what --method matrix solves (to compare with it)");
+  add_choice_option<DirectSource>(
+      solve, "--direct", options->solver.direct,
+      {{"best", DirectSource::kBest}, {"packets", DirectSource::kPackets}},
+      "How --method shooting finds the direct light of zones: by shadow rays where a look\n"
+      "at the room says that this pays, or by packets in any case (to compare with them)");
   add_seed_and_threads(solve, options->solver.seed, options->solver.threads);
 
   solve.option_defaults()->group("Room");
@@ -357,8 +363,8 @@ void add_solve_command(CLI::App& program, Action& action) {
   add_progress_options(solve, options->style);
   // A run has one of each from its first batch to its last.
   for (const char* settled :
-       {"--method", "--sampling", "--reemit", "--seed", "--zones", "--zone-area", "--two-sided", "--bands",
-        "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
+       {"--method", "--sampling", "--reemit", "--direct", "--seed", "--zones", "--zone-area", "--two-sided",
+        "--bands", "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
     resume->excludes(solve.get_option(settled));
   solve.callback([options, &action] {
     if (options->resume.empty() && options->room.empty()) throw CLI::RequiredError("ROOM or --resume");

@@ -25,20 +25,23 @@ test::RoomBuilder room_with_shelf() {
   return room;
 }
 
-Solution solved(const test::RoomBuilder& room) {
+Solution solved(const test::RoomBuilder& room, DirectSource direct = DirectSource::kPackets) {
   SolverSettings settings;
+  settings.direct = direct;
   settings.packets = 2'000'000;
   return solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
 }
 
 TEST(DirectAudit, packets_and_shadow_rays_find_the_same_direct_light) {
   const test::RoomBuilder room = room_with_shelf();
-  const Solution solution = solved(room);
-  const Room walls(room.scene(), solution.mesh);
-  const DirectAudit audit = audit_direct_light(walls, solution, {}, {}, kNever);
-  EXPECT_EQ(audit.compared + audit.left_out, solution.mesh.zone_count());
-  EXPECT_GT(audit.compared, 500U);
-  EXPECT_TRUE(audit.agrees()) << audit.different.size() << " zones differ";
+  for (const DirectSource direct : {DirectSource::kPackets, DirectSource::kBest}) {
+    const Solution solution = solved(room, direct);
+    const Room walls(room.scene(), solution.mesh);
+    const DirectAudit audit = audit_direct_light(walls, solution, {}, {}, kNever);
+    EXPECT_EQ(audit.compared + audit.left_out, solution.mesh.zone_count());
+    EXPECT_GT(audit.compared, 500U);
+    EXPECT_TRUE(audit.agrees()) << audit.different.size() << " zones differ";
+  }
 }
 
 TEST(DirectAudit, a_bias_of_2_percent_on_one_surface_is_noticed) {

@@ -41,6 +41,7 @@ class LostLight : public ::testing::Test {
   Solution solved(int threads = 1) const {
     SolverSettings settings;
     settings.packets = 1 << 16;
+    settings.direct = DirectSource::kPackets;  // few packets are to find narrow gaps
     settings.threads = threads;
     const std::atomic<bool> interrupt = false;
     return solve(room_.scene(), room_.mesh(), settings, {}, interrupt);

@@ -191,6 +191,7 @@ TEST(SkyLight, packets_and_shadow_rays_find_the_same_light_inside) {
   const RoomBuilder room = room_with_window(cie_sky_over_z(12, 100));
   SolverSettings settings;
   settings.packets = 5'000'000;
+  settings.direct = DirectSource::kPackets;
   Solution solution = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
   EXPECT_TRUE(solution.audit.balanced());
   const Room walls(room.scene(), solution.mesh);

@@ -24,6 +24,7 @@ inline Solution sample_solution(const BandSet& bands) {
   s.mesh_settings.crease_angle_deg = 31;
   s.settings.method = SolveMethod::kWalk;
   s.settings.sampling = SamplingKind::kRandom;
+  s.settings.direct = DirectSource::kPackets;
   s.settings.error_target = 0.01;
   s.settings.time_limit_s = 61;
   s.settings.packets = 5'000'000'000;

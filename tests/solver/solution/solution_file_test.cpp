@@ -45,6 +45,7 @@ void expect_same_settings(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.mesh_settings.exact_shapes, b.mesh_settings.exact_shapes);
   EXPECT_EQ(a.settings.method, b.settings.method);
   EXPECT_EQ(a.settings.sampling, b.settings.sampling);
+  EXPECT_EQ(a.settings.direct, b.settings.direct);
   EXPECT_EQ(a.settings.error_target, b.settings.error_target);
   EXPECT_EQ(a.settings.time_limit_s, b.settings.time_limit_s);
   EXPECT_EQ(a.settings.packets, b.settings.packets);
@@ -351,6 +352,15 @@ TEST_F(SolutionFile, RefusesEveryTruncatedFile) {
   }
   write_bytes(file_, std::string_view(bytes).substr(0, bytes.size() - 1));
   EXPECT_THROW(load_solution(file_), InputError);
+}
+
+TEST_F(SolutionFile, RunsFromBeforeShadowRaysGoOnByPackets) {
+  Solution saved = sample_solution(BandSet::grey());
+  saved.settings.direct = DirectSource::kBest;
+  save_solution(saved, file_);
+  EXPECT_EQ(load_solution(file_).settings.direct, DirectSource::kBest);
+  edit([](hid_t id) { H5Adelete_by_name(id, "settings/solve", "direct", H5P_DEFAULT); });
+  EXPECT_EQ(load_solution(file_).settings.direct, DirectSource::kPackets);
 }
 
 TEST_F(SolutionFile, RefusesOtherHdf5FilesWithASeal) {

@@ -1,0 +1,94 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "solver/gather/direct_light.h"
+#include "solver/room/room.h"
+#include "solver/shoot/packet_room.h"
+#include "solver/shoot/packet_sources.h"
+#include "solver/solution/solver_settings.h"
+#include "solver/tally/batch_books.h"
+
+namespace reemit {
+
+/// Direct light of zones by shadow rays from points of them, in the place of what the packets of luminaires
+/// brought. Where few luminaires light much of a room, a shadow ray says as much about the direct light of a
+/// zone as several packets do, so that packets can be spent on the light that is reflected. How many shadow
+/// rays a zone gets follows from a short pilot, whose random numbers are its own: what it finds biases
+/// nothing.
+class SampledDirectLight {
+ public:
+  /// BatchTask::first_together of a batch whose direct light is sampled: that of packets is in the books then
+  /// and where light is reflected from, and would be the noise of neither. From 4 on it hardly matters.
+  static constexpr std::uint32_t kFirstTogether = 8;
+
+  /// `watts`: power of all luminaires and bands together. `unit_packets`: packets of a batch of weight 1
+  /// (BatchPlan), over whose noise that of shadow rays is weighed. The room must outlive it.
+  SampledDirectLight(const Room& room, std::uint64_t seed, double watts, std::uint32_t unit_packets);
+
+  /// Variance of direct light times the work for it, by packets over that by shadow rays, as the pilot
+  /// foresees; 0 where it met no light.
+  double gain() const { return gain_; }
+  /// Whether shadow rays are clearly the better way in this room.
+  bool pays() const { return gain_ > kLeastGain; }
+
+  /// Whether a batch of this weight is large enough for a shadow ray from every lit zone. Smaller ones, as
+  /// large rooms begin with, are those of packets alone.
+  bool is_for(std::int64_t weight) const {
+    return pays() && weight * std::int64_t{unit_packets_} >= kPacketsPerZone * lit_zones_;
+  }
+  /// Whether it would leave nothing out: of the direct light that packets brought, nearly all fell on zones
+  /// that the pilot found lit, and as much as it found there. Beams that miss the points of the pilot are
+  /// left to packets, which are few then.
+  bool finds_what_packets_find(const std::vector<double>& watts_per_quantum, const BatchBooks& books) const;
+
+  /// Replaces books.direct of the zones that the pilot found lit by an estimate that is independent of those
+  /// of all other batches. Where packets lost no light on their way, the sum over the zones is kept. Zones
+  /// that it did not see any light from keep what packets brought. Returns how many shadow rays were sent.
+  /// Pre: is_for(weight).
+  std::uint64_t put(std::uint32_t batch, std::int64_t weight, const std::vector<double>& watts_per_quantum,
+                    BatchBooks& books) const;
+
+ private:
+  static constexpr double kLeastGain = 3;
+  static constexpr std::int64_t kPacketsPerZone = 2;
+
+  /// What the pilot found on one zone.
+  struct Look {
+    bool lit = false;
+    double irradiance = 0;  // all bands together [W/m2]
+    double mean = 0;        // of radiosity, all bands together [W/m2]
+    double sigma = 0;       // of one sample of it
+  };
+  Look look(ZoneId zone, float* weights) const;
+  void plan_samples(const std::vector<Look>& looks, double per_unit);
+  /// sqrt(area) sigma: the numbers of samples that leave the least error go by it.
+  double need(ZoneId zone, const Look& look) const;
+  int samples_of(std::size_t zone, std::int64_t weight) const;
+  void scale(double factor, std::size_t band, BatchBooks& books) const;
+  void add_samples(ZoneId zone, std::uint32_t replicate, int count, float* sum) const;
+
+  const Room* room_;
+  DirectLight light_;
+  std::uint64_t seed_;
+  std::uint32_t unit_packets_;
+  std::size_t bands_;
+  std::size_t weighed_;  // luminaires that are weighed once for a zone; 0: anew for every sample
+  double gain_ = 0;
+  std::int64_t lit_zones_ = 0;  // that the pilot found lit
+  double lit_watts_ = 0;        // on them, as it found
+  std::vector<float> samples_;  // by zone, in a batch of weight 1; 0: left to packets
+  std::vector<float> weights_;  // by zone and luminaire
+};
+
+/// That of a run with these settings. None where packets are to find all light, or find it as well: where
+/// luminaires are many or hidden, or beams narrow. Nor in rooms with light groups, which shadow rays do not
+/// tell apart, and with mirrors, glass or gloss, whose caustics take as many packets as direct light. Must
+/// run inside the task arena of the caller.
+std::optional<SampledDirectLight> sampled_direct_light(const PacketRoom& transport,
+                                                       const PacketSources& emission,
+                                                       const SolverSettings& settings,
+                                                       std::uint32_t unit_packets);
+
+}  // namespace reemit
