@@ -20,6 +20,8 @@ namespace {
 constexpr int kPilotPoints = 16;
 /// Zones that the pilot looks at first, to find out whether it should look at the rest.
 constexpr std::size_t kFirstZones = 1024;
+/// Rooms of more zones are left to packets: the pilot, which nothing interrupts, takes a second or two here.
+constexpr std::size_t kMostZones = std::size_t{1} << 19;
 /// Least standard deviation of a sample over its mean: a few points do not show all there is to see.
 constexpr double kLeastSpread = 0.2;
 /// Variance of the low-discrepancy packets that a zone meets over that of so many at random.
@@ -208,7 +210,8 @@ std::optional<SampledDirectLight> sampled_direct_light(const PacketRoom& transpo
                                                        const SolverSettings& settings,
                                                        std::uint32_t unit_packets) {
   if (settings.method != SolveMethod::kShooting || settings.direct != DirectSource::kBest ||
-      emission.channels.groups() > 1 || transport.scene().bends_light())
+      emission.channels.groups() > 1 || transport.scene().bends_light() ||
+      transport.surface_model().any_cut_outs() || transport.zones() > kMostZones)
     return std::nullopt;
   const std::vector<double>& quantum = emission.watts_per_quantum;
   const double watts =

@@ -84,8 +84,9 @@ class SampledDirectLight {
 
 /// That of a run with these settings. None where packets are to find all light, or find it as well: where
 /// luminaires are many or hidden, or beams narrow. Nor in rooms with light groups, which shadow rays do not
-/// tell apart, and with mirrors, glass or gloss, whose caustics take as many packets as direct light. Must
-/// run inside the task arena of the caller.
+/// tell apart; with mirrors, glass or gloss, whose caustics take as many packets as direct light; with
+/// cut-outs, whose zones have points that are not there; and with more than half a million zones. Must run
+/// inside the task arena of the caller.
 std::optional<SampledDirectLight> sampled_direct_light(const PacketRoom& transport,
                                                        const PacketSources& emission,
                                                        const SolverSettings& settings,
