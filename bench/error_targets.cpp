@@ -122,7 +122,7 @@ void measure(const Options& options) {
   fmt::print("{}: {} zones, {} seeds\n\n", options.room, mesh.mesh.zone_count(), options.seeds);
   fmt::print(
       "| command | target | met by the true error | mean true error | least .. most | mean stated error |"
-      " error of the reference | median time [s] |\n|---|---|---|---|---|---|---|---|\n");
+      " error of the reference | median time [s] |\n|---|---|---|---|---|---|---|---|---|\n");
 
   SolverSettings settings;
   settings.direct = DirectSource::kPackets;
