@@ -67,8 +67,6 @@ class PacketsOfLuminaires {
   void shoot(const Room& room, const std::atomic<bool>& interrupt) {
     const PacketRoom transport(room, Channels(solution_.bands.count()));
     const PacketSources emission = collect_packet_sources(transport);
-    SolverSettings settings = solution_.settings;
-    settings.stop_share = 1;  // a batch ends after its first flight
     const StopToken stop(interrupt);
     const std::uint64_t wanted = solution_.record.packets;
     const std::uint64_t batches = (wanted + kPacketsPerBatch - 1) / kPacketsPerBatch;
@@ -77,13 +75,9 @@ class PacketsOfLuminaires {
     BatchBooks books = transport.new_books();
     for (std::uint64_t k = 0; k < batches && !interrupt; ++k) {
       books.clear();
-      shoot_batch({.transport = transport,
-                   .emission = emission,
-                   .settings = settings,
-                   .batch = static_cast<std::uint32_t>(k),
-                   .packets = static_cast<std::uint32_t>(wanted / batches),
-                   .stop = &stop},
-                  books);
+      shoot_first_flight({transport, emission, solution_.settings, static_cast<std::uint32_t>(k),
+                          static_cast<std::uint32_t>(wanted / batches), &stop},
+                         books);
       packets_ += static_cast<double>(books.packets);
       for (std::size_t z = 0; z < shot_.size(); ++z)
         for (std::size_t b = 0; b < bands; ++b)

@@ -100,8 +100,9 @@ void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDim
 }
 
 void DirectLight::weigh(const SurfacePoint& x, float* weights) const {
+  const Vec3f origin = ray_origin(*rays_, x);
   for (std::size_t i = 0; i < table_.size(); ++i) {
-    const float weight = table_.brightness(i) * table_.unoccluded(i, ray_origin(*rays_, x), x.normal);
+    const float weight = table_.brightness(i) * table_.unoccluded(i, origin, x.normal);
     if (std::isfinite(weight)) weights[i] += weight;
   }
 }

@@ -218,15 +218,8 @@ std::optional<SampledDirectLight> sampled_direct_light(const PacketRoom& transpo
       std::accumulate(quantum.begin(), quantum.end(), 0.0) * static_cast<double>(kBatchQuanta);
   SampledDirectLight sampled(transport.room(), settings.seed, watts, unit_packets);
   if (!sampled.pays()) return std::nullopt;
-  SolverSettings first_flight = settings;
-  first_flight.stop_share = 1;
   BatchBooks books = transport.new_books();
-  shoot_batch({.transport = transport,
-               .emission = emission,
-               .settings = first_flight,
-               .batch = kPilot,
-               .packets = unit_packets},
-              books);
+  shoot_first_flight({transport, emission, settings, kPilot, unit_packets}, books);
   if (!sampled.finds_what_packets_find(quantum, books)) return std::nullopt;
   return sampled;
 }

@@ -45,6 +45,10 @@ struct BatchTask {
 /// task arena of the caller.
 bool shoot_batch(const BatchTask& task, BatchBooks& books);
 
+/// The same up to where packets of luminaires first meet a surface that scatters them: the reflected rest is
+/// unshot.
+bool shoot_first_flight(const BatchTask& task, BatchBooks& books);
+
 /// One batch of walks: each packet is followed until Russian roulette absorbs it. It survives a hit with the
 /// largest reflectance over the bands and keeps rho/largest of its power, so its power never grows and what
 /// it loses is absorbed: the books need no correction for roulette. A packet goes on from where it met a

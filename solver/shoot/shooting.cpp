@@ -353,4 +353,18 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   return whole;
 }
 
+bool shoot_first_flight(const BatchTask& task, BatchBooks& books) {
+  SolverSettings settings = task.settings;
+  settings.stop_share = 1;
+  return shoot_batch({.transport = task.transport,
+                      .emission = task.emission,
+                      .settings = settings,
+                      .batch = task.batch,
+                      .packets = task.packets,
+                      .stop = task.stop,
+                      .ray_observer = task.ray_observer,
+                      .first_together = task.first_together},
+                     books);
+}
+
 }  // namespace reemit
