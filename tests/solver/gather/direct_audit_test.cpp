@@ -6,24 +6,14 @@
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
 #include "tests/support/never.h"
+#include "tests/support/shelf_room.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
 namespace {
 
 using test::kNever;
-
-/// A box with a lamp under its ceiling and a shelf that throws a shadow.
-test::RoomBuilder room_with_shelf() {
-  test::RoomBuilder room;
-  const MaterialId white = room.material("white", 0.7, 0, true);
-  const MaterialId lamp = room.material("lamp", 0.5, 20);
-  room.box({0, 0, 0}, {1, 1, 1}, {white, white, white, white, white, white}, 6);
-  room.quad(lamp, {Vec3(0.3, 0.3, 0.98), Vec3(0.3, 0.6, 0.98), Vec3(0.7, 0.6, 0.98), Vec3(0.7, 0.3, 0.98)},
-            3);
-  room.quad(white, {Vec3(0.1, 0.1, 0.4), Vec3(0.6, 0.1, 0.4), Vec3(0.6, 0.5, 0.4), Vec3(0.1, 0.5, 0.4)}, 6);
-  return room;
-}
+using test::room_with_shelf;
 
 Solution solved(const test::RoomBuilder& room, DirectSource direct = DirectSource::kPackets) {
   SolverSettings settings;

@@ -9,26 +9,15 @@
 #include "solver/shoot/packet_room.h"
 #include "tests/support/never.h"
 #include "tests/support/same_light.h"
+#include "tests/support/shelf_room.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
 namespace {
 
 using test::kNever;
+using test::room_with_shelf;
 using test::RoomBuilder;
-
-/// A coloured room with a lamp under its ceiling and a board that throws a shadow.
-RoomBuilder room_with_board() {
-  RoomBuilder room;
-  const MaterialId white = room.material("white", 0.7, 0, true);
-  const MaterialId dark = room.material("dark", 0.2, 0, true);
-  const MaterialId lamp = room.material("lamp", 0.5, 20);
-  room.box({0, 0, 0}, {1, 1, 1}, {white, dark, white, white, white, white}, 6);
-  room.quad(lamp, {Vec3(0.3, 0.3, 0.98), Vec3(0.3, 0.6, 0.98), Vec3(0.7, 0.6, 0.98), Vec3(0.7, 0.3, 0.98)},
-            3);
-  room.quad(white, {Vec3(0.1, 0.1, 0.4), Vec3(0.6, 0.1, 0.4), Vec3(0.6, 0.5, 0.4), Vec3(0.1, 0.5, 0.4)}, 6);
-  return room;
-}
 
 SolverSettings settings_of(DirectSource direct, std::uint64_t packets = 2'000'000) {
   SolverSettings settings;
@@ -69,7 +58,7 @@ double deviation(const Solution& a, const Solution& b, double bias,
 // The mean square of as many normal deviations as there are zones, 1,026, is within 0.044 of 1; the limit is
 // five times that, passed once in two million runs. 2 % of bias beside errors of about 1 % is seen easily.
 TEST(SampledDirectLight, IsThatOfPackets) {
-  const RoomBuilder room = room_with_board();
+  const RoomBuilder room = room_with_shelf();
   const Solution sampled = solved(room, settings_of(DirectSource::kBest));
   SolverSettings other = settings_of(DirectSource::kPackets, 8'000'000);
   other.seed = 2;
@@ -82,7 +71,7 @@ TEST(SampledDirectLight, IsThatOfPackets) {
 }
 
 TEST(SampledDirectLight, HasLessNoiseForLessWork) {
-  const RoomBuilder room = room_with_board();
+  const RoomBuilder room = room_with_shelf();
   const Solution sampled = solved(room, settings_of(DirectSource::kBest));
   const Solution packets = solved(room, settings_of(DirectSource::kPackets));
   const auto work = [](const Solution& s) {
@@ -94,7 +83,7 @@ TEST(SampledDirectLight, HasLessNoiseForLessWork) {
 }
 
 TEST(SampledDirectLight, IsTheSameOnAnyNumberOfThreadsAndWhenResumed) {
-  const RoomBuilder room = room_with_board();
+  const RoomBuilder room = room_with_shelf();
   SolverSettings settings = settings_of(DirectSource::kBest, 600'000);
   settings.threads = 1;
   const Solution one = solved(room, settings);
@@ -110,7 +99,7 @@ TEST(SampledDirectLight, IsTheSameOnAnyNumberOfThreadsAndWhenResumed) {
 }
 
 TEST(SampledDirectLight, LeavesManyHiddenLuminairesToPackets) {
-  EXPECT_TRUE(is_sampled_in(room_with_board()));
+  EXPECT_TRUE(is_sampled_in(room_with_shelf()));
   // A hundred lamps, each in a shaft of its own: what a shadow ray chooses is mostly hidden.
   RoomBuilder shafts;
   const MaterialId white = shafts.material("white", 0.7, 0, true);
@@ -130,7 +119,7 @@ TEST(SampledDirectLight, LeavesManyHiddenLuminairesToPackets) {
 }
 
 TEST(SampledDirectLight, SealedPartsStayExactlyDark) {
-  RoomBuilder room = room_with_board();
+  RoomBuilder room = room_with_shelf();
   const MaterialId inner = room.material("inner", 0.8, 0, true);
   room.box({0.7, 0.7, 0.1}, {0.9, 0.9, 0.3}, {inner, inner, inner, inner, inner, inner}, 4);
   ASSERT_TRUE(is_sampled_in(room));
