@@ -15,7 +15,7 @@ using nlohmann::json;
 using std::numbers::pi;
 constexpr double kShaftPackets = 2e6;
 /// Bound of what single precision does to shares, relative.
-constexpr double kBound = 1e-6;
+constexpr double kGlassBound = 1e-6;
 
 /// Left of light by one pass across the glass at normal incidence.
 double once(const ReferenceCase& c) {
@@ -50,7 +50,7 @@ void add_angle(const ReferenceCase& c, std::vector<ValidationRow>& rows) {
   const Glass glass(c);
   const double cosine = std::cos(c.parameters.at("theta_deg").get<double>() * pi / 180);
   for (const ReferenceValue& v : c.values)
-    rows.push_back(make_row(c, v, "share at an angle", {glass.share(v.quantity, cosine)}, kBound));
+    rows.push_back(make_row(c, v, "share at an angle", {glass.share(v.quantity, cosine)}, kGlassBound));
 }
 
 /// Mean over directions from which a cosine-weighted hemisphere of light comes.
@@ -90,7 +90,7 @@ void add_hemisphere(const ReferenceCase& c, const Effort& effort, std::vector<Va
   std::vector<ReferenceValue> of_pane;
   for (const ReferenceValue& v : c.values) {
     const double mean = hemispherical([&](double cosine) { return glass.share(v.quantity, cosine); });
-    rows.push_back(make_row(c, v, "mean of shares over angles", {mean}, kBound));
+    rows.push_back(make_row(c, v, "mean of shares over angles", {mean}, kGlassBound));
     if (v.quantity.find("interface") == std::string::npos) {
       of_pane.push_back(v);
       continue;

@@ -76,6 +76,11 @@ void add_texture(Hasher& hash, const Texture& t) {
   for (const double x : t.to_image.reshaped()) hash.add(x);
 }
 
+void add_spectra(Hasher& hash, const TexelSpectra& spectra) {
+  if (spectra.spectra)
+    for (const float tint : spectra.tint) hash.add(static_cast<double>(tint));
+}
+
 /// Nothing is added for a material without any.
 void add_textures(Hasher& hash, const MaterialTextures& textures) {
   if (!textures.any()) return;
@@ -87,6 +92,8 @@ void add_textures(Hasher& hash, const MaterialTextures& textures) {
   hash.add(textures.opacity_is_colour);
   hash.add(textures.opacity_factor);
   hash.add(textures.opacity_cutoff.value_or(-1.0));
+  add_spectra(hash, textures.reflectance_spectra);
+  add_spectra(hash, textures.emission_spectra);
 }
 
 void add_texture_point(Hasher& hash, const TexturePoint& point) {

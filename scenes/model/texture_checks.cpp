@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/model/colour_spectra.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -40,15 +41,18 @@ void check_coordinates(const Scene& scene, const Surface& surface, std::size_t f
   }
 }
 
-/// What the brightest texel reflects, as far as the other shares leave it.
+/// What the brightest texel reflects, as far as the other shares leave it. Spectra of dark colours may be as
+/// bright as white in a band.
 void limit_reflectance(Material& m, std::size_t bands) {
   if (!m.textures.reflectance) return;
+  const bool is_spectral = m.textures.reflectance_spectra.spectra != nullptr;
   const Texel& largest = m.textures.reflectance.image->largest;
   const Spectrum others = m.share_of_light() - m.largest_reflectance();
   Spectrum most = m.textures.reflectance_factor;
   for (Eigen::Index b = 0; b < most.size(); ++b) {
-    const float there = bands == 3 ? largest[static_cast<std::size_t>(b)]
-                                   : *std::max_element(largest.begin(), largest.begin() + 3);
+    const float there = is_spectral  ? 1
+                        : bands == 3 ? largest[static_cast<std::size_t>(b)]
+                                     : *std::max_element(largest.begin(), largest.begin() + 3);
     most[b] = std::min(most[b] * static_cast<double>(there), std::max(0.0, 1 - others[b]));
   }
   m.textures.most_reflectance = most;
@@ -86,19 +90,10 @@ void check_textures(Scene& scene) {
   std::string first;
   for (Surface& surface : scene.surfaces) {
     if (!scene.is_textured(surface)) continue;
-    if (scene.bands.kind() == BandKind::kSpectral && surface.has_vertex_colours) {
-      surface.has_vertex_colours = false;
-      ++scene.not_modelled["vertex_colours"];
-      scene.warnings.push_back(fmt::format(
-          "{}: surface '{}': its vertices have colours, which a room of spectral bands cannot use",
-          file_of(scene, surface), surface.name));
-      if (!scene.is_textured(surface)) continue;
-    }
+    TexelSpectra& of_vertices = scene.materials[surface.material.index()].textures.reflectance_spectra;
+    if (scene.bands.kind() == BandKind::kSpectral && surface.has_vertex_colours && !of_vertices.spectra)
+      of_vertices.spectra = spectra_in_white(scene);
     const MaterialTextures& textures = scene.material_of(surface).textures;
-    if (scene.bands.kind() == BandKind::kSpectral && (textures.reflectance || textures.emission))
-      throw InputError(fmt::format("{}: surface '{}'", file_of(scene, surface), surface.name),
-                       "it has a texture, and the room has spectral bands",
-                       "Give the room the bands \"rgb\" or \"grey\", or the surface another material.");
     const bool has_image = textures.reflectance || textures.emission || textures.opacity;
     if (has_image && !surface.shapes.empty() && first.empty())
       first = fmt::format("{}: surface '{}'", file_of(scene, surface), surface.name);
@@ -121,6 +116,14 @@ void check_textures(Scene& scene) {
     }
   }
   warn_of_unmapped(scene, unmapped, shapes, first);
+}
+
+std::shared_ptr<const ColourSpectra> spectra_in_white(const Scene& scene) {
+  for (const Material& material : scene.materials)
+    for (const TexelSpectra* known :
+         {&material.textures.reflectance_spectra, &material.textures.emission_spectra})
+      if (known->spectra) return known->spectra;
+  return std::make_shared<const ColourSpectra>(Upsampling(scene.bands), scene.bands.count());
 }
 
 }  // namespace reemit

@@ -1,4 +1,6 @@
 #pragma once
+#include <memory>
+
 #include "scenes/model/scene.h"
 
 namespace reemit {
@@ -7,8 +9,13 @@ namespace reemit {
 bool has_coloured_textures(const Scene& scene);
 
 /// Checks what finish_scene says of textures and their coordinates: throws InputError at coordinates that are
-/// not finite or out of range, and at textures in rooms of spectral bands; warns of faces whose material has
-/// textures but that have no coordinates. Sets MaterialTextures::most_reflectance. After check_materials.
+/// not finite or out of range; warns of faces whose material has textures but that have no coordinates. Sets
+/// MaterialTextures::most_reflectance, and in rooms of spectral bands the spectra for colours of vertices.
+/// After check_materials.
 void check_textures(Scene& scene);
+
+/// What the materials of a room with spectral bands of its own share: spectra of colours in equal-energy
+/// white. Made anew if there are none yet.
+std::shared_ptr<const ColourSpectra> spectra_in_white(const Scene& scene);
 
 }  // namespace reemit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace reemit {
@@ -67,11 +68,10 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
 
 bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample,
                          std::vector<float>& panes) const {
-  const bool visible =
-      sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
-  if (visible || !surfaces_->any_transmits()) return visible;
-  SpecularStep step(band_count());
-  panes.assign(band_count(), 1.0F);
+  // Where light may cross panes, whether anything is met would be followed by what it is.
+  if (!surfaces_->any_transmits())
+    return sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
+  std::optional<SpecularStep> step;  // of the first pane on
   Vec3f from = origin;
   for (int crossed = 0; crossed < kMostPanes; ++crossed) {
     const Vec3f way = sample.towards(from);
@@ -83,10 +83,14 @@ bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample,
     if (!(hit.distance < distance)) return true;
     if (!surfaces_->is_specular(hit.triangle, hit.front) || !surfaces_->specular(hit.triangle).is_pane())
       return false;
+    if (!step) {
+      step.emplace(band_count());
+      panes.assign(band_count(), 1.0F);
+    }
     const SurfacePoint x = surface_point(*rays_, hit, direction);
-    surfaces_->specular(hit.triangle).shares(x.normal.dot(x.towards), x.front, step);
+    surfaces_->specular(hit.triangle).shares(x.normal.dot(x.towards), x.front, *step);
     float most = 0;
-    for (std::size_t b = 0; b < band_count(); ++b) most = std::max(most, panes[b] *= step.transmitted[b]);
+    for (std::size_t b = 0; b < band_count(); ++b) most = std::max(most, panes[b] *= step->transmitted[b]);
     if (!(most > 0)) return false;
     from = rays_->ray_origin(hit.triangle, hit.u, hit.v, !hit.front);
   }

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "mesh/pieces/texture_split.h"
+#include "scenes/model/colour_spectra.h"
 #include "solver/texture/texture_lookup.h"
 
 namespace reemit {
@@ -59,7 +60,8 @@ double shift_of(double lowest, TextureWrap wrap) {
 
 }  // namespace
 
-RoomTextures::RoomTextures(const Scene& scene, const ZoneMesh& mesh) : bands_(scene.bands.count()) {
+RoomTextures::RoomTextures(const Scene& scene, const ZoneMesh& mesh)
+    : kind_(scene.bands.kind()), bands_(scene.bands.count()) {
   if (std::none_of(scene.surfaces.begin(), scene.surfaces.end(),
                    [&](const Surface& s) { return scene.is_textured(s); }))
     return;
@@ -74,9 +76,8 @@ RoomTextures::OfMaterial RoomTextures::material_of(const Scene& scene, const Sur
   const Material& material = scene.material_of(surface);
   const MaterialTextures& textures = material.textures;
   const auto values = [&](const Spectrum& s) {
-    Values v{};
-    for (Eigen::Index b = 0; b < s.size() && b < static_cast<Eigen::Index>(kMostBands); ++b)
-      v[static_cast<std::size_t>(b)] = static_cast<float>(s[b]);
+    Values v;
+    for (const double x : s) v.push_back(static_cast<float>(x));
     return v;
   };
   OfMaterial of;
@@ -84,8 +85,10 @@ RoomTextures::OfMaterial RoomTextures::material_of(const Scene& scene, const Sur
   if (textures.reflectance) of.reflectance = &textures.reflectance;
   if (textures.emission) of.emission = &textures.emission;
   if (textures.opacity) of.opacity = &textures.opacity;
-  of.reflectance_factor = values(textures.reflectance ? textures.reflectance_factor : material.reflectance);
-  of.most_reflectance = values(textures.reflectance ? textures.most_reflectance : material.reflectance);
+  const Spectrum& factor =
+      textures.reflectance_factor.size() > 0 ? textures.reflectance_factor : material.reflectance;
+  of.reflectance_factor = values(factor);
+  of.most_reflectance = values(textures.reflectance ? textures.most_reflectance : factor);
   of.emission_factor = values(textures.emission_factor);
   of.has_colours = surface.has_vertex_colours;
   of.varies_reflectance = of.reflectance != nullptr || of.has_colours;
@@ -144,7 +147,8 @@ void RoomTextures::add_triangle(const Scene& scene, const ZoneMesh& mesh, Triang
   if (colours_.empty()) colours_.resize(triangles_.size() - 1);
   Colours& colours = colours_.emplace_back();
   for (std::size_t k = 0; k < 3; ++k) {
-    Texel rgb{1, 1, 1, 1};
+    Rgb& rgb = colours[k];
+    rgb = {1, 1, 1};
     if (part) {
       const Vec3 share = barycentric_of(part->corner, corner[k]);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -154,15 +158,22 @@ void RoomTextures::add_triangle(const Scene& scene, const ZoneMesh& mesh, Triang
         rgb[c] = static_cast<float>(std::clamp(sum, 0.0, 1.0));
       }
     }
-    colours[k] = in_bands(rgb);
   }
 }
 
-RoomTextures::Values RoomTextures::in_bands(const Texel& rgb) const {
-  if (bands_ == kMostBands) return {rgb[0], rgb[1], rgb[2]};
-  // Luminance of Rec.709 primaries; of grey the same.
-  if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return {rgb[0], 0, 0};
-  return {0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2], 0, 0};
+void RoomTextures::in_bands(const Rgb& rgb, const TexelSpectra& spectra, Values& values) const {
+  values.resize(bands_);
+  if (kind_ == BandKind::kRgb) {
+    std::copy(rgb.begin(), rgb.end(), values.begin());
+  } else if (kind_ == BandKind::kGrey) {
+    // Luminance of Rec.709 primaries; of grey the same.
+    const bool is_grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+    values[0] = is_grey ? rgb[0] : 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
+  } else {
+    Rgb tinted;
+    for (std::size_t c = 0; c < 3; ++c) tinted[c] = rgb[c] * spectra.tint[static_cast<Eigen::Index>(c)];
+    spectra.spectra->values(tinted, values);
+  }
 }
 
 Texel RoomTextures::value(const Texture& texture, const Placement& p, float u, float v, float size) {
@@ -175,22 +186,26 @@ Texel RoomTextures::value(const Texture& texture, const Placement& p, float u, f
 void RoomTextures::reflectance(TriangleId t, float u, float v, float size, Values& rho) const {
   const OfTriangle& triangle = of(t);
   const OfMaterial& material = materials_[triangle.surface];
-  rho = material.reflectance_factor;
+  Rgb rgb{1, 1, 1};
   if (material.reflectance != nullptr) {
-    const Values image = in_bands(value(*material.reflectance, triangle.reflectance, u, v, size));
-    for (std::size_t b = 0; b < bands_; ++b) rho[b] *= image[b];
+    const Texel image = value(*material.reflectance, triangle.reflectance, u, v, size);
+    std::copy_n(image.begin(), 3, rgb.begin());
   }
   if (material.has_colours) {
-    const Colours& c = colours_[slot_[t.index()]];
-    for (std::size_t b = 0; b < bands_; ++b) rho[b] *= (1 - u - v) * c[0][b] + u * c[1][b] + v * c[2][b];
+    const Colours& corner = colours_[slot_[t.index()]];
+    for (std::size_t c = 0; c < 3; ++c)
+      rgb[c] *= (1 - u - v) * corner[0][c] + u * corner[1][c] + v * corner[2][c];
   }
-  for (std::size_t b = 0; b < bands_; ++b) rho[b] = std::min(rho[b], material.most_reflectance[b]);
+  in_bands(rgb, material.textures->reflectance_spectra, rho);
+  for (std::size_t b = 0; b < bands_; ++b)
+    rho[b] = std::min(material.reflectance_factor[b] * rho[b], material.most_reflectance[b]);
 }
 
 void RoomTextures::radiance(TriangleId t, float u, float v, float size, Values& radiance) const {
   const OfTriangle& triangle = of(t);
   const OfMaterial& material = materials_[triangle.surface];
-  radiance = in_bands(value(*material.emission, triangle.emission, u, v, size));
+  const Texel image = value(*material.emission, triangle.emission, u, v, size);
+  in_bands({image[0], image[1], image[2]}, material.textures->emission_spectra, radiance);
   for (std::size_t b = 0; b < bands_; ++b) radiance[b] *= material.emission_factor[b];
 }
 

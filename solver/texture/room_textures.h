@@ -10,13 +10,12 @@
 namespace reemit {
 
 /// The textures and vertex colours of a room, point by point of its base triangles: the one place that knows
-/// how an image lies on a triangle. Rooms of textures have one band (grey) or three (RGB). Empty in rooms
+/// how an image lies on a triangle, and what its colours are in the bands of the room. Empty in rooms
 /// without. Const members may be called from any thread.
 class RoomTextures {
  public:
-  static constexpr std::size_t kMostBands = 3;
-  /// Room for one number per band.
-  using Values = std::array<float, kMostBands>;
+  /// Room for one number per band, which takes none until a value is put there.
+  using Values = std::vector<float>;
 
   RoomTextures() = default;
   /// Scene and mesh must outlive it.
@@ -53,22 +52,25 @@ class RoomTextures {
     const Texture* reflectance = nullptr;  // null: none
     const Texture* emission = nullptr;
     const Texture* opacity = nullptr;
-    Values reflectance_factor{}, most_reflectance{}, emission_factor{};
+    Values reflectance_factor, most_reflectance, emission_factor;
     bool varies_reflectance = false, varies_back = false, is_cut_out = false, has_colours = false;
   };
   struct OfTriangle {
     std::uint32_t surface;
     Placement reflectance, emission, opacity;
   };
-  using Colours = std::array<Values, 3>;
+  using Rgb = std::array<float, 3>;
+  using Colours = std::array<Rgb, 3>;
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   OfMaterial material_of(const Scene& scene, const Surface& surface) const;
   void add_triangle(const Scene& scene, const ZoneMesh& mesh, TriangleId t);
-  Values in_bands(const Texel& rgb) const;
+  /// A colour of an image, and of vertices, in the bands of the room.
+  void in_bands(const Rgb& rgb, const TexelSpectra& spectra, Values& values) const;
   const OfTriangle& of(TriangleId t) const { return triangles_[slot_[t.index()]]; }
   static Texel value(const Texture& texture, const Placement& placement, float u, float v, float size);
 
+  BandKind kind_ = BandKind::kGrey;
   std::size_t bands_ = 0;
   std::vector<std::uint32_t> slot_;    // by triangle
   std::vector<OfTriangle> triangles_;  // textured ones

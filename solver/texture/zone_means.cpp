@@ -14,29 +14,34 @@ namespace {
 
 /// Of a zone without a solid point: it catches nothing, but nothing is divided by 0 either.
 constexpr double kLeastSolid = 1e-4;
+constexpr std::size_t kCellsInTurn = std::size_t{1} << 16;
 
-/// Means over a cell; those of reflectance and radiance are of the product with the opacity.
+/// Means over a cell; those of reflectance and radiance are of the product with the opacity. Empty where
+/// nothing varies.
 struct CellMeans {
-  double solid = 1;
-  std::array<double, RoomTextures::kMostBands> reflectance{}, plain{}, radiance{};
+  double solid = 0;
+  std::vector<double> reflectance, plain, radiance;
 };
 
+void add(const RoomTextures::Values& values, double weight, std::vector<double>& sum) {
+  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += weight * static_cast<double>(values[b]);
+}
+
 CellMeans means_of(const RoomTextures& textures, const ZoneMesh& mesh, const SideCell& cell,
-                   std::size_t all_bands) {
-  const std::size_t bands =
-      std::min(all_bands, RoomTextures::kMostBands);  // more only without images in colour
+                   std::size_t bands) {
   const SurfaceId surface = mesh.triangle(cell.triangle).surface;
   const bool varies = textures.varies_reflectance(surface) && (cell.front || textures.varies_back(surface));
   const bool glows = textures.varies_emission(surface);
   const bool is_cut_out = textures.is_cut_out(surface) && !mesh.triangle(cell.triangle).is_curved();
-  CellMeans means;
   const double edge = std::sqrt(2 * mesh.triangle_area(cell.triangle)) / cell.divisions;  // about
   const double texel = textures.texel_size(cell.triangle);
   const int n = static_cast<int>(std::clamp<double>(std::ceil(8 * edge / texel), 4, kMostMeanDivisions));
   // What each point stands for, where there are too few of them.
   const double spot = edge / n > 0.5 * texel ? edge / n : 0;
   CellMeans sum;
-  sum.solid = 0;
+  if (varies) sum.reflectance.assign(bands, 0.0);
+  if (varies) sum.plain.assign(bands, 0.0);
+  if (glows) sum.radiance.assign(bands, 0.0);
   RoomTextures::Values values;
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n * n); ++k) {
     const auto corner = zone_corners(static_cast<std::uint32_t>(n), k);
@@ -48,24 +53,24 @@ CellMeans means_of(const RoomTextures& textures, const ZoneMesh& mesh, const Sid
     sum.solid += solid;
     if (varies) {
       textures.reflectance(cell.triangle, u, v, static_cast<float>(spot), values);
-      for (std::size_t b = 0; b < bands; ++b) {
-        sum.reflectance[b] += solid * static_cast<double>(values[b]);
-        sum.plain[b] += static_cast<double>(values[b]);
-      }
+      add(values, solid, sum.reflectance);
+      add(values, 1, sum.plain);
     }
     if (glows) {
       textures.radiance(cell.triangle, u, v, static_cast<float>(spot), values);
-      for (std::size_t b = 0; b < bands; ++b) sum.radiance[b] += solid * static_cast<double>(values[b]);
+      add(values, solid, sum.radiance);
     }
   }
   const double points = static_cast<double>(n) * n;
-  means.solid = sum.solid / points;
-  for (std::size_t b = 0; b < bands; ++b) {
-    means.reflectance[b] = sum.reflectance[b] / points;
-    means.plain[b] = sum.plain[b] / points;
-    means.radiance[b] = sum.radiance[b] / points;
-  }
-  return means;
+  sum.solid /= points;
+  for (std::vector<double>* values_sum : {&sum.reflectance, &sum.plain, &sum.radiance})
+    for (double& x : *values_sum) x /= points;
+  return sum;
+}
+
+/// Adds a cell of this area to a zone, whose row of the sums begins at `first`.
+void add(const std::vector<double>& means, double area, std::size_t first, std::vector<double>& sums) {
+  for (std::size_t b = 0; b < means.size(); ++b) sums[first + b] += area * means[b];
 }
 
 }  // namespace
@@ -89,26 +94,27 @@ ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh
   std::vector<std::size_t> textured;
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (is_textured(mesh.triangle(cells.cell(i).triangle).surface)) textured.push_back(i);
-  std::vector<CellMeans> means(textured.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, textured.size(), 64), [&](const auto& range) {
-    for (std::size_t k = range.begin(); k != range.end(); ++k)
-      means[k] = means_of(textures, mesh, cells.cell(textured[k]), bands);
-  });
   const std::size_t zones = mesh.zone_count();
   std::vector<double> area(zones, 0.0);
   std::vector<double> solid(zones, 0.0);
   std::vector<double> reflectance(varies ? zones * bands : 0, 0.0);
   std::vector<double> plain(reflectance);
   std::vector<double> radiance(glows ? zones * bands : 0, 0.0);
-  for (std::size_t k = 0; k < textured.size(); ++k) {
-    const std::size_t z = cells.zone(textured[k]).index();
-    const double a = cells.area(textured[k]);
-    area[z] += a;
-    solid[z] += a * means[k].solid;
-    for (std::size_t b = 0; b < bands; ++b) {
-      if (varies) reflectance[z * bands + b] += a * means[k].reflectance[b];
-      if (varies) plain[z * bands + b] += a * means[k].plain[b];
-      if (glows) radiance[z * bands + b] += a * means[k].radiance[b];
+  // By turns, so that the means of all cells of a large room need not be kept.
+  for (std::size_t first = 0; first < textured.size(); first += kCellsInTurn) {
+    std::vector<CellMeans> means(std::min(kCellsInTurn, textured.size() - first));
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, means.size(), 64), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k != range.end(); ++k)
+        means[k] = means_of(textures, mesh, cells.cell(textured[first + k]), bands);
+    });
+    for (std::size_t k = 0; k < means.size(); ++k) {
+      const std::size_t z = cells.zone(textured[first + k]).index();
+      const double a = cells.area(textured[first + k]);
+      area[z] += a;
+      solid[z] += a * means[k].solid;
+      add(means[k].reflectance, a, z * bands, reflectance);
+      add(means[k].plain, a, z * bands, plain);
+      add(means[k].radiance, a, z * bands, radiance);
     }
   }
   if (cut) result.solid.assign(zones, 1.0F);

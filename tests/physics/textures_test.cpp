@@ -80,11 +80,11 @@ class TexturedRooms : public testing::Test {
   /// Watts absorbed by the surfaces whose names start so, over independent runs, of which each must lose
   /// nothing.
   static MeanTest absorbed_by(const Scene& scene, const std::string& name, SolveMethod method,
-                              std::uint64_t first) {
+                              std::uint64_t first, std::size_t of_band) {
     MeanTest watts;
     for (std::uint64_t seed = first; seed < first + 40; ++seed) {
       const Solution s = solve(scene, method, seed);
-      const BandAudit& band = s.audit.bands[0];
+      const BandAudit& band = s.audit.bands[of_band];
       EXPECT_EQ(band.balance(), 0);
       EXPECT_EQ(band.total_escaped(), 0);
       RunQuanta quanta = 0;
@@ -97,11 +97,11 @@ class TexturedRooms : public testing::Test {
 
   /// The surfaces whose names start so absorb the same in both rooms, by either method; a difference of
   /// `noticed` would be seen.
-  static void expect_same_absorption(const Scene& a, const Scene& b, const std::string& name,
-                                     double noticed) {
+  static void expect_same_absorption(const Scene& a, const Scene& b, const std::string& name, double noticed,
+                                     std::size_t band = 0) {
     for (const SolveMethod method : {SolveMethod::kShooting, SolveMethod::kWalk}) {
-      const MeanTest watts = absorbed_by(a, name, method, 1);
-      EXPECT_TRUE(test::agree(watts, absorbed_by(b, name, method, 101))) << name;
+      const MeanTest watts = absorbed_by(a, name, method, 1, band);
+      EXPECT_TRUE(test::agree(watts, absorbed_by(b, name, method, 101, band))) << name;
       EXPECT_TRUE(watts.would_notice(noticed, watts.mean())) << name;
     }
   }
@@ -121,6 +121,70 @@ TEST_F(TexturedRooms, CheckeredFloorIsThatOfChecksAsFaces) {
   const Scene faces = room(R"("white": {"reflectance": 0.9})", kHull + checks_as_faces("white", "black"));
   expect_same_absorption(textured, faces, "check", 0.04);
   expect_same_absorption(textured, faces, "hull", 0.04);
+}
+
+/// Two rooms in spectral bands: checks of two colours as an image and as faces.
+struct ColouredChecks {
+  explicit ColouredChecks(const test::TempFolder& folder) {
+    std::vector<std::array<int, 3>> checks;
+    std::string faces;
+    for (int j = kChecks - 1; j >= 0; --j)  // rows from the top
+      for (int i = 0; i < kChecks; ++i) {
+        checks.push_back(is_white(i, j) ? std::array<int, 3>{255, 0, 0} : std::array<int, 3>{0, 255, 255});
+        faces += std::string(R"(, {"name": "check", "material": ")") + (is_white(i, j) ? "red" : "cyan") +
+                 R"(", "quad": {"corner": [)" + std::to_string(i) + ", " + std::to_string(j) +
+                 R"(, 0], "u": [1, 0, 0], "v": [0, 1, 0]}})";
+      }
+    test::write_pixmap(folder / "coloured.ppm", kChecks, kChecks, checks);
+    textured = room(folder, R"(, {"name": "check", "material": "floor",
+                                  "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})");
+    faceted = room(folder, faces);
+  }
+
+  static Scene room(const test::TempFolder& folder, const std::string& floor) {
+    ReadOptions options;
+    options.bands = {400, 700, 20};
+    return read_scene(folder.write("coloured.json",
+                                   R"({"format": "reemit-room", "version": 1, "bands": "rgb", "materials": {
+        "wall": {"reflectance": 0.5}, "lamp": {"reflectance": 0, "radiance": [10, 10, 10]},
+        "red": {"reflectance": [1, 0, 0]}, "cyan": {"reflectance": [0, 1, 1]},
+        "floor": {"reflectance": 1, "texture": {"file": "coloured.ppm", "filter": "nearest"}}}, "objects": [)" +
+                                       std::string(kHull) + floor + "]}"),
+                      options);
+  }
+
+  Scene textured, faceted;
+};
+
+TEST_F(TexturedRooms, ColoursInSpectralBandsAreThoseOfChecksAsFaces) {
+  const ColouredChecks checks(folder_);
+  ASSERT_EQ(checks.textured.bands.count(), 16U);
+  // Every point by itself, and the light that is exchanged: of a red and of a blue band.
+  const MeshResult meshed = build_mesh(checks.textured, {});
+  const Room walls(checks.textured, meshed.mesh);
+  std::size_t points = 0;
+  for (std::size_t t = 0; t < meshed.mesh.triangle_count(); ++t) {
+    const BaseTriangle& triangle = meshed.mesh.triangle(TriangleId(t));
+    if (checks.textured.surfaces[triangle.surface.index()].name != "check") continue;
+    for (const auto& [u, v] : {std::pair{0.1F, 0.3F}, {0.6F, 0.3F}, {0.15F, 0.72F}, {0.37F, 0.32F}}) {
+      const SurfacePoint x = surface_point(walls.rays(), TriangleId(t), u, v, true);
+      const Vec3 at = meshed.mesh.point(TriangleId(t), u, v);
+      const auto i = static_cast<int>(at.x());
+      const auto j = static_cast<int>(at.y());
+      SurfaceModel::PointValues here;
+      const float* rho = walls.surfaces().reflectance(x, here);
+      for (const Material& m : checks.faceted.materials)
+        if (m.name == (is_white(i, j) ? "red" : "cyan"))
+          for (std::size_t b = 0; b < 16; ++b)
+            EXPECT_NEAR(rho[b], m.reflectance[static_cast<Eigen::Index>(b)], 1e-6) << m.name << b;
+      ++points;
+    }
+  }
+  EXPECT_GE(points, 8U);
+  for (const std::size_t band : {2U, 11U}) {
+    expect_same_absorption(checks.textured, checks.faceted, "check", 0.05, band);
+    expect_same_absorption(checks.textured, checks.faceted, "hull", 0.05, band);
+  }
 }
 
 TEST_F(TexturedRooms, ZonesHoldTheMeanOfTheImage) {

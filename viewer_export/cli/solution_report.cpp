@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kHeadWidth = 10;  // of the first column
+constexpr int kSolutionHeadWidth = 10;  // of the first column
 
 /// By band, in the order of "bands".
 Json unshot_shares(const EnergyAudit& audit) {
@@ -181,7 +181,7 @@ std::string solution_text(const Solution& solution, const std::filesystem::path&
     text += fmt::format("gathered  {} zones too small for packets\n", record.gathered_zones);
   text += fmt::format("mesh      {} base triangles, {} zones, {} of them never reached by light\n",
                       solution.mesh.triangle_count(), solution.mesh.zone_count(), record.unreached_zones);
-  text += shared_zones_text(solution.mesh, kHeadWidth, sealed_light_share(solution));
+  text += shared_zones_text(solution.mesh, kSolutionHeadWidth, sealed_light_share(solution));
   if (solution.sums.batches > 0) text += "views     " + view_text(solution);
   if (lacks_unshot_power(solution))
     text += fmt::format("unshot    {} of the emitted power; radiosities are too low by about that\n",

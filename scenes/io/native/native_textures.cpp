@@ -2,6 +2,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
+
+#include "scenes/model/colour_spectra.h"
+#include "scenes/model/texture_checks.h"
 
 namespace reemit {
 
@@ -24,8 +28,6 @@ Eigen::Vector2d pair_of(const JsonCursor& at, double most) {
 
 Texture NativeTextures::read_texture(const JsonCursor& at, TextureEncoding encoding) {
   at.expect_object({"file", "encoding", "wrap", "filter", "scale", "offset", "rotation_deg"});
-  if (scene_.bands.kind() == BandKind::kSpectral)
-    at.fail("a texture in a room of spectral bands", "Give the room the bands \"rgb\" or \"grey\".");
   if (const auto given = at.find("encoding"))
     encoding =
         given->choice({"srgb", "linear"}) == "srgb" ? TextureEncoding::kSrgb : TextureEncoding::kLinear;
@@ -60,8 +62,20 @@ Texture NativeTextures::read_texture(const JsonCursor& at, TextureEncoding encod
   return texture;
 }
 
+TexelSpectra NativeTextures::spectra() {
+  if (scene_.bands.kind() != BandKind::kSpectral) return {};
+  if (!spectra_) spectra_ = spectra_in_white(scene_);
+  return {spectra_};
+}
+
 Spectrum NativeTextures::mean_of(const Texture& texture) const {
   const Texel& mean = texture.image->mean;
+  if (spectra_) {
+    std::vector<float> values(scene_.bands.count());
+    spectra_->values({mean[0], mean[1], mean[2]}, values);
+    return Eigen::Map<const Eigen::ArrayXf>(values.data(), static_cast<Eigen::Index>(values.size()))
+        .cast<double>();
+  }
   const Eigen::Array3d rgb(mean[0], mean[1], mean[2]);
   if (scene_.bands.kind() == BandKind::kRgb) return rgb;
   const Eigen::Array3d luminance(0.2126, 0.7152, 0.0722);
@@ -75,6 +89,7 @@ void NativeTextures::read(const JsonCursor& at, Material& material) {
     if (!at.find("reflectance"))
       material.reflectance = Spectrum::Ones(static_cast<Eigen::Index>(scene_.bands.count()));
     textures.reflectance_factor = material.reflectance;
+    textures.reflectance_spectra = spectra();
     material.reflectance *= mean_of(textures.reflectance);
   }
   if (const auto emission = at.find("emission_texture")) {
@@ -85,6 +100,7 @@ void NativeTextures::read(const JsonCursor& at, Material& material) {
           "Give \"radiance\", \"exitance\", \"luminance_cd_m2\" or \"exitance_lm_m2\".");
     textures.emission = read_texture(*emission, TextureEncoding::kSrgb);
     textures.emission_factor = material.emitted_radiance;
+    textures.emission_spectra = spectra();
     material.emitted_radiance *= mean_of(textures.emission);
   }
   if (const auto opacity = at.find("opacity")) textures.opacity_factor = opacity->number_in(0, 1);

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 
 #include "scenes/io/common/json_cursor.h"
 #include "scenes/io/common/texture_images.h"
@@ -21,10 +22,13 @@ class NativeTextures {
  private:
   Texture read_texture(const JsonCursor& at, TextureEncoding encoding);
   Spectrum mean_of(const Texture& texture) const;
+  /// Those of texels; none unless the room has spectral bands.
+  TexelSpectra spectra();
 
   std::filesystem::path folder_;
   Scene& scene_;
   TextureImages images_;
+  std::shared_ptr<const ColourSpectra> spectra_;  // once they are needed
 };
 
 }  // namespace reemit

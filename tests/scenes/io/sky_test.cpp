@@ -30,7 +30,7 @@ Scene read_under(const std::string& sky) {
   return read_scene(folder.write("room.json", room_under(sky)));
 }
 
-void expect_refused(const std::string& sky, std::initializer_list<const char*> parts) {
+void expect_sky_refused(const std::string& sky, std::initializer_list<const char*> parts) {
   expect_input_error([&] { read_under(sky); }, parts);
 }
 
@@ -155,28 +155,29 @@ TEST(Sky, absurd_images_are_refused) {
 }
 
 TEST(Sky, mistakes_are_named_with_their_place) {
-  expect_refused(R"({"type": "cloudy", "illuminance_lx": 1})", {"room.json#/sky/type", "cloudy", "overcast"});
-  expect_refused(R"({"type": "overcast"})", {"room.json#/sky", "no strength", "illuminance_lx"});
-  expect_refused(R"({"type": "overcast", "illuminance_lx": 0})", {"sends no light"});
-  expect_refused(R"({"type": "overcast", "illuminance_lx": -5})", {"/sky/illuminance_lx", "-5"});
-  expect_refused(R"({"type": "none"})", {"neither sky nor sun"});
-  expect_refused(R"({"type": "clear", "illuminance_lx": 1e4})", {"it is not said where that stands"});
-  expect_refused(R"({"type": "cie", "cie_type": 16, "illuminance_lx": 1e4})", {"/sky/cie_type", "16"});
-  expect_refused(R"({"type": "clear", "illuminance_lx": 1e4, "sun": {"altitude_deg": -3}})",
-                 {"/sky/sun/altitude_deg", "3 degrees below the horizon"});
-  expect_refused(
+  expect_sky_refused(R"({"type": "cloudy", "illuminance_lx": 1})",
+                     {"room.json#/sky/type", "cloudy", "overcast"});
+  expect_sky_refused(R"({"type": "overcast"})", {"room.json#/sky", "no strength", "illuminance_lx"});
+  expect_sky_refused(R"({"type": "overcast", "illuminance_lx": 0})", {"sends no light"});
+  expect_sky_refused(R"({"type": "overcast", "illuminance_lx": -5})", {"/sky/illuminance_lx", "-5"});
+  expect_sky_refused(R"({"type": "none"})", {"neither sky nor sun"});
+  expect_sky_refused(R"({"type": "clear", "illuminance_lx": 1e4})", {"it is not said where that stands"});
+  expect_sky_refused(R"({"type": "cie", "cie_type": 16, "illuminance_lx": 1e4})", {"/sky/cie_type", "16"});
+  expect_sky_refused(R"({"type": "clear", "illuminance_lx": 1e4, "sun": {"altitude_deg": -3}})",
+                     {"/sky/sun/altitude_deg", "3 degrees below the horizon"});
+  expect_sky_refused(
       R"({"type": "clear", "illuminance_lx": 1e4, "sun": {"latitude_deg": 48, "longitude_deg": 16, "time":
                     "2024-06-21T01:00Z"}})",
       {"/sky/sun/time", "below the horizon then"});
   for (const char* time :
        {"2024-06-21", "2024-06-21T12:00", "2024-13-21T12:00Z", "yesterday", "2024-06-21T12:00Zebra", ""})
-    expect_refused(R"({"type": "none", "sun": {"latitude_deg": 48, "longitude_deg": 16, "time": ")" +
-                       std::string(time) + R"("}})",
-                   {"/sky/sun/time", "is not a time"});
-  expect_refused(R"({"type": "overcast", "illuminance_lx": 1e4, "up": "z", "north": [0, 0, 1]})",
-                 {"/sky/north", "along up"});
-  expect_refused(R"({"type": "overcast", "illuminance_lx": 1e4, "ground_reflectance": 1.5})",
-                 {"/sky/ground_reflectance", "1.5"});
+    expect_sky_refused(R"({"type": "none", "sun": {"latitude_deg": 48, "longitude_deg": 16, "time": ")" +
+                           std::string(time) + R"("}})",
+                       {"/sky/sun/time", "is not a time"});
+  expect_sky_refused(R"({"type": "overcast", "illuminance_lx": 1e4, "up": "z", "north": [0, 0, 1]})",
+                     {"/sky/north", "along up"});
+  expect_sky_refused(R"({"type": "overcast", "illuminance_lx": 1e4, "ground_reflectance": 1.5})",
+                     {"/sky/ground_reflectance", "1.5"});
 }
 
 TEST(Sky, mistakes_in_options_name_the_option) {

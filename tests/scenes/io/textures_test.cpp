@@ -10,6 +10,7 @@
 #include "scenes/io/gltf/gltf_reader.h"
 #include "scenes/io/obj/obj_reader.h"
 #include "scenes/io/scene_reader.h"
+#include "scenes/model/colour_spectra.h"
 #include "tests/scenes/io/gltf_building.h"
 #include "tests/support/pixmap.h"
 
@@ -189,28 +190,90 @@ TEST_F(Textures, GreyImagesLeaveOneBandAndColouredOnesDoNot) {
   EXPECT_EQ(grey.bands.count(), 1U);
 }
 
-TEST_F(Textures, ImagesInSpectralBandsCountByTheirMeans) {
+/// The spectrum of a texel, or of the colour of a vertex.
+Spectrum spectrum_of(const Spectrum& factor, const TexelSpectra& spectra, const Eigen::Array3d& texel) {
+  std::vector<float> values(spectra.spectra->band_count());
+  const Eigen::Array3f rgb = texel.cast<float>() * spectra.tint;
+  spectra.spectra->values({rgb[0], rgb[1], rgb[2]}, values);
+  return factor * Eigen::Map<const Eigen::ArrayXf>(values.data(), factor.size()).cast<double>();
+}
+
+TEST_F(Textures, TexelsKeepTheirColoursInSpectralBands) {
   test::write_pixmap(folder_ / "t.ppm", 2, 1, {{255, 40, 0}, {30, 60, 255}});
   const std::string material =
-      R"("reflectance": 0.8, "texture": {"file": "t.ppm", "encoding": "linear"},
-         "radiance": 3, "emission_texture": {"file": "t.ppm", "encoding": "linear"}, "opacity": 0.5)";
+      R"("reflectance": [0.8, 0.7, 0.4], "texture": {"file": "t.ppm", "encoding": "linear"},
+         "radiance": [3, 2, 1], "emission_texture": {"file": "t.ppm", "encoding": "linear"}, "opacity": 0.5)";
   const Material rgb = native(material).materials.at(0);
   ReadOptions options;
   options.bands = {400, 700, 10};
   const Scene scene = read_scene(folder_ / "room.json", options);
   const Material& spectral = scene.materials.at(0);
-  EXPECT_FALSE(spectral.textures.reflectance);
-  EXPECT_FALSE(spectral.textures.emission);
-  EXPECT_TRUE(spectral.textures.is_cut_out()) << "opacity has no colour";
-  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("1 material"), HasSubstr("means only"))));
-  EXPECT_EQ(scene.not_modelled.at("textures_in_spectral_bands"), 1U);
+  EXPECT_THAT(scene.warnings, testing::Not(Contains(HasSubstr("images"))));
   ASSERT_EQ(scene.bands.count(), 31U);
-  // The means of the image, 285/510, 100/510 and 255/510, as colours of spectra, in the light of the room.
-  const Eigen::Array3d mean(285 / 510.0, 100 / 510.0, 255 / 510.0);
-  EXPECT_TRUE(Eigen::Array3d(rgb.emitted_radiance).isApprox(3 * mean, 1e-6));
-  EXPECT_TRUE(scene.bands.to_rgb(spectral.emitted_radiance).isApprox(3 * mean, 1e-6));
-  EXPECT_TRUE(scene.bands.to_rgb(spectral.emitted_radiance * spectral.reflectance)
-                  .isApprox(3 * 0.8 * mean * mean, 1e-6));
+  const Eigen::Array3d light = rgb.emitted_radiance;
+  EXPECT_TRUE(scene.bands.to_rgb(spectral.emitted_radiance).isApprox(light, 1e-6));
+  const MaterialTextures& textures = spectral.textures;
+  for (const Eigen::Array3d& texel :
+       {Eigen::Array3d(1, 40 / 255.0, 0), Eigen::Array3d(30 / 255.0, 60 / 255.0, 1),
+        Eigen::Array3d(0.3, 0.3, 0.3)}) {
+    const Spectrum radiance = spectrum_of(textures.emission_factor, textures.emission_spectra, texel);
+    EXPECT_LT((scene.bands.to_rgb(radiance) - texel * Eigen::Array3d(3, 2, 1)).abs().maxCoeff(), 1e-6);
+    EXPECT_GE(radiance.minCoeff(), 0);
+    // In the light that the room has, which is not white.
+    const Spectrum rho = spectrum_of(textures.reflectance_factor, textures.reflectance_spectra, texel);
+    const Eigen::Array3d seen = scene.bands.to_rgb(spectral.emitted_radiance * rho) / light;
+    EXPECT_LT((seen - texel * Eigen::Array3d(0.8, 0.7, 0.4)).abs().maxCoeff(), 1e-6);
+    EXPECT_GE(rho.minCoeff(), 0);
+    EXPECT_LE((rho - textures.most_reflectance).maxCoeff(), 1e-7);
+  }
+}
+
+TEST_F(Textures, TexelsAndAMirrorStayWithinTheLightInSpectralBands) {
+  test::write_pixmap(folder_ / "t.ppm", 3, 1, {{255, 255, 255}, {255, 0, 0}, {20, 255, 30}});
+  native(R"("reflectance": 0.7, "texture": {"file": "t.ppm"}, "mirror": [0.1, 0.2, 0.3])");
+  ReadOptions options;
+  options.bands = {400, 700, 10};
+  const Material m = read_scene(folder_ / "room.json", options).materials.at(0);
+  EXPECT_LE(m.share_of_light().maxCoeff(), 1);
+  for (const Eigen::Array3d& texel : {Eigen::Array3d(1, 1, 1), Eigen::Array3d(1, 0, 0)}) {
+    const Spectrum rho = spectrum_of(m.textures.reflectance_factor, m.textures.reflectance_spectra, texel);
+    EXPECT_LE((rho - m.textures.most_reflectance).maxCoeff(), 1e-7);
+  }
+}
+
+TEST_F(Textures, ImagesOfGreyRoomsCountByTheirLuminanceInSpectralBands) {
+  test::write_pixmap(folder_ / "t.ppm", 1, 1, {{255, 0, 0}});
+  const std::string material =
+      R"("reflectance": 0.5, "radiance": 2, "emission_texture": {"file": "t.ppm"}, "texture": {"file": "t.ppm"})";
+  const Scene grey = native(material, "", "grey");
+  ReadOptions options;
+  options.bands = {400, 700, 10};
+  const Scene scene = read_scene(folder_ / "room.json", options);
+  const MaterialTextures& textures = scene.materials.at(0).textures;
+  const Eigen::Array3d red(1, 0, 0);
+  EXPECT_TRUE(spectrum_of(textures.reflectance_factor, textures.reflectance_spectra, red)
+                  .isApprox(Spectrum::Constant(31, 0.5 * 0.2126), 1e-5));
+  const Spectrum radiance = spectrum_of(textures.emission_factor, textures.emission_spectra, red);
+  EXPECT_NEAR((radiance * scene.bands.efficacy_lm_per_w()).sum(), 179 * 2 * 0.2126, 1e-3);
+}
+
+TEST_F(Textures, ImagesMultiplySpectraInRoomsWithBandsOfTheirOwn) {
+  test::write_pixmap(folder_ / "t.ppm", 2, 1, {{255, 255, 255}, {255, 0, 0}});
+  std::string bands = R"("bands": {"wavelengths_nm": [400)";
+  for (int nm = 420; nm <= 700; nm += 20) bands += ", " + std::to_string(nm);
+  const Scene scene = read_scene(folder_.write(
+      "room.json", R"({"format": "reemit-room", "version": 1, )" + bands + R"(]}, "materials": {"a": {
+      "reflectance": {"nm": [400, 700], "value": [0.2, 0.8]}, "texture": {"file": "t.ppm"}}},
+      "objects": [{"material": "a", "quad": {"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0]}}]})"));
+  const MaterialTextures& textures = scene.materials.at(0).textures;
+  ASSERT_TRUE(textures.reflectance_spectra.spectra);
+  const auto at = [&](const Eigen::Array3d& texel) {
+    return spectrum_of(textures.reflectance_factor, textures.reflectance_spectra, texel);
+  };
+  EXPECT_NEAR(at({1, 1, 1})[0], 0.205, 1e-6) << "the mean over the band";
+  EXPECT_NEAR(at({1, 1, 1})[15], 0.795, 1e-6);
+  EXPECT_NEAR(at({1, 0, 0})[3] / at({1, 1, 1})[3], 0, 0.05) << "red paint in blue light";
+  EXPECT_GT(at({1, 0, 0})[15] / at({1, 1, 1})[15], 0.9);
 }
 
 TEST_F(Textures, TheHashIsThatOfImageAndCoordinates) {
