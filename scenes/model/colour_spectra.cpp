@@ -7,6 +7,7 @@
 namespace reemit {
 
 ColourSpectra::ColourSpectra(const Upsampling& upsampling, std::size_t bands) : bands_(bands) {
+  if (bands == 1) return;  // the luminance, as Upsampling::emission has it
   for (std::size_t r = 0; r <= kSteps; ++r)
     for (std::size_t g = 0; g <= kSteps; ++g)
       for (std::size_t b = 0; b <= kSteps; ++b) {

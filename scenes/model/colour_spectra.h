@@ -8,14 +8,15 @@
 
 namespace reemit {
 
-/// Spectra for the colours of images, one for every texel that is looked at: between those that Upsampling
+/// Spectra for the colours of images, one for every texel that is looked at: mixed from those that Upsampling
 /// finds for a lattice of colours. Within a cell of the lattice, spectra are mixed in the proportions in
 /// which the colours at the corners of one of its six tetrahedra along the grey diagonal make the colour
 /// [KNPH95]. So colours are as exact as Upsampling's, spectra stay in [0,1] and greys constant. Does not
 /// change once it is made.
 class ColourSpectra {
  public:
-  /// Colours are those of reflectances in the light of `upsampling`, of a room with `bands` bands.
+  /// Colours are those of reflectances in the light of `upsampling`, of a room with `bands` bands. A room of
+  /// one band gets their luminance.
   ColourSpectra(const Upsampling& upsampling, std::size_t bands);
   /// For images that count by their Rec.709 luminance, as in grey rooms: the same in every band.
   static ColourSpectra by_luminance(std::size_t bands) { return ColourSpectra(bands); }

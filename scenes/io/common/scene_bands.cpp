@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/common/sky_image.h"
 #include "scenes/io/common/surface_geometry.h"
 #include "scenes/model/colour_spectra.h"
 #include "scenes/model/error.h"
@@ -67,7 +68,7 @@ class ToSpectrum {
   ToSpectrum(const BandSet& bands, BandKind from, const Rgb& light,
              std::shared_ptr<const ColourSpectra> known = nullptr)
       : bands_(bands),
-        by_luminance_(from == BandKind::kGrey || bands.count() == 1),
+        by_luminance_(from == BandKind::kGrey),
         is_white_((light == light[0]).all()),
         upsampling_(bands, light),
         in_white_(std::move(known)) {}
@@ -104,6 +105,9 @@ class ToSpectrum {
     textures.emission_factor = upsampling_.emission(twice).values;
     textures.emission_spectra = {in_white(), (strongest / twice).cast<float>()};
     note_deviation(textures.emission, textures.emission_spectra);
+  }
+  std::shared_ptr<const SkyImage> sky_image(const SkyImage& image) {
+    return spectral_sky_image(image, *in_white(), upsampling_.emission(Rgb::Ones()).values);
   }
   double largest_deviation() const { return largest_deviation_; }
 
@@ -205,6 +209,7 @@ void convert(Material& material, bool has_colours, To& to) {
 void convert_sky(Sky& sky, ToSpectrum& to) {
   for (Spectrum* value : {&sky.irradiance, sky.sun ? &sky.sun->irradiance : nullptr})
     if (value != nullptr && value->size() > 0) *value = to.emission(rgb_of(*value));
+  if (sky.image) sky.image = to.sky_image(*sky.image);
   if (sky.ground_reflectance.size() > 0)
     sky.ground_reflectance = to.reflectance(rgb_of(sky.ground_reflectance), 1);
 }
@@ -257,9 +262,6 @@ void give_bands(Scene& scene, const SpectralBands& wanted) {
                      fmt::format("the room has {} spectral bands of its own, not those of --bands {}",
                                  scene.bands.count(), wanted.text()),
                      "Leave --bands away: it is for rooms whose materials are colours.");
-  if (scene.sky && scene.sky->kind == SkyKind::kImage)
-    throw InputError(scene.source, "the sky is an image, whose colours have no spectra",
-                     "Leave --bands away, or give another sky.");
   // In light that lacks a primary, colours say nothing of the reflectance there.
   constexpr double kLeastPrimary = 0.05;
   Rgb light = light_of(scene);

@@ -12,8 +12,8 @@ double convert_material(Material& material, const BandSet& from, const Scene& sc
 
 /// Brings a grey or RGB room to spectral bands: reflectances keep their colours in the mean light of the
 /// room's luminaires where that is not too far from white, else in equal-energy white; a note says which.
-/// Texels and colours of vertices become ColourSpectra. A room that has these bands is left as it is. Throws
-/// InputError for a room with other spectral bands, or with an image as its sky. Pre: check_materials and
+/// Texels, colours of vertices and pixels of the sky become ColourSpectra. A room that has these bands is
+/// left as it is. Throws InputError for a room with other spectral bands. Pre: check_materials and
 /// check_lights hold.
 void give_bands(Scene& scene, const SpectralBands& bands);
 

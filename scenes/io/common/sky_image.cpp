@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "scenes/model/colour.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
+#include "scenes/model/upsampling.h"
 
 namespace reemit {
 namespace {
@@ -23,6 +25,8 @@ constexpr int kLeastRows = 8;
 constexpr int kMostRowsRead = 1 << 14;
 constexpr int kMostChannels = 1024;
 constexpr int kMostRowsKept = 1 << 11;
+/// Of a spectral image.
+constexpr double kMostValues = 1 << 26;
 
 /// Rows of linear RGB.
 struct Pixels {
@@ -104,22 +108,51 @@ std::size_t turned(std::size_t column, double rotation_deg, std::size_t columns)
   return static_cast<std::size_t>(from - n * std::floor(from / n)) % columns;
 }
 
+Pixels shrunk_to(Pixels pixels, int most_rows) {
+  int factor = 1;
+  while (pixels.rows / factor > most_rows) ++factor;
+  return factor > 1 ? shrunk(pixels, factor) : pixels;
+}
+
 }  // namespace
+
+std::shared_ptr<const SkyImage> spectral_sky_image(const SkyImage& image, const ColourSpectra& spectra,
+                                                   const Spectrum& white) {
+  const std::size_t from_bands = image.radiance.size() / (image.rows * image.columns);
+  Pixels rgb{static_cast<int>(image.rows), static_cast<int>(image.columns), image.radiance};
+  if (from_bands == 1) {
+    rgb.rgb.resize(3 * image.radiance.size());
+    for (std::size_t i = 0; i < rgb.rgb.size(); ++i) rgb.rgb[i] = image.radiance[i / 3];
+  }
+  const std::size_t bands = spectra.band_count();
+  const double most_rows = std::sqrt(kMostValues / (2 * static_cast<double>(bands)));
+  rgb = shrunk_to(std::move(rgb), std::max(kLeastRows, static_cast<int>(most_rows)));
+  auto result = std::make_shared<SkyImage>();
+  result->rows = static_cast<std::size_t>(rgb.rows);
+  result->columns = static_cast<std::size_t>(rgb.columns);
+  result->radiance.resize(result->rows * result->columns * bands);
+  for (std::size_t i = 0; i < result->rows * result->columns; ++i) {
+    const float* from = &rgb.rgb[3 * i];
+    // At most half of saturated.
+    const float top = 2 * std::max({from[0], from[1], from[2]});
+    if (!(top > 0)) continue;
+    const std::span<float> to(&result->radiance[i * bands], bands);
+    spectra.values({from[0] / top, from[1] / top, from[2] / top}, to);
+    for (std::size_t b = 0; b < bands; ++b)
+      to[b] *= top * static_cast<float>(white[static_cast<Eigen::Index>(b)]);
+  }
+  return result;
+}
 
 std::shared_ptr<const SkyImage> read_sky_image(const std::filesystem::path& file, double scale,
                                                double rotation_deg, const BandSet& bands) {
-  Pixels pixels = load_pixels(file);
-  int factor = 1;
-  while (pixels.rows / factor > kMostRowsKept) ++factor;
-  if (factor > 1) pixels = shrunk(pixels, factor);
+  const Pixels pixels = shrunk_to(load_pixels(file), kMostRowsKept);
   auto image = std::make_shared<SkyImage>();
   image->rows = static_cast<std::size_t>(pixels.rows);
   image->columns = static_cast<std::size_t>(pixels.columns);
-  const std::size_t count = bands.count();
+  const std::size_t count = bands.kind() == BandKind::kGrey ? 1 : 3;
   const Eigen::Array3d weights = rec709_luminance_weights();
   image->radiance.resize(image->rows * image->columns * count);
-  // Equal radiance in all bands of a spectral room that has the luminance of the colour.
-  const double spectral = bands.efficacy_lm_per_w().sum() > 0 ? 179 / bands.efficacy_lm_per_w().sum() : 0;
   double greatest = 0;
   for (std::size_t row = 0; row < image->rows; ++row)
     for (std::size_t column = 0; column < image->columns; ++column) {
@@ -131,9 +164,7 @@ std::shared_ptr<const SkyImage> read_sky_image(const std::filesystem::path& file
                                  static_cast<double>(from[2]));
       const double grey = (weights * rgb).sum();
       for (std::size_t b = 0; b < count; ++b) {
-        const double value = bands.kind() == BandKind::kRgb    ? rgb[static_cast<Eigen::Index>(b)]
-                             : bands.kind() == BandKind::kGrey ? grey
-                                                               : spectral * grey;
+        const double value = count == 1 ? grey : rgb[static_cast<Eigen::Index>(b)];
         greatest = std::max(greatest, value);
         to[b] = static_cast<float>(value);
       }
@@ -143,7 +174,10 @@ std::shared_ptr<const SkyImage> read_sky_image(const std::filesystem::path& file
   const std::string problem =
       strength_problem(Spectrum::Constant(1, greatest), "the radiance of a pixel [W/(m2 sr)]");
   if (!problem.empty()) throw InputError(file.string(), problem, kStrengthAdvice);
-  return image;
+  if (bands.kind() != BandKind::kSpectral) return image;
+  const Upsampling upsampling(bands);
+  return spectral_sky_image(*image, ColourSpectra(upsampling, bands.count()),
+                            upsampling.emission(Eigen::Array3d::Ones()).values);
 }
 
 }  // namespace reemit

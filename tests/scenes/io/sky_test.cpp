@@ -11,6 +11,7 @@
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/error.h"
 #include "tests/scenes/io/expect_input_error.h"
+#include "tests/scenes/io/native_reading.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/temp_folder.h"
 
@@ -130,6 +131,48 @@ TEST(Sky, images_keep_their_light) {
   const Scene scene = read_scene(folder / "room.json");
   EXPECT_NEAR(horizontal_sky_irradiance(*scene.sky, scene.bands)[0], 6 * pi, 1e-5);
   EXPECT_EQ(scene.sky->ground_reflectance.size(), 0) << "its lower half is the ground";
+}
+
+/// An orange zenith, a blue horizon, and dark ground.
+std::vector<float> evening(int rows) {
+  std::vector<float> rgb;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < 2 * rows; ++column) {
+      const float down = (static_cast<float>(row) + 0.5F) / static_cast<float>(rows);
+      const float side = static_cast<float>(column % 7) / 7;
+      for (const float value : {9 - 8 * down + side, 3.0F, 0.5F + 6 * down}) rgb.push_back(value);
+    }
+  return rgb;
+}
+
+TEST(Sky, images_keep_their_colours_in_spectral_bands) {
+  const TempFolder folder;
+  write_image(folder, evening(8));
+  folder.write("room.json", room_under(R"({"type": "image", "file": "sky.exr", "up": "z"})"));
+  const auto sky_colour = [](const Scene& scene) {
+    return scene.bands.to_rgb(horizontal_sky_irradiance(*scene.sky, scene.bands));
+  };
+  const Scene rgb = read_scene(folder / "room.json");
+  ReadOptions options;
+  options.bands = {400, 700, 10};
+  const Scene spectral = read_scene(folder / "room.json", options);
+  ASSERT_EQ(spectral.bands.count(), 31U);
+  EXPECT_TRUE(sky_colour(spectral).isApprox(sky_colour(rgb), 1e-5));
+  // So many bands that the image is made smaller: 204 rows at most.
+  write_image(folder, evening(256), 512, 256);
+  const Scene large = read_scene(folder / "room.json");
+  options.bands = {380, 780, 0.5};
+  const Scene many = read_scene(folder / "room.json", options);
+  EXPECT_EQ(many.sky->image->rows, 128U);
+  EXPECT_TRUE(sky_colour(many).isApprox(sky_colour(large), 1e-3));
+  // In a room with bands of its own.
+  const std::string own = test::room(
+      R"("bands": {"wavelengths_nm": [400, 440, 480, 520, 560, 600, 640, 680, 700]}, "materials": {"a": {"reflectance": 0.5}},
+         "objects": [{"material": "a", "quad": {"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0]}}],
+         "sky": {"type": "image", "file": "sky.exr", "up": "z"})");
+  const Scene native = read_scene(folder.write("own.json", own));
+  EXPECT_NEAR(lux(native, horizontal_sky_irradiance(*native.sky, native.bands)),
+              lux(large, horizontal_sky_irradiance(*large.sky, large.bands)), 1e-4 * 179 * 20);
 }
 
 TEST(Sky, absurd_images_are_refused) {

@@ -49,7 +49,7 @@ TEST_P(ColourSpectraOf, HaveTheColoursOfTheirLight) {
     squares += (s - upsampling.reflectance(rgb).values).square().mean() / kColours;
   }
   // Near those that each colour would have by itself.
-  EXPECT_LT(std::sqrt(squares), 0.05);
+  EXPECT_LT(std::sqrt(squares), 0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(Lights, ColourSpectraOf, testing::Values(Rgb(1, 1, 1), Rgb(1, 0.641, 0.18)));
