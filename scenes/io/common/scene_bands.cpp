@@ -248,8 +248,8 @@ double convert_material(Material& material, const BandSet& from, const Scene& sc
     convert(material, false, grey);
     return 0;
   }
-  ToSpectrum spectrum(to, from.kind(), Rgb::Ones(),
-                      material.textures.any() ? spectra_in_white(scene) : nullptr);
+  const bool has_colours = material.textures.reflectance || material.textures.emission;
+  ToSpectrum spectrum(to, from.kind(), Rgb::Ones(), has_colours ? spectra_in_white(scene) : nullptr);
   convert(material, false, spectrum);
   return spectrum.largest_deviation();
 }
