@@ -1,7 +1,5 @@
 #pragma once
-#include <cstdint>
-
-#include "mesh/zones/zone_lookup.h"
+#include "mesh/zones/cell_corners.h"
 #include "scenes/model/ids.h"
 
 namespace reemit {
@@ -13,13 +11,11 @@ struct SidePoint {
   bool front = true;
 };
 
-/// One of the divisions^2 congruent parts of a side of a base triangle (zone_lookup.h); divisions are those
-/// of the triangle, or a power of 2 times as many (CellSplits).
+/// A cell of a side of a base triangle; without corners, the whole side.
 struct SideCell {
   TriangleId triangle;
   bool front = true;
-  std::uint32_t divisions = 1;
-  std::uint32_t number = 0;
+  CellCorners corners;
 };
 
 /// The point of a cell that is a and b of its edges away from its first corner: uniform over the cell for

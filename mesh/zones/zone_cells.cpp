@@ -2,6 +2,15 @@
 
 namespace reemit {
 
+std::array<Vec3, 3> corner_points(const ZoneMesh& mesh, const SideCell& cell) {
+  std::array<Vec3, 3> points;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [u, v] = cell.corners.corner(k);
+    points[k] = mesh.point(cell.triangle, u, v);
+  }
+  return points;
+}
+
 ZoneCells::ZoneCells(const ZoneMesh& mesh) : mesh_(&mesh) {
   first_.reserve(mesh.side_count() + 1);
   std::size_t next_zone = 0;
@@ -28,7 +37,7 @@ SideCell ZoneCells::cell(std::size_t i) const {
   const ZoneId first = mesh_->first_zone(t, is_front(s));
   const std::size_t number = i - first_[s.index()];
   if (!mesh_->is_group(first)) return mesh_->zone_cell(ZoneId(first.index() + number));
-  return {t, is_front(s), mesh_->triangle(t).divisions, static_cast<std::uint32_t>(number)};
+  return {t, is_front(s), grid_cell(mesh_->triangle(t).divisions, static_cast<std::uint32_t>(number))};
 }
 
 ZoneId ZoneCells::zone(std::size_t i) const {
@@ -39,8 +48,7 @@ ZoneId ZoneCells::zone(std::size_t i) const {
 
 double ZoneCells::area(std::size_t i) const {
   const SideCell c = cell(i);
-  const double n = c.divisions;
-  return mesh_->triangle_area(c.triangle) / (n * n);
+  return mesh_->triangle_area(c.triangle) * c.corners.share();
 }
 
 }  // namespace reemit

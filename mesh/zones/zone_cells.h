@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -6,6 +7,9 @@
 #include "mesh/zones/zone_mesh.h"
 
 namespace reemit {
+
+/// Corners of a cell [m], on the shape where it is curved.
+std::array<Vec3, 3> corner_points(const ZoneMesh& mesh, const SideCell& cell);
 
 /// All cells, as far as they are cut, of all sides that have zones, by side. Those of sides that are in no
 /// group are the first zones of the mesh, in their order.

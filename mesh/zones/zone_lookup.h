@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -42,20 +41,7 @@ struct Barycentric {
   double u, v;
 };
 
-/// Parts of a cell that is cut between the middles of its edges.
-inline constexpr std::uint32_t kCellParts = 4;
-
-/// Place, in the grid twice as fine, of one of them: at corner 0, 1 or 2 of the cell as it lies in its own
-/// orientation, an upper one being a lower one turned half round; or 3, in the middle.
-inline ZoneCell cell_part(const ZoneCell& cell, std::uint32_t part) {
-  const std::int64_t to_u = part == 1 ? 1 : 0;
-  const std::int64_t to_v = part == 2 ? 1 : 0;
-  const bool is_turned = cell.upper != (part == 3);
-  if (cell.upper) return {2 * cell.i + 1 - to_u, 2 * cell.j + 1 - to_v, is_turned};
-  return {2 * cell.i + to_u, 2 * cell.j + to_v, is_turned};
-}
-
-/// A point in the coordinates of a cell in its own orientation: a, b >= 0, a + b <= 1.
+/// A point of a cell by its corners (CellCorners): (1-a-b) of the first, a of the second, b of the third.
 struct InCell {
   float a, b;
 };
@@ -67,19 +53,16 @@ inline InCell in_cell(std::uint32_t divisions, const ZoneCell& cell, float u, fl
   return cell.upper ? InCell{1 - a, 1 - b} : InCell{a, b};
 }
 
-/// The part of a cell that holds a point of it, which is put into the coordinates of that part. Which part it
-/// is nothing could predict, so there are no branches.
-inline std::uint32_t part_of(InCell& x) {
-  const float a = 2 * x.a;
-  const float b = 2 * x.b;
-  const auto first = static_cast<std::uint32_t>(a >= 1);
-  const auto second = static_cast<std::uint32_t>(b >= 1) & (first ^ 1U);
-  const auto middle = static_cast<std::uint32_t>(a + b > 1) & ((first | second) ^ 1U);
-  const auto turn = static_cast<float>(1 - 2 * static_cast<std::int32_t>(middle));
-  const auto to_a = static_cast<float>(static_cast<std::int32_t>(middle) - static_cast<std::int32_t>(first));
-  const auto to_b = static_cast<float>(static_cast<std::int32_t>(middle) - static_cast<std::int32_t>(second));
-  x = {to_a + turn * a, to_b + turn * b};
-  return first + 2 * second + 3 * middle;
+/// Which half of a cell cut from `corner` (halves_of) holds a point of it, 0 or 1; the point is put into the
+/// coordinates of that half. Which one it is nothing could predict, so there are no branches.
+inline std::uint32_t half_of(InCell& x, std::uint32_t corner) {
+  const float first = 1 - x.a - x.b;
+  const float next = corner == 0 ? x.a : corner == 1 ? x.b : first;  // weight of the corner after it
+  const float last = corner == 0 ? x.b : corner == 1 ? first : x.a;
+  const float more = next - last;
+  const bool is_second = more < 0;
+  x = {is_second ? 2 * next : more, is_second ? -more : 2 * last};
+  return is_second ? 1 : 0;
 }
 
 /// Inverse of the numbering of zone_in_triangle.
@@ -91,17 +74,6 @@ inline ZoneCell zone_cell(std::uint32_t divisions, std::uint32_t zone) {
   while (2 * n * i - i * i > z) --i;
   const std::int64_t in_row = z - (2 * n * i - i * i);
   return {i, in_row / 2, in_row % 2 != 0};
-}
-
-/// Corners of zone `zone` of a base triangle, counter-clockwise as the triangle itself.
-inline std::array<Barycentric, 3> zone_corners(std::uint32_t divisions, std::uint32_t zone) {
-  const auto [i, j, upper] = zone_cell(divisions, zone);
-  const double h = 1.0 / static_cast<double>(divisions);
-  const auto at = [h](std::int64_t a, std::int64_t b) {
-    return Barycentric{h * static_cast<double>(a), h * static_cast<double>(b)};
-  };
-  if (upper) return {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
-  return {at(i, j), at(i + 1, j), at(i, j + 1)};
 }
 
 }  // namespace reemit

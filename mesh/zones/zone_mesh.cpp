@@ -45,6 +45,8 @@ ZoneMesh::ZoneMesh(BaseMesh base, ZoneGroups groups, CellSplits splits)
       if (n != BaseTriangle::kFlat && n >= base_.normals.size())
         throw std::invalid_argument("base triangle with a normal out of range");
     if (t.divisions == 0) throw std::invalid_argument("base triangle without zones");
+    if (t.divisions > std::numeric_limits<std::uint16_t>::max())
+      throw std::invalid_argument("base triangle of too many zones");
     if (t.is_curved()) {
       const CurvedPatches& shape = curved_[t.shape];
       triangle_area_.push_back(shape.patch_area());
@@ -69,7 +71,7 @@ void ZoneMesh::add_cells() {
   };
   sides_.reserve(side_count());
   std::size_t next_split = 0;
-  std::size_t next_bit = 0;
+  std::size_t next_cut = 0;
   for (std::size_t s = 0; s < side_count(); ++s) {
     const BaseTriangle& t = triangle(triangle_of(SideId(s)));
     if (!is_front(SideId(s)) && !t.two_sided) {
@@ -83,52 +85,54 @@ void ZoneMesh::add_cells() {
         throw std::invalid_argument("more than 2^32-2 zones");
       sides_.push_back({ZoneId(zone_side_.size()), t.divisions});
       if (next_split < splits_.sides.size() && splits_.sides[next_split] == SideId(s)) {
-        add_split_cells(SideId(s), next_bit);
+        add_split_cells(SideId(s), next_cut);
         ++next_split;
       } else {
         zone_side_.insert(zone_side_.end(), cells, SideId(s));
-        for (std::uint32_t c = 0; c < cells; ++c) zone_cell_.push_back({t.divisions, c});
+        for (std::uint32_t c = 0; c < cells; ++c) zone_corners_.push_back(grid_cell(t.divisions, c));
       }
     }
   }
-  if (nodes_.empty()) nodes_.push_back({0, 0});
-  if (next_split != splits_.sides.size() || next_bit != splits_.is_split.size())
+  if (nodes_.empty()) nodes_.push_back({0, CellSplits::kNotCut});
+  if (next_split != splits_.sides.size() || next_cut != splits_.cuts.size())
     throw std::invalid_argument("splits of sides without cells, or more of them than cells");
 }
 
-void ZoneMesh::add_split_cells(SideId side, std::size_t& next_bit) {
+void ZoneMesh::add_split_cells(SideId side, std::size_t& next_cut) {
   const std::uint32_t n = sides_[side.index()].divisions;
   const std::size_t first = nodes_.size();
   sides_[side.index()].nodes = static_cast<std::uint32_t>(first);
   nodes_.resize(first + std::size_t{n} * n);
-  for (std::uint32_t c = 0; c < n * n; ++c) add_node(side, first + c, n, reemit::zone_cell(n, c), next_bit);
+  for (std::uint32_t c = 0; c < n * n; ++c) add_node(side, first + c, grid_cell(n, c), next_cut);
 }
 
-void ZoneMesh::add_node(SideId side, std::size_t node, std::uint32_t divisions, const ZoneCell& cell,
-                        std::size_t& next_bit) {
-  if (next_bit >= splits_.is_split.size()) throw std::invalid_argument("splits that end too early");
-  if (splits_.is_split[next_bit++] == 0) {
+void ZoneMesh::add_node(SideId side, std::size_t node, const CellCorners& cell, std::size_t& next_cut) {
+  if (next_cut >= splits_.cuts.size()) throw std::invalid_argument("splits that end too early");
+  const std::uint32_t cut = splits_.cuts[next_cut++];
+  if (cut == CellSplits::kNotCut) {
     const std::size_t first = sides_[side.index()].first_zone.index();
-    nodes_[node] = {static_cast<std::uint32_t>(zone_side_.size() - first), 0};
+    nodes_[node] = {static_cast<std::uint32_t>(zone_side_.size() - first), cut};
     zone_side_.push_back(side);
-    zone_cell_.push_back({divisions, cell_number(divisions, cell)});
+    zone_corners_.push_back(cell);
     return;
   }
-  if (divisions > kMostDivisions / 2) throw std::invalid_argument("cells that are cut too finely");
+  if (cut > 3) throw std::invalid_argument("cells that are cut from a fourth corner");
+  if (!can_halve(cell, cut - 1)) throw std::invalid_argument("cells that are cut too finely");
   const std::size_t parts = nodes_.size();
-  nodes_[node] = {static_cast<std::uint32_t>(parts), 1};
-  nodes_.resize(parts + kCellParts);
-  for (std::uint32_t k = 0; k < kCellParts; ++k)
-    add_node(side, parts + k, 2 * divisions, cell_part(cell, k), next_bit);
+  nodes_[node] = {static_cast<std::uint32_t>(parts), cut};
+  nodes_.resize(parts + 2);
+  const CellHalves halves = halves_of(cell, cut - 1);
+  add_node(side, parts, halves.first, next_cut);
+  add_node(side, parts + 1, halves.second, next_cut);
 }
 
 ZoneId ZoneMesh::zone_in_parts(const Side& side, float u, float v) const {
   const ZoneCell cell = place_in_triangle(side.divisions, u, v);
   const Node* node = &nodes_[side.nodes + cell_number(side.divisions, cell)];
-  if (node->is_split != 0) {
+  if (node->cut != CellSplits::kNotCut) {
     InCell x = in_cell(side.divisions, cell, u, v);
-    do node = &nodes_[node->at + part_of(x)];
-    while (node->is_split != 0);
+    do node = &nodes_[node->at + half_of(x, node->cut - 1)];
+    while (node->cut != CellSplits::kNotCut);
   }
   return ZoneId(side.first_zone.index() + node->at);
 }
@@ -182,13 +186,12 @@ SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
   const double share = (at - before) / (members_area_[place] - before);
   constexpr float kBelowOne = 1 - 0x1p-24F;
   u = std::min(static_cast<float>(share), kBelowOne);
-  return {triangle_of(members_[place]), is_front(members_[place]), 1, 0};
+  return {triangle_of(members_[place]), is_front(members_[place]), {}};
 }
 
 double ZoneMesh::zone_area(ZoneId z) const {
   if (is_group(z)) return solid_share(z) * members_area_[first_member(z) + member_count(z) - 1];
-  const double n = zone_cell_[z.index()].divisions;
-  return solid_share(z) * triangle_area(zone_triangle(z)) / (n * n);
+  return solid_share(z) * triangle_area(zone_triangle(z)) * zone_corners_[z.index()].share();
 }
 
 void ZoneMesh::set_solid_shares(std::vector<float> shares) {
@@ -214,8 +217,7 @@ Vec3 ZoneMesh::zone_normal(ZoneId z) const {
 }
 
 std::array<Barycentric, 3> ZoneMesh::zone_barycentrics(ZoneId z) const {
-  const GridCell& cell = zone_cell_[z.index()];
-  return zone_corners(cell.divisions, cell.number);
+  return zone_corners_[z.index()].corners();
 }
 
 Vec3 ZoneMesh::point(TriangleId t, double u, double v) const {

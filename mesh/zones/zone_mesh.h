@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/zones/base_mesh.h"
+#include "mesh/zones/cell_corners.h"
 #include "mesh/zones/cell_splits.h"
 #include "mesh/zones/curved_patch.h"
 #include "mesh/zones/side.h"
@@ -32,10 +33,9 @@ class ZoneMesh {
   /// Throws std::invalid_argument when an index is out of range, patches are not in order, divisions is 0,
   /// backs are of another number of triangles, or of one that is curved or one-sided,
   /// the zones exceed 2^32-2, a group is empty, mixes surfaces or fronts with backs, or has a side that has
-  /// no zones, or splits do not end, are of another number of cells or cut finer than kMostDivisions.
+  /// no zones, divisions exceed 65535, or splits do not end, are of another number of cells or cut finer than
+  /// kMostDivisions.
   explicit ZoneMesh(BaseMesh base, ZoneGroups groups = {}, CellSplits splits = {});
-
-  static constexpr std::uint32_t kMostDivisions = 32768;  ///< Of cells that are cut further.
 
   const BaseMesh& base() const { return base_; }
   BaseMesh release_base() && { return std::move(base_); }
@@ -104,8 +104,7 @@ class ZoneMesh {
   /// The cell that a zone is. Pre: not a group.
   SideCell zone_cell(ZoneId z) const {
     const SideId side = zone_side_[z.index()];
-    const GridCell& cell = zone_cell_[z.index()];
-    return {triangle_of(side), is_front(side), cell.divisions, cell.number};
+    return {triangle_of(side), is_front(side), zone_corners_[z.index()]};
   }
   /// A cell of the zone, chosen in proportion to areas by a uniform number, which is uniform again
   /// afterwards: the zone itself, or a member of the group.
@@ -153,13 +152,10 @@ class ZoneMesh {
     std::uint32_t divisions;
     std::uint32_t nodes = kWhole;  // those of its cells start here; kWhole: none is cut further
   };
-  struct GridCell {
-    std::uint32_t divisions, number;  // as in SideCell
-  };
   /// A cell, or a part of one.
   struct Node {
-    std::uint32_t at;        // zone within its side, or the first of its parts
-    std::uint32_t is_split;  // 0 or 1
+    std::uint32_t at;   // zone within its side, or the first of its halves
+    std::uint32_t cut;  // as in CellSplits
   };
 
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
@@ -171,9 +167,8 @@ class ZoneMesh {
   void add_shapes();
   void check_backs() const;
   void add_cells();
-  void add_split_cells(SideId side, std::size_t& next_bit);
-  void add_node(SideId side, std::size_t node, std::uint32_t divisions, const ZoneCell& cell,
-                std::size_t& next_bit);
+  void add_split_cells(SideId side, std::size_t& next_cut);
+  void add_node(SideId side, std::size_t node, const CellCorners& cell, std::size_t& next_cut);
   void add_groups();
 
   BaseMesh base_;
@@ -182,9 +177,9 @@ class ZoneMesh {
   std::vector<TriangleId> first_patch_;
   std::vector<double> triangle_area_;
   std::vector<Vec3> triangle_normal_;
-  std::vector<Side> sides_;          // of one in a group: the group, 1
-  std::vector<SideId> zone_side_;    // of each zone; of a group, its first member
-  std::vector<GridCell> zone_cell_;  // of each zone that is no group
+  std::vector<Side> sides_;                // of one in a group: the group, 1
+  std::vector<SideId> zone_side_;          // of each zone; of a group, its first member
+  std::vector<CellCorners> zone_corners_;  // of each zone that is no group
   CellSplits splits_;
   std::vector<Node> nodes_;  // one at least, for lanes that need none
   ZoneGroups groups_;

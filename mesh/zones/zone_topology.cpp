@@ -24,6 +24,15 @@ struct EdgeVertices {
   std::uint32_t first = 0;  // their handles are consecutive
 };
 
+/// The corners of a cell on a grid that is finer than its own, or that.
+std::array<GridPoint, 3> corners_of(const SideCell& cell, std::uint32_t divisions) {
+  std::array<GridPoint, 3> corners = cell.corners.at;
+  const std::uint32_t step = divisions / cell.corners.divisions;
+  for (GridPoint& g : corners)
+    g = {static_cast<std::uint16_t>(step * g.i), static_cast<std::uint16_t>(step * g.j)};
+  return corners;
+}
+
 class TopologyBuilder {
  public:
   TopologyBuilder(const ZoneMesh& mesh, double crease_angle_deg)
@@ -44,19 +53,13 @@ class TopologyBuilder {
   }
 
  private:
-  // A point of the finest grid of a side: u = i/n, v = j/n.
-  struct GridPoint {
-    std::uint32_t i, j;
-    auto operator<=>(const GridPoint&) const = default;
-  };
   // A side with cells of several sizes.
   struct SplitSide {
     std::uint32_t divisions = 1;    // of the finest grid
-    std::vector<GridPoint> points;  // corners of its cells, ascending
+    std::vector<GridPoint> points;  // of it: corners of its cells, ascending
   };
 
   SplitSide points_of(SideId side) const;
-  std::array<GridPoint, 3> corners_of(const SideCell& cell, std::uint32_t divisions) const;
   const SplitSide* split_side(SideId side) const {
     const auto found = split_.find(side);
     return found == split_.end() ? nullptr : &found->second;
@@ -75,7 +78,8 @@ class TopologyBuilder {
   void add_interior_vertices();
   void add_interior_vertex(const GridPoint& g);
   void add_cell(const SideCell& cell);
-  void append_side(const GridPoint& from, const GridPoint& to, int edge);
+  int edge_of(const GridPoint& a, const GridPoint& b) const;
+  void append_side(const GridPoint& from, const GridPoint& to);
   void append_between(const GridPoint& from, const GridPoint& to);
   bool can_add() const;
   std::uint32_t vertex_at(const GridPoint& g) const;
@@ -123,22 +127,12 @@ void TopologyBuilder::reserve() {
   out_.reserve(vertices, cells_.size() + vertices, cells_.size());
 }
 
-std::array<TopologyBuilder::GridPoint, 3> TopologyBuilder::corners_of(const SideCell& cell,
-                                                                      std::uint32_t divisions) const {
-  const ZoneCell place = zone_cell(cell.divisions, cell.number);
-  const std::uint32_t step = divisions / cell.divisions;
-  const auto i = static_cast<std::uint32_t>(place.i) * step;
-  const auto j = static_cast<std::uint32_t>(place.j) * step;
-  if (place.upper) return {{{i + step, j}, {i + step, j + step}, {i, j + step}}};
-  return {{{i, j}, {i + step, j}, {i, j + step}}};
-}
-
 TopologyBuilder::SplitSide TopologyBuilder::points_of(SideId side) const {
   SplitSide split;
   const std::size_t first = cells_.first(side);
   const std::size_t last = cells_.first(SideId(side.index() + 1));
   for (std::size_t c = first; c < last; ++c)
-    split.divisions = std::max(split.divisions, cells_.cell(c).divisions);
+    split.divisions = std::max(split.divisions, cells_.cell(c).corners.divisions);
   for (std::size_t c = first; c < last; ++c)
     for (const GridPoint& corner : corners_of(cells_.cell(c), split.divisions))
       split.points.push_back(corner);
@@ -265,7 +259,8 @@ void TopologyBuilder::add_interior_vertices() {
     return;
   }
   for (std::uint32_t i = 1; i + 1 < n_; ++i)
-    for (std::uint32_t j = 1; i + j < n_; ++j) add_interior_vertex({i, j});
+    for (std::uint32_t j = 1; i + j < n_; ++j)
+      add_interior_vertex({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)});
 }
 
 void TopologyBuilder::add_interior_vertex(const GridPoint& g) {
@@ -281,17 +276,25 @@ void TopologyBuilder::add_interior_vertex(const GridPoint& g) {
 // Appends the corners of smaller cells between two points inside the patch.
 void TopologyBuilder::append_between(const GridPoint& from, const GridPoint& to) {
   if ((from.i + to.i) % 2 != 0 || (from.j + to.j) % 2 != 0) return;
-  const GridPoint middle{(from.i + to.i) / 2, (from.j + to.j) / 2};
+  const GridPoint middle{static_cast<std::uint16_t>((from.i + to.i) / 2),
+                         static_cast<std::uint16_t>((from.j + to.j) / 2)};
   if (!std::binary_search(interior_.begin(), interior_.end(), middle)) return;
   append_between(from, middle);
   polygon_.emplace_back(static_cast<int>(vertex_at(middle)));
   append_between(middle, to);
 }
 
-// Appends the corner `from` and what lies between it and `to`; `edge` is the edge of the patch they lie on,
-// or -1.
-void TopologyBuilder::append_side(const GridPoint& from, const GridPoint& to, int edge) {
+// The edge of the patch that both points lie on, or -1.
+int TopologyBuilder::edge_of(const GridPoint& a, const GridPoint& b) const {
+  if (a.j == 0 && b.j == 0) return 0;
+  if (a.i == 0 && b.i == 0) return 2;
+  return std::uint32_t{a.i} + a.j == n_ && std::uint32_t{b.i} + b.j == n_ ? 1 : -1;
+}
+
+// Appends the corner `from` and what lies between it and `to`.
+void TopologyBuilder::append_side(const GridPoint& from, const GridPoint& to) {
   polygon_.emplace_back(static_cast<int>(vertex_at(from)));
+  const int edge = edge_of(from, to);
   if (edge < 0) {
     if (split_now_ != nullptr) append_between(from, to);
     return;
@@ -323,10 +326,9 @@ bool TopologyBuilder::can_add() const {
 void TopologyBuilder::add_cell(const SideCell& cell) {
   polygon_.clear();
   const auto [a, b, c] = corners_of(cell, n_);
-  const bool lower = a.i < b.i;
-  append_side(a, b, lower && a.j == 0 ? 0 : -1);
-  append_side(b, c, lower && b.i + b.j == n_ ? 1 : -1);
-  append_side(c, a, lower && a.i == 0 ? 2 : -1);
+  append_side(a, b);
+  append_side(b, c);
+  append_side(c, a);
   if (!front_) std::reverse(polygon_.begin(), polygon_.end());
   OpenMesh::FaceHandle face;
   if (can_add()) face = out_.add_face(polygon_);

@@ -30,10 +30,10 @@ void ZoneMesh::zones_at16(const TrianglePoints16& __restrict points, std::uint32
   for (int lane = 0; lane < 16; ++lane) is_back[lane] = front[lane] ^ 1U;
   alignas(64) std::uint32_t first[16];
   alignas(64) std::uint32_t at[16];
-  alignas(64) std::uint32_t is_split[16];
+  alignas(64) std::uint32_t cut[16];
   alignas(64) float a[16];
   alignas(64) float b[16];
-  std::uint32_t any_split = 0;
+  std::uint32_t any_cut = 0;
   for (int lane = 0; lane < 16; ++lane) {
     const std::uint32_t t = points.triangle[lane];
     const std::uint32_t is_none = mask_of(t == kNone);
@@ -59,28 +59,28 @@ void ZoneMesh::zones_at16(const TrianglePoints16& __restrict points, std::uint32
     const std::uint32_t is_whole = mask_of(start == kWhole);
     const std::uint32_t node = (start + number) & ~is_whole;
     const std::uint32_t node_at = nodes[node].at;
-    const std::uint32_t node_splits = nodes[node].is_split;
+    const std::uint32_t node_cut = nodes[node].cut;
     first[lane] = first_zone | is_none;
     at[lane] = (number & is_whole) | (node_at & ~is_whole);
-    is_split[lane] = node_splits & ~is_whole;
+    cut[lane] = node_cut & ~is_whole;
     a[lane] = upper ? 1 - in_u : in_u;
     b[lane] = upper ? 1 - in_v : in_v;
-    any_split |= is_split[lane];
+    any_cut |= cut[lane];
   }
-  while (any_split != 0) {
-    any_split = 0;
+  while (any_cut != 0) {
+    any_cut = 0;
     for (int lane = 0; lane < 16; ++lane) {
       InCell x{a[lane], b[lane]};
-      const std::uint32_t part = part_of(x);
-      const std::uint32_t goes_on = mask_of(is_split[lane] != 0);
-      const std::uint32_t node = (at[lane] + part) & goes_on;
+      const std::uint32_t half = half_of(x, cut[lane] - 1);
+      const std::uint32_t goes_on = mask_of(cut[lane] != CellSplits::kNotCut);
+      const std::uint32_t node = (at[lane] + half) & goes_on;
       const std::uint32_t node_at = nodes[node].at;
-      const std::uint32_t node_splits = nodes[node].is_split;
+      const std::uint32_t node_cut = nodes[node].cut;
       at[lane] = (node_at & goes_on) | (at[lane] & ~goes_on);
-      is_split[lane] = node_splits & goes_on;
+      cut[lane] = node_cut & goes_on;
       a[lane] = x.a;
       b[lane] = x.b;
-      any_split |= is_split[lane];
+      any_cut |= cut[lane];
     }
   }
   for (int lane = 0; lane < 16; ++lane) zone[lane] = first[lane] == kNone ? kNone : first[lane] + at[lane];

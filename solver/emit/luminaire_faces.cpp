@@ -111,11 +111,7 @@ std::vector<LuminaireCell> luminaire_cells(const Room& room) {
     const Spectrum exitance = surfaces.exitance(cells.zone(i), surface);
     if (!(exitance > 0).any()) continue;
     LuminaireCell& luminaire = result.emplace_back();
-    constexpr std::array<std::array<float, 2>, 3> kCorners{{{0, 0}, {1, 0}, {0, 1}}};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const SidePoint at = cell_point(cell, kCorners[k][0], kCorners[k][1]);
-      luminaire.corners[k] = mesh.point(cell.triangle, at.at.u, at.at.v);
-    }
+    luminaire.corners = corner_points(mesh, cell);
     luminaire.triangle = cell.triangle;
     luminaire.front = cell.front;
     luminaire.radiance = (surfaces.emission_exponent(surface) + 2) / (2 * std::numbers::pi) * exitance;

@@ -41,9 +41,10 @@ float RadianceField::mean_reflected(ZoneId zone, std::size_t band) const {
 
 float RadianceField::zone_size(ZoneId z) const {
   const ZoneMesh& mesh = room_->mesh();
-  const double metres = mesh.is_group(z) ? std::sqrt(2 * mesh.zone_area(z))
-                                         : std::sqrt(2 * mesh.triangle_area(mesh.zone_triangle(z))) /
-                                               mesh.zone_cell(z).divisions;
+  const double area = mesh.is_group(z)
+                          ? mesh.zone_area(z)
+                          : mesh.triangle_area(mesh.zone_triangle(z)) * mesh.zone_cell(z).corners.share();
+  const double metres = std::sqrt(2 * area);
   return static_cast<float>(metres / room_->rays().metres_per_unit());
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "mesh/zones/zone_mesh.h"
@@ -67,17 +68,20 @@ class PacketRoom {
     const TrianglePatch& p = patches_[t.index()];
     const SideCell zone = mesh_->zone_cell(z);
     put_flat_side(static_cast<std::uint32_t>(t.index()), zone.front, lanes, first, last);
-    const ZoneCell cell = zone_cell(zone.divisions, zone.number);
-    const float size = static_cast<float>(p.divisions) / static_cast<float>(zone.divisions);
-    // An upper zone is a lower one turned about the middle of their cell.
-    const float turn = cell.upper ? -size : size;
-    const auto i = size * static_cast<float>(cell.i + (cell.upper ? 1 : 0));
-    const auto j = size * static_cast<float>(cell.j + (cell.upper ? 1 : 0));
+    const auto& [from, a, b] = zone.corners.at;
+    // Of the grid of its corners, in edges of the cells that the triangle is divided into.
+    const float size = static_cast<float>(p.divisions) / static_cast<float>(zone.corners.divisions);
+    const auto along = [&](const GridPoint& to, const GridPoint& of) {
+      return std::pair(size * static_cast<float>(to.i - of.i), size * static_cast<float>(to.j - of.j));
+    };
+    const auto [i, j] = along(from, {0, 0});
+    const auto [i1, j1] = along(a, from);
+    const auto [i2, j2] = along(b, from);
     for (int k = 0; k < 3; ++k) {
       std::fill(lanes.corner[k] + first, lanes.corner[k] + last,
                 p.corner[k] + i * p.edge1[k] + j * p.edge2[k]);
-      std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, turn * p.edge1[k]);
-      std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, turn * p.edge2[k]);
+      std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, i1 * p.edge1[k] + j1 * p.edge2[k]);
+      std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, i2 * p.edge1[k] + j2 * p.edge2[k]);
     }
   }
 

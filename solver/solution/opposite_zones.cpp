@@ -53,7 +53,7 @@ std::vector<ZoneShare> opposite_zones(const ZoneMesh& mesh, ZoneId zone) {
   }
   for (std::uint32_t m = 0; m < mesh.member_count(zone); ++m) {
     const TriangleId t = mesh.member_triangle(zone, m);
-    behind.add({t, mesh.zone_is_front(zone), 1, 0}, mesh.triangle_area(t));
+    behind.add({t, mesh.zone_is_front(zone), {}}, mesh.triangle_area(t));
   }
   return behind.shares();
 }

@@ -9,7 +9,7 @@ namespace reemit {
 
 /// What the root attributes `format` and `format_version` of a solution file say.
 inline constexpr const char* kSolutionFormat = "reemit solution";
-inline constexpr std::uint32_t kSolutionFormatVersion = 11;
+inline constexpr std::uint32_t kSolutionFormatVersion = 12;
 
 /// Writes a solution as HDF5, all of it that load_solution needs to go on solving, and zone values for other
 /// programs; docs/solution_file.md specifies every dataset. The file appears whole or not at all: until then

@@ -200,7 +200,7 @@ CellSplits read_splits(const Hdf5Group& mesh) {
   CellSplits splits;
   for (const std::uint32_t s : mesh.read<std::uint32_t>("split_sides", {rows_of(mesh, "split_sides")}))
     splits.sides.emplace_back(s);
-  splits.is_split = mesh.read<std::uint8_t>("split_cells", {rows_of(mesh, "split_cells")});
+  splits.cuts = mesh.read<std::uint8_t>("cell_cuts", {rows_of(mesh, "cell_cuts")});
   for (std::size_t i = 1; i < splits.sides.size(); ++i)
     require_intact(splits.sides[i - 1] < splits.sides[i], "sides with split cells out of order");
   return splits;
@@ -248,8 +248,8 @@ ZoneMesh read_mesh(const Hdf5Group& root, Solution& solution, std::uint64_t zone
     return (groups.of_side.empty() || groups.of_side[side.index()] == ZoneGroups::kOwn) &&
            !std::binary_search(splits.sides.begin(), splits.sides.end(), side);
   };
-  std::uint64_t zones = groups.count + static_cast<std::uint64_t>(
-                                           std::count(splits.is_split.begin(), splits.is_split.end(), 0));
+  std::uint64_t zones = groups.count + static_cast<std::uint64_t>(std::count(
+                                           splits.cuts.begin(), splits.cuts.end(), CellSplits::kNotCut));
   for (std::size_t t = 0; t < count; ++t) {
     require_intact(surface[t] < solution.surface_names.size(), "triangle with a surface out of range");
     require_intact(divisions[t] > 0 && divisions[t] < 65536, "triangle with an impossible number of zones");

@@ -230,8 +230,9 @@ void write_mesh(const Hdf5Group& root, const Solution& solution) {
   const CellSplits& splits = solution.mesh.splits();
   put(mesh, "split_sides", column<std::uint32_t>(splits.sides, std::mem_fn(&SideId::index)), 1, "",
       "sides, numbered as the rows of side_group, whose cells are cut further");
-  put(mesh, "split_cells", splits.is_split, 1, "",
-      "for each cell of these sides in order: 0, or 1 and then the same of its four parts");
+  put(mesh, "cell_cuts", splits.cuts, 1, "",
+      "for each cell of these sides in order: 0 = not cut, or 1, 2, 3 = the corner it is cut from, and then "
+      "the same of its two halves");
   put(mesh, "triangle_two_sided", column<std::uint8_t>(triangles, std::mem_fn(&BaseTriangle::two_sided)), 1,
       "", "1 if the back has zones, numbered after those of the front");
   put(mesh, "shapes", flattened<double>(base.shapes, [](const CurvedShape& s) { return row_of(s); }),
@@ -260,8 +261,7 @@ void write_zone_geometry(const Hdf5Group& zones, const ZoneMesh& mesh) {
   std::vector<std::uint32_t> triangle;
   std::vector<std::uint32_t> surface;
   std::vector<std::uint8_t> front;
-  std::vector<std::uint32_t> divisions;
-  std::vector<std::uint32_t> cell;
+  std::vector<float> corners;
   std::vector<float> area;
   std::vector<float> normal;
   std::vector<float> centroid;
@@ -270,9 +270,9 @@ void write_zone_geometry(const Hdf5Group& zones, const ZoneMesh& mesh) {
     triangle.push_back(static_cast<std::uint32_t>(mesh.zone_triangle(z).index()));
     surface.push_back(static_cast<std::uint32_t>(mesh.zone_surface(z).index()));
     front.push_back(mesh.zone_is_front(z) ? 1 : 0);
-    const SideCell of_zone = mesh.is_group(z) ? SideCell{{}, true, 0, 0} : mesh.zone_cell(z);
-    divisions.push_back(of_zone.divisions);
-    cell.push_back(of_zone.number);
+    const auto of_zone = mesh.is_group(z) ? std::array<Barycentric, 3>{} : mesh.zone_barycentrics(z);
+    for (const auto& [u, v] : of_zone)
+      corners.insert(corners.end(), {static_cast<float>(u), static_cast<float>(v)});
     area.push_back(static_cast<float>(mesh.zone_area(z)));
     for (const double x : mesh.zone_normal(z)) normal.push_back(static_cast<float>(x));
     for (const double x : mesh.zone_centroid(z)) centroid.push_back(static_cast<float>(x));
@@ -280,8 +280,8 @@ void write_zone_geometry(const Hdf5Group& zones, const ZoneMesh& mesh) {
   put(zones, "triangle", triangle, 1, "", "row of /mesh/triangles");
   put(zones, "surface", surface, 1, "", "row of /surfaces");
   put(zones, "front", front, 1, "", "1 on the front of the triangle, 0 on its back");
-  put(zones, "divisions", divisions, 1, "", "n: the zone is one of n*n cells of the triangle; 0: a group");
-  put(zones, "cell", cell, 1, "", "its number among them");
+  put(zones, "corners", corners, 6, "1",
+      "barycentric u, v of its three corners in the triangle; 0 of a group");
   put(zones, "area", area, 1, "m2", "area of one zone");
   put(zones, "normal", normal, 3, "1", "unit normal, away from the side of the zone");
   put(zones, "centroid", centroid, 3, "m", "centre of the zone");

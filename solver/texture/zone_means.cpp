@@ -27,13 +27,21 @@ void add(const RoomTextures::Values& values, double weight, std::vector<double>&
   for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += weight * static_cast<double>(values[b]);
 }
 
+/// [m]; of a curved patch, of the triangle between its corners.
+double longest_edge(const ZoneMesh& mesh, const SideCell& cell) {
+  const std::array<Vec3, 3> corners = corner_points(mesh, cell);
+  double edge = 0;
+  for (std::size_t k = 0; k < 3; ++k) edge = std::max(edge, (corners[(k + 1) % 3] - corners[k]).norm());
+  return edge;
+}
+
 CellMeans means_of(const RoomTextures& textures, const ZoneMesh& mesh, const SideCell& cell,
                    std::size_t bands) {
   const SurfaceId surface = mesh.triangle(cell.triangle).surface;
   const bool varies = textures.varies_reflectance(surface) && (cell.front || textures.varies_back(surface));
   const bool glows = textures.varies_emission(surface);
   const bool is_cut_out = textures.is_cut_out(surface) && !mesh.triangle(cell.triangle).is_curved();
-  const double edge = std::sqrt(2 * mesh.triangle_area(cell.triangle)) / cell.divisions;  // about
+  const double edge = longest_edge(mesh, cell);
   const double texel = textures.texel_size(cell.triangle);
   const int n = static_cast<int>(std::clamp<double>(std::ceil(8 * edge / texel), 4, kMostMeanDivisions));
   // What each point stands for, where there are too few of them.
@@ -44,7 +52,7 @@ CellMeans means_of(const RoomTextures& textures, const ZoneMesh& mesh, const Sid
   if (glows) sum.radiance.assign(bands, 0.0);
   RoomTextures::Values values;
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n * n); ++k) {
-    const auto corner = zone_corners(static_cast<std::uint32_t>(n), k);
+    const auto corner = grid_cell(static_cast<std::uint32_t>(n), k).corners();
     const SidePoint at = cell_point(cell, static_cast<float>((corner[0].u + corner[1].u + corner[2].u) / 3),
                                     static_cast<float>((corner[0].v + corner[1].v + corner[2].v) / 3));
     const auto u = static_cast<float>(at.at.u);

@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/gather/light_spread.h"
-
 namespace reemit {
 
 /// Logarithm of the light above what counts as dim, in a room of this mean radiance > 0: what sides that
@@ -13,13 +11,13 @@ inline double light_level(double radiance, double room_mean) {
   return std::log1p(std::max(0.0, radiance) / (kDim * room_mean));
 }
 
-/// How uneven the light on a cell is: its variance over the square of the room's mean, and over the root of
-/// the light on it. Differences as such would put nearly all zones where it is brightest, where packets then
-/// meet each less; relative ones put them where it is too dark to matter.
-inline double unevenness(const LightSpread& light, double room_mean) {
+/// How uneven light of this mean and variance on a cell is: the variance over the square of the room's mean,
+/// and over the root of the light on the cell. Differences as such would put nearly all zones where it is
+/// brightest, where packets then meet each less; relative ones put them where it is too dark to matter.
+inline double unevenness(double mean, double variance, double room_mean) {
   if (!(room_mean > 0)) return 0;
-  const double level = 1 + std::max(0.0, light.mean()) / room_mean;
-  return std::max(0.0, light.variance()) / (room_mean * room_mean * std::sqrt(level));
+  const double level = 1 + std::max(0.0, mean) / room_mean;
+  return std::max(0.0, variance) / (room_mean * room_mean * std::sqrt(level));
 }
 
 }  // namespace reemit

@@ -29,7 +29,7 @@ std::vector<float> light_on_sides(const PilotLight& pilot, const std::vector<Sid
       for (std::size_t s = range.begin(); s != range.end(); ++s) {
         const SideId side(s);
         if (uses[s] != SideUse::kShared || !mesh.has_zones(side)) continue;
-        const LightSpread light = looker.look({triangle_of(side), is_front(side), 1, 0}, kEffort);
+        const LightSpread light = looker.look({triangle_of(side), is_front(side), {}}, kEffort);
         levels[s] = static_cast<float>(light_level(light.mean(), pilot.mean()));
       }
     });

@@ -76,11 +76,15 @@ std::vector<double> mean_radiances(const RadianceField& field) {
   return mean;
 }
 
-/// A number for each cell of every grid of a side.
+/// A number for each cell of a side.
 std::uint64_t key_of(const SideCell& cell) {
-  const std::uint64_t n = cell.divisions;
-  return (static_cast<std::uint64_t>(side_of(cell.triangle, cell.front).index()) << 32) ^
-         (n * n + cell.number);
+  constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio
+  std::uint64_t key = cell.corners.divisions;
+  for (const GridPoint& p : cell.corners.at) {
+    key = (key ^ (std::uint64_t{p.i} << 16 | p.j)) * kOdd;
+    key ^= key >> 32;
+  }
+  return (static_cast<std::uint64_t>(side_of(cell.triangle, cell.front).index()) << 32) ^ key;
 }
 
 }  // namespace
@@ -117,10 +121,12 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& eff
   const std::uint64_t key = key_of(cell);
   const PointSampler sampler(kPilotSeed, RngPurpose::kPilotLight, key, 0,
                              std::countr_zero(std::bit_ceil(static_cast<unsigned>(effort.points))));
+  points_.clear();
   float* next = found_.data();
   for (int i = 0; i < effort.points; ++i) {
     const std::array<float, 2> u = sampler.place(i);
     const auto [a, b] = sample_triangle(u[0], u[1]);
+    points_.push_back({{a, b}, 0, 0});
     const SidePoint at = cell_point(cell, a, b);
     const SurfacePoint x = surface_point(room.rays(), at.triangle, static_cast<float>(at.at.u),
                                          static_cast<float>(at.at.v), at.front);
@@ -142,11 +148,13 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& eff
   LightSpread light;
   const double need = need_of(room, cell);
   const float* value = found_.data();
-  for (int i = 0; i < effort.points; ++i) {
+  for (SeenPoint& point : points_) {
     std::array<double, kHalves> sum{};
     for (double& of_half : sum)
       for (std::size_t b = 0; b < bands; ++b) of_half += static_cast<double>(*value++);
-    light.add(need * sum[0], need * sum[1]);
+    point.first_look = need * sum[0];
+    point.second_look = need * sum[1];
+    light.add(point.first_look, point.second_look);
   }
   return light;
 }

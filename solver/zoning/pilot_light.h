@@ -18,6 +18,12 @@ struct LookEffort {
   int gathers;  ///< Gather rays likewise, >= 1.
 };
 
+/// A point of a cell and what was seen there at each look (LightSpread::add).
+struct SeenPoint {
+  InCell at;
+  double first_look, second_look;
+};
+
 /// A quick solution on coarse zones, and what it says about the light on other cells of the same triangles:
 /// reflected radiance at points, by shadow rays and gather rays, all bands together, weighted such that each
 /// has the same mean over the room. Nothing in it depends on
@@ -41,11 +47,14 @@ class PilotLight {
     /// Looks at points of the cell, twice at each, with halves of the pilot solution. The same for the same
     /// cell and effort.
     LightSpread look(const SideCell& cell, const LookEffort& effort);
+    /// The points of the last look.
+    const std::vector<SeenPoint>& points() const { return points_; }
 
    private:
     const PilotLight* pilot_;
     GatherBatch batch_;
     std::vector<float> found_;  // by point, half and band
+    std::vector<SeenPoint> points_;
   };
 
  private:

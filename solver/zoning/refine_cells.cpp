@@ -9,26 +9,25 @@
 #include <tbb/parallel_for.h>
 
 #include "mesh/zones/zone_cost.h"
-#include "solver/zoning/light_level.h"
+#include "solver/zoning/cell_cut.h"
 
 namespace reemit {
 namespace {
 
-constexpr LookEffort kCellEffort{16, 2, 4};
 /// Of all cells that there are, the share that is cut before the others are looked at again.
 constexpr std::size_t kShareAtOnce = 16;
 
 struct Node {
   SideCell cell;
-  double cost = 0;
-  std::size_t parts = 0;  // first of four; 0: it is not cut
+  CellCut cut;
+  std::size_t halves = 0;  // the first of them; 0: it is not cut
 };
 
-struct Costly {
-  double cost;
+struct Candidate {
+  double saved;
   std::size_t node;
-  bool operator<(const Costly& other) const {
-    return cost != other.cost ? cost < other.cost : node > other.node;
+  bool operator<(const Candidate& other) const {
+    return saved != other.saved ? saved < other.saved : node > other.node;
   }
 };
 
@@ -38,7 +37,7 @@ class Refinement {
 
   void add_roots(SideId side, std::uint32_t divisions) {
     for (std::uint32_t c = 0; c < divisions * divisions; ++c)
-      nodes_.push_back({{triangle_of(side), is_front(side), divisions, c}});
+      nodes_.push_back({{triangle_of(side), is_front(side), grid_cell(divisions, c)}, {}});
   }
 
   void cut(const WorkWatch& watch) {
@@ -48,36 +47,37 @@ class Refinement {
     while (cells < budget_.cells && !open_.empty()) {
       watch.at(1 - (budget_.cells - cells) / missing);
       const std::size_t first = nodes_.size();
-      const auto left = static_cast<std::size_t>((budget_.cells - cells) / (kCellParts - 1)) + 1;
+      const auto left = static_cast<std::size_t>(std::ceil(budget_.cells - cells));
       const std::size_t at_once = std::min(left, static_cast<std::size_t>(cells) / kShareAtOnce + 1);
       for (std::size_t i = 0; i < at_once && !open_.empty(); ++i) {
         const std::size_t node = open_.top().node;
         open_.pop();
         cut_node(node);
-        cells += kCellParts - 1;
+        ++cells;
       }
       look_at(first);
     }
   }
 
-  /// Appends what CellSplits::is_split says of `count` roots from `first` on.
-  void append_splits(std::size_t first, std::size_t count, std::vector<std::uint8_t>& is_split) const {
-    for (std::size_t i = first; i < first + count; ++i) append_node(i, is_split);
+  /// Appends what CellSplits::cuts says of `count` roots from `first` on.
+  void append_cuts(std::size_t first, std::size_t count, std::vector<std::uint8_t>& cuts) const {
+    for (std::size_t i = first; i < first + count; ++i) append_node(i, cuts);
   }
   bool is_cut(std::size_t first, std::size_t count) const {
     return std::any_of(nodes_.begin() + static_cast<std::ptrdiff_t>(first),
                        nodes_.begin() + static_cast<std::ptrdiff_t>(first + count),
-                       [](const Node& node) { return node.parts != 0; });
+                       [](const Node& node) { return node.halves != 0; });
   }
 
  private:
   void cut_node(std::size_t node) {
-    const SideCell cell = nodes_[node].cell;
-    nodes_[node].parts = nodes_.size();
-    const ZoneCell place = zone_cell(cell.divisions, cell.number);
-    const std::uint32_t divisions = 2 * cell.divisions;
-    for (std::uint32_t k = 0; k < kCellParts; ++k)
-      nodes_.push_back({{cell.triangle, cell.front, divisions, cell_number(divisions, cell_part(place, k))}});
+    SideCell half = nodes_[node].cell;
+    const CellHalves halves = halves_of(half.corners, nodes_[node].cut.corner);
+    nodes_[node].halves = nodes_.size();
+    for (const CellCorners& corners : {halves.first, halves.second}) {
+      half.corners = corners;
+      nodes_.push_back({half, {}});
+    }
   }
 
   /// Finds out what the nodes from `first` on cost.
@@ -85,31 +85,24 @@ class Refinement {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, nodes_.size(), 64), [&](const auto& range) {
       PilotLight::Looker looker(pilot_);
       for (std::size_t i = range.begin(); i != range.end(); ++i)
-        nodes_[i].cost = cost_of(nodes_[i].cell, looker);
+        nodes_[i].cut = best_cut(nodes_[i].cell, budget_.zone_area, pilot_, looker);
     });
     for (std::size_t i = first; i < nodes_.size(); ++i)
-      if (nodes_[i].cost > kCellCost * budget_.zone_area * budget_.zone_area &&
-          nodes_[i].cell.divisions < ZoneMesh::kMostDivisions / 2)
-        open_.push({nodes_[i].cost, i});
+      if (nodes_[i].cut.cost > kCellCost * budget_.zone_area * budget_.zone_area && nodes_[i].cut.saved > 0)
+        open_.push({nodes_[i].cut.saved, i});
   }
 
-  double cost_of(const SideCell& cell, PilotLight::Looker& looker) const {
-    const double n = cell.divisions;
-    const double area = pilot_.mesh().triangle_area(cell.triangle) / (n * n);
-    const LightSpread light = looker.look(cell, kCellEffort);
-    return area * (kCellCost * area + kUnevenWeight * unevenness(light, pilot_.mean()) * budget_.zone_area);
-  }
-
-  void append_node(std::size_t node, std::vector<std::uint8_t>& is_split) const {
-    const std::size_t parts = nodes_[node].parts;
-    is_split.push_back(parts != 0 ? 1 : 0);
-    for (std::size_t k = 0; parts != 0 && k < kCellParts; ++k) append_node(parts + k, is_split);
+  void append_node(std::size_t node, std::vector<std::uint8_t>& cuts) const {
+    const std::size_t halves = nodes_[node].halves;
+    cuts.push_back(halves == 0 ? CellSplits::kNotCut
+                               : static_cast<std::uint8_t>(nodes_[node].cut.corner + 1));
+    for (std::size_t k = 0; halves != 0 && k < 2; ++k) append_node(halves + k, cuts);
   }
 
   const PilotLight& pilot_;
   CellBudget budget_;
   std::vector<Node> nodes_;
-  std::priority_queue<Costly> open_;
+  std::priority_queue<Candidate> open_;
 };
 
 }  // namespace
@@ -126,7 +119,7 @@ CellSplits refine_cells(const PilotLight& pilot, const BaseMesh& base, const std
     const std::size_t n = base.triangles[triangle_of(side).index()].divisions;
     if (refinement.is_cut(first, n * n)) {
       splits.sides.push_back(side);
-      refinement.append_splits(first, n * n, splits.is_split);
+      refinement.append_cuts(first, n * n, splits.cuts);
     }
     first += n * n;
   }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <random>
-#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -31,28 +30,71 @@ BaseMesh two_triangles(std::uint32_t n, std::uint32_t m) {
 
 ZoneMesh split_mesh(std::uint32_t n, std::uint32_t m, unsigned seed) {
   const BaseMesh base = two_triangles(n, m);
-  return ZoneMesh(base, {}, test::random_splits(base, 5, seed));
+  return ZoneMesh(base, {}, test::random_splits(base, 8, seed));
 }
 
-TEST(CellSplits, PartsOfACellAreItsQuarters) {
+double area_of(const CellCorners& cell) {
+  const auto p = cell.corners();
+  return 0.5 * ((p[1].u - p[0].u) * (p[2].v - p[0].v) - (p[2].u - p[0].u) * (p[1].v - p[0].v));
+}
+
+bool same_place(const Barycentric& a, const Barycentric& b) {
+  return std::abs(a.u - b.u) < 1e-15 && std::abs(a.v - b.v) < 1e-15;
+}
+
+TEST(CellSplits, HalvesMeetInTheLineFromACornerToTheMiddleOfTheEdgeOppositeIt) {
   for (const std::uint32_t n : {1U, 2U, 3U, 8U})
-    for (std::uint32_t c = 0; c < n * n; ++c) {
-      const auto whole = zone_corners(n, c);
-      const auto area = [](const auto& p) {
-        return 0.5 * ((p[1].u - p[0].u) * (p[2].v - p[0].v) - (p[2].u - p[0].u) * (p[1].v - p[0].v));
-      };
-      std::set<std::uint32_t> parts;
-      for (std::uint32_t k = 0; k < kCellParts; ++k) {
-        const std::uint32_t part = cell_number(2 * n, cell_part(zone_cell(n, c), k));
-        parts.insert(part);
-        const auto corners = zone_corners(2 * n, part);
-        EXPECT_NEAR(area(corners), area(whole) / 4, 1e-12);
-        const double u = (corners[0].u + corners[1].u + corners[2].u) / 3;
-        const double v = (corners[0].v + corners[1].v + corners[2].v) / 3;
-        EXPECT_EQ(zone_in_triangle(n, static_cast<float>(u), static_cast<float>(v)), c);
+    for (std::uint32_t c = 0; c < n * n; ++c)
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const CellCorners whole = grid_cell(n, c);
+        const auto [first, second] = halves_of(whole, corner);
+        const Barycentric from = whole.corner(corner);
+        const Barycentric next = whole.corner((corner + 1) % 3);
+        const Barycentric last = whole.corner((corner + 2) % 3);
+        const Barycentric middle{(next.u + last.u) / 2, (next.v + last.v) / 2};
+        EXPECT_TRUE(same_place(first.corner(0), from) && same_place(first.corner(1), next) &&
+                    same_place(first.corner(2), middle));
+        EXPECT_TRUE(same_place(second.corner(0), from) && same_place(second.corner(1), middle) &&
+                    same_place(second.corner(2), last));
+        for (const CellCorners& half : {first, second}) {
+          EXPECT_NEAR(area_of(half), area_of(whole) / 2, 1e-15);
+          EXPECT_DOUBLE_EQ(half.share(), 2 * area_of(half));
+        }
       }
-      EXPECT_EQ(parts.size(), kCellParts);
+}
+
+TEST(CellSplits, APointKeepsItsPlaceInTheHalfItLiesIn) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  const auto place = [](const CellCorners& cell, const InCell& x) {
+    const SidePoint p = cell_point({TriangleId(0), true, cell}, x.a, x.b);
+    return p.at;
+  };
+  for (std::uint32_t corner = 0; corner < 3; ++corner)
+    for (int i = 0; i < 1000; ++i) {
+      const CellCorners whole = grid_cell(3, static_cast<std::uint32_t>(i) % 9);
+      InCell x{uniform(random), uniform(random)};
+      if (x.a + x.b > 1) x = {1 - x.a, 1 - x.b};
+      const Barycentric before = place(whole, x);
+      const CellHalves halves = halves_of(whole, corner);
+      const std::uint32_t half = half_of(x, corner);
+      ASSERT_GE(x.a, -1e-6F);
+      ASSERT_GE(x.b, -1e-6F);
+      ASSERT_LE(x.a + x.b, 1 + 1e-6F);
+      const Barycentric after = place(half == 0 ? halves.first : halves.second, x);
+      ASSERT_NEAR(after.u, before.u, 1e-6);
+      ASSERT_NEAR(after.v, before.v, 1e-6);
     }
+}
+
+TEST(CellSplits, CellsAreHalvedAsLongAsTheirGridIsNotTooFine) {
+  CellCorners cell;
+  int cuts = 0;
+  for (; can_halve(cell, 0) && cuts < 100; ++cuts) cell = halves_of(cell, 0).first;
+  // Always from the same corner: every cut halves an edge.
+  EXPECT_EQ(cuts, 15);
+  EXPECT_EQ(cell.divisions, kMostDivisions);
+  EXPECT_DOUBLE_EQ(cell.share(), std::ldexp(1.0, -cuts));
 }
 
 TEST(CellSplits, EveryPointBelongsToThePartItLiesIn) {
@@ -143,7 +185,7 @@ TEST(CellSplits, ZonesCoverEverySideOnce) {
     const SideCell cell = cells.cell(i);
     EXPECT_EQ(side_of(cell.triangle, cell.front), mesh.zone_side(z));
     area[mesh.zone_side(z).index()] += mesh.zone_area(z);
-    if (cell.divisions > mesh.triangle(cell.triangle).divisions) ++finer;
+    if (cell.corners.divisions > mesh.triangle(cell.triangle).divisions) ++finer;
     const SidePoint middle = cell_point(cell, 1.0F / 3, 1.0F / 3);
     const auto u = static_cast<float>(middle.at.u);
     const auto v = static_cast<float>(middle.at.v);
@@ -164,16 +206,17 @@ TEST(CellSplits, WhatCannotBeIsRefused) {
   const auto mesh_of = [&](CellSplits splits, ZoneGroups groups = {}) {
     return ZoneMesh(base, std::move(groups), std::move(splits));
   };
-  EXPECT_EQ(mesh_of({{front}, {1, 0, 0, 0, 0}}).zone_count(), 6U);
-  EXPECT_THROW(mesh_of({{front}, {1, 0, 0, 0}}), std::invalid_argument);          // ends too early
-  EXPECT_THROW(mesh_of({{front}, {1, 0, 0, 0, 0, 0}}), std::invalid_argument);    // more than cells
-  EXPECT_THROW(mesh_of({{no_zones}, {1, 0, 0, 0, 0}}), std::invalid_argument);    // no zones there
-  EXPECT_THROW(mesh_of({{SideId(99)}, {1, 0, 0, 0, 0}}), std::invalid_argument);  // no such side
+  EXPECT_EQ(mesh_of({{front}, {1, 3, 0, 0, 0}}).zone_count(), 5U);
+  EXPECT_THROW(mesh_of({{front}, {1, 3, 0, 0}}), std::invalid_argument);          // ends too early
+  EXPECT_THROW(mesh_of({{front}, {1, 3, 0, 0, 0, 0}}), std::invalid_argument);    // more than cells
+  EXPECT_THROW(mesh_of({{no_zones}, {1, 3, 0, 0, 0}}), std::invalid_argument);    // no zones there
+  EXPECT_THROW(mesh_of({{SideId(99)}, {1, 3, 0, 0, 0}}), std::invalid_argument);  // no such side
+  EXPECT_THROW(mesh_of({{front}, {4, 0, 0}}), std::invalid_argument);             // no such corner
   EXPECT_THROW(mesh_of({{front}, std::vector<std::uint8_t>(80, 1)}), std::invalid_argument);  // no end
   ZoneGroups group;
   group.of_side = {0, ZoneGroups::kOwn, ZoneGroups::kOwn, ZoneGroups::kOwn};
   group.count = 1;
-  EXPECT_THROW(mesh_of({{front}, {1, 0, 0, 0, 0}}, group), std::invalid_argument);  // in a group
+  EXPECT_THROW(mesh_of({{front}, {1, 3, 0, 0, 0}}, group), std::invalid_argument);  // in a group
 }
 
 }  // namespace

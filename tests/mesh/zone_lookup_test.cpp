@@ -1,11 +1,10 @@
-#include "mesh/zones/zone_lookup.h"
-
 #include <random>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "mesh/zones/cell_corners.h"
 #include "mesh/zones/zone_sizing.h"
 
 namespace reemit {
@@ -16,7 +15,7 @@ constexpr std::uint32_t kDivisions[] = {1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 24, 33, 
 TEST(ZoneLookup, CentroidOfEveryZoneIsInThatZone) {
   for (const std::uint32_t n : kDivisions) {
     for (std::uint32_t z = 0; z < n * n; ++z) {
-      const auto c = zone_corners(n, z);
+      const auto c = grid_cell(n, z).corners();
       const auto u = static_cast<float>((c[0].u + c[1].u + c[2].u) / 3);
       const auto v = static_cast<float>((c[0].v + c[1].v + c[2].v) / 3);
       ASSERT_EQ(zone_in_triangle(n, u, v), z) << "n = " << n;
@@ -27,7 +26,7 @@ TEST(ZoneLookup, CentroidOfEveryZoneIsInThatZone) {
 TEST(ZoneLookup, ZonesAreCongruentAndCounterClockwise) {
   for (const std::uint32_t n : kDivisions) {
     for (std::uint32_t z = 0; z < n * n; ++z) {
-      const auto c = zone_corners(n, z);
+      const auto c = grid_cell(n, z).corners();
       const double twice = (c[1].u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (c[1].v - c[0].v);
       ASSERT_NEAR(twice * n * n, 1.0, 1e-9) << "n = " << n << ", zone " << z;
     }
@@ -47,7 +46,7 @@ TEST(ZoneLookup, RandomPointLiesInItsZone) {
       }
       const std::uint32_t z = zone_in_triangle(n, u, v);
       ASSERT_LT(z, n * n);
-      const auto c = zone_corners(n, z);
+      const auto c = grid_cell(n, z).corners();
       const double d = (c[1].u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (c[1].v - c[0].v);
       const double b1 = ((u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (v - c[0].v)) / d;
       const double b2 = ((c[1].u - c[0].u) * (v - c[0].v) - (u - c[0].u) * (c[1].v - c[0].v)) / d;

@@ -96,7 +96,7 @@ TEST(ZoneTopology, NeighboursShareEdgesWhateverTheirDivisions) {
 TEST(ZoneTopology, CellsOfSeveralSizesLeaveNoGaps) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     const BaseMesh base = two_triangles(1 + seed % 4, 2 + seed % 3, 10, true).base();
-    const ZoneMesh mesh(base, {}, test::random_splits(base, 4, seed));
+    const ZoneMesh mesh(base, {}, test::random_splits(base, 8, seed));
     const ZoneTopology topology = make_zone_topology(mesh, 30);
     expect_faces_are_zones(mesh, topology);
     // A gap or an edge that ends in the middle of another would be a border.

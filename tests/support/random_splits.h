@@ -5,16 +5,16 @@
 
 namespace reemit::test {
 
-/// Cuts the cells of about every second side that has zones, each again with odds of a third, `depth` times
-/// at most.
+/// Cuts the cells of about every second side that has zones, each again with odds of two thirds, `depth`
+/// times at most.
 inline CellSplits random_splits(const BaseMesh& base, int depth, unsigned seed) {
   std::mt19937 random(seed);
   const auto odds = [&](unsigned of) { return random() % of == 0; };
   CellSplits splits;
   const auto add = [&](const auto& self, int left) -> void {
-    const bool split = left > 0 && odds(3);
-    splits.is_split.push_back(split ? 1 : 0);
-    for (std::uint32_t k = 0; split && k < kCellParts; ++k) self(self, left - 1);
+    const bool cut = left > 0 && !odds(3);
+    splits.cuts.push_back(cut ? static_cast<std::uint8_t>(1 + random() % 3) : CellSplits::kNotCut);
+    for (int k = 0; cut && k < 2; ++k) self(self, left - 1);
   };
   for (std::size_t t = 0; t < base.triangles.size(); ++t)
     for (const bool front : {true, false}) {

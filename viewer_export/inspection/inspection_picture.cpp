@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "mesh/zones/zone_lookup.h"
+#include "mesh/zones/side_cell.h"
 #include "scenes/io/common/up_direction.h"
 #include "viewer_export/formats/vertex_export.h"
 #include "viewer_export/inspection/side_kinds.h"
@@ -105,21 +105,30 @@ class InspectionArtist {
   void for_each_cell(SideId side, bool whole, double lift, const Visit& visit) const {
     const TriangleId t = triangle_of(side);
     const BaseTriangle& triangle = mesh_.triangle(t);
-    std::uint32_t n = mesh_.is_group(mesh_.first_zone(t, is_front(side))) ? 1 : triangle.divisions;
-    if (triangle.is_curved())
-      n = std::max(triangle.divisions, kRound);
-    else if (whole)
-      n = 1;
+    const ZoneId first = mesh_.first_zone(t, is_front(side));
     const double sign = is_front(side) ? 1 : -1;
-    for (std::uint32_t k = 0; k < n * n; ++k) {
-      const std::array<Barycentric, 3> at = zone_corners(n, k);
+    const auto draw = [&](const CellCorners& cell, ZoneId zone) {
       std::array<Vec3, 3> corners;
-      for (std::size_t c = 0; c < 3; ++c)
-        corners[c] = mesh_.point(t, at[c].u, at[c].v) + sign * lift * mesh_.normal(t, at[c].u, at[c].v);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto [u, v] = cell.corner(c);
+        corners[c] = mesh_.point(t, u, v) + sign * lift * mesh_.normal(t, u, v);
+      }
       if (!is_front(side)) std::swap(corners[1], corners[2]);
-      const auto u = static_cast<float>((at[0].u + at[1].u + at[2].u) / 3);
-      const auto v = static_cast<float>((at[0].v + at[1].v + at[2].v) / 3);
-      visit(corners, mesh_.zone_at(t, u, v, is_front(side)));
+      visit(corners, zone);
+    };
+    if (triangle.is_curved()) {
+      const std::uint32_t n = std::max(triangle.divisions, kRound);
+      for (std::uint32_t k = 0; k < n * n; ++k) {
+        const SidePoint middle = cell_point({t, is_front(side), grid_cell(n, k)}, 1.0F / 3, 1.0F / 3);
+        draw(grid_cell(n, k), mesh_.zone_at(t, static_cast<float>(middle.at.u),
+                                            static_cast<float>(middle.at.v), is_front(side)));
+      }
+    } else if (whole || mesh_.is_group(first)) {
+      draw({}, first);
+    } else {
+      for (std::size_t z = first.index(); z < mesh_.cell_zone_count() && mesh_.zone_side(ZoneId(z)) == side;
+           ++z)
+        draw(mesh_.zone_cell(ZoneId(z)).corners, ZoneId(z));
     }
   }
 

@@ -137,7 +137,7 @@ TEST(PilotLight, IsThatOfThePointLight) {
     const double variance = square / count - mean * mean;
     area += mesh.triangle_area(TriangleId(t));
     power += mesh.triangle_area(TriangleId(t)) * mean;
-    const LightSpread light = looker.look({TriangleId(t), true, 1, 0}, {256, 2, 4});
+    const LightSpread light = looker.look({TriangleId(t), true, {}}, {256, 2, 4});
     EXPECT_NEAR(light.mean(), mean, 0.01 * mean) << "triangle " << t;
     EXPECT_NEAR(light.variance(), variance, 0.1 * variance + 1e-6 * mean * mean) << "triangle " << t;
   }
@@ -161,10 +161,10 @@ TEST(PilotLight, EvenLightHasNoSpreadAndABorderHasItsOwn) {
   const PilotLight pilot(room.scene(), build_mesh(room.scene(), {.zone_area = 100}), {});
   PilotLight::Looker looker(pilot);
   for (std::uint32_t cell = 0; cell < 64; ++cell) {
-    const SideCell of_tile{TriangleId(0), true, 8, cell};
+    const SideCell of_tile{TriangleId(0), true, grid_cell(8, cell)};
     double low = 1;
     double high = -1;
-    for (const Barycentric& c : zone_corners(8, cell)) {
+    for (const Barycentric& c : of_tile.corners.corners()) {
       const double x = pilot.mesh().point(TriangleId(0), c.u, c.v).x();
       low = std::min(low, x);
       high = std::max(high, x);
@@ -301,7 +301,7 @@ TEST(BuildZones, AreKeptByTheSolutionFile) {
   EXPECT_EQ(read.mesh.groups().count, saved.mesh.groups().count);
   EXPECT_EQ(read.mesh.groups().sealed, saved.mesh.groups().sealed);
   EXPECT_EQ(read.mesh.splits().sides, saved.mesh.splits().sides);
-  EXPECT_EQ(read.mesh.splits().is_split, saved.mesh.splits().is_split);
+  EXPECT_EQ(read.mesh.splits().cuts, saved.mesh.splits().cuts);
   ASSERT_EQ(read.mesh.zone_count(), saved.mesh.zone_count());
   for (std::size_t z = 0; z < read.mesh.zone_count(); ++z) {
     EXPECT_EQ(read.mesh.zone_area(ZoneId(z)), saved.mesh.zone_area(ZoneId(z)));

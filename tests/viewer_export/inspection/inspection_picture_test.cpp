@@ -19,6 +19,7 @@
 #include "solver/zoning/build_zones.h"
 #include "tests/mesh/test_room.h"
 #include "tests/support/glb_file.h"
+#include "tests/support/random_splits.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_rooms.h"
 #include "viewer_export/formats/vertex_export.h"
@@ -263,6 +264,19 @@ TEST(InspectionPicture, ColoursOfZonesTellSizesAndNeighboursApart) {
   }
   EXPECT_EQ(drawn.objects.at("cells").triangles.size(), 2U + 2U * 16);
   EXPECT_EQ(large.size(), 2U);
+}
+
+TEST(InspectionPicture, CellsAreDrawnAsTheyAreCut) {
+  RoomBuilder room;
+  room.quad(room.material("grey", 0.5, 1), {Vec3(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 3);
+  MeshResult result = room.mesh();
+  result.report.surfaces.resize(1);
+  const BaseMesh base = result.mesh.base();
+  result.mesh = ZoneMesh(base, {}, random_splits(base, 6, 2));
+  const std::size_t zones = result.mesh.zone_count();
+  const Drawn drawn(room.scene(), std::move(result));
+  EXPECT_GT(zones, 2U * 9);
+  EXPECT_EQ(drawn.objects.at("cells").triangles.size(), zones);
 }
 
 TEST(InspectionPicture, RoundShapesLookRound) {

@@ -1,0 +1,76 @@
+#include "solver/zoning/cell_cut.h"
+
+#include <algorithm>
+#include <array>
+
+#include "mesh/zones/zone_cells.h"
+#include "mesh/zones/zone_cost.h"
+#include "solver/zoning/light_level.h"
+
+namespace reemit {
+namespace {
+
+constexpr LookEffort kCellEffort{16, 2, 4};
+
+/// Variance of place in a cell [m2]: of a uniform point in a triangle the sum of the squares of its edges
+/// over 36. Of a curved patch, that of the triangle between its corners.
+double place_variance(const ZoneMesh& mesh, const SideCell& cell) {
+  const std::array<Vec3, 3> corners = corner_points(mesh, cell);
+  double squares = 0;
+  for (std::size_t k = 0; k < 3; ++k) squares += (corners[(k + 1) % 3] - corners[k]).squaredNorm();
+  return squares / 36;
+}
+
+/// Of the variance of light over a cell, what lies between its halves: as in LightSpread, the noise of one
+/// look is independent of that of the other.
+double variance_between_halves(const std::vector<SeenPoint>& points, std::uint32_t corner) {
+  std::array<std::size_t, 2> count{};
+  std::array<double, 2> first{};
+  std::array<double, 2> second{};
+  for (const SeenPoint& point : points) {
+    InCell at = point.at;
+    const std::uint32_t half = half_of(at, corner);
+    ++count[half];
+    first[half] += point.first_look;
+    second[half] += point.second_look;
+  }
+  if (count[0] == 0 || count[1] == 0) return 0;
+  const auto n0 = static_cast<double>(count[0]);
+  const auto n1 = static_cast<double>(count[1]);
+  const double product = (first[0] / n0 - first[1] / n1) * (second[0] / n0 - second[1] / n1);
+  return n0 * n1 / ((n0 + n1) * (n0 + n1)) * product;
+}
+
+}  // namespace
+
+CellCut best_cut(const SideCell& cell, double zone_area, const PilotLight& pilot,
+                 PilotLight::Looker& looker) {
+  const ZoneMesh& mesh = pilot.mesh();
+  const double area = mesh.triangle_area(cell.triangle) * cell.corners.share();
+  const double place = place_variance(mesh, cell);
+  const LightSpread light = looker.look(cell, kCellEffort);
+  const auto cost_of_light = [&](double variance) {
+    return kUnevenWeight * zone_area * unevenness(light.mean(), variance, pilot.mean());
+  };
+  CellCut best;
+  best.cost = area * (place + cost_of_light(light.variance()));
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!can_halve(cell.corners, k)) continue;
+    const CellHalves halves = halves_of(cell.corners, k);
+    SideCell half = cell;
+    double place_saved = place;
+    for (const CellCorners& corners : {halves.first, halves.second}) {
+      half.corners = corners;
+      place_saved -= place_variance(mesh, half) / 2;
+    }
+    const double between = variance_between_halves(looker.points(), static_cast<std::uint32_t>(k));
+    const double saved = area * (place_saved + cost_of_light(between));
+    if (saved > best.saved) {
+      best.saved = saved;
+      best.corner = k;
+    }
+  }
+  return best;
+}
+
+}  // namespace reemit
