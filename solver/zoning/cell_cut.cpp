@@ -10,7 +10,7 @@
 namespace reemit {
 namespace {
 
-constexpr LookEffort kCellEffort{16, 2, 4};
+constexpr LookEffort kCellEffort{8, 4, 8};
 
 /// Variance of place in a cell [m2]: of a uniform point in a triangle the sum of the squares of its edges
 /// over 36. Of a curved patch, that of the triangle between its corners.
