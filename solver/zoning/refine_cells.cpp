@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <queue>
 
 #include <tbb/blocked_range.h>
@@ -17,9 +18,14 @@ namespace {
 /// Of all cells that there are, the share that is cut before the others are looked at again.
 constexpr std::size_t kShareAtOnce = 16;
 
+/// What the cut of a half saves, as a share of what both halves cost, is taken to be this before it is looked
+/// at; its turn to be looked at comes by that, and for many that become zones it never does.
+constexpr double kExpectedShare = 0.5;
+
 struct Node {
   SideCell cell;
   CellCut cut;
+  bool is_seen = false;    // or else `cut` is a guess
   std::size_t halves = 0;  // the first of them; 0: it is not cut
 };
 
@@ -41,21 +47,27 @@ class Refinement {
   }
 
   void cut(const WorkWatch& watch) {
-    look_at(0);
+    std::vector<std::size_t> unseen(nodes_.size());
+    std::iota(unseen.begin(), unseen.end(), std::size_t{0});
+    look_at(unseen);
     auto cells = static_cast<double>(nodes_.size());
     const double missing = budget_.cells - cells;
     while (cells < budget_.cells && !open_.empty()) {
       watch.at(1 - (budget_.cells - cells) / missing);
-      const std::size_t first = nodes_.size();
       const auto left = static_cast<std::size_t>(std::ceil(budget_.cells - cells));
       const std::size_t at_once = std::min(left, static_cast<std::size_t>(cells) / kShareAtOnce + 1);
+      unseen.clear();
       for (std::size_t i = 0; i < at_once && !open_.empty(); ++i) {
         const std::size_t node = open_.top().node;
         open_.pop();
-        cut_node(node);
-        ++cells;
+        if (nodes_[node].is_seen) {
+          cut_node(node);
+          ++cells;
+        } else {
+          unseen.push_back(node);
+        }
       }
-      look_at(first);
+      look_at(unseen);
     }
   }
 
@@ -72,22 +84,27 @@ class Refinement {
  private:
   void cut_node(std::size_t node) {
     SideCell half = nodes_[node].cell;
-    const CellHalves halves = halves_of(half.corners, nodes_[node].cut.corner);
+    const CellCut cut = nodes_[node].cut;
+    const CellHalves halves = halves_of(half.corners, cut.corner);
     nodes_[node].halves = nodes_.size();
     for (const CellCorners& corners : {halves.first, halves.second}) {
       half.corners = corners;
+      open_.push({kExpectedShare * (cut.cost - cut.saved), nodes_.size()});
       nodes_.push_back({half, {}});
     }
   }
 
-  /// Finds out what the nodes from `first` on cost.
-  void look_at(std::size_t first) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, nodes_.size(), 64), [&](const auto& range) {
+  /// Finds out what these nodes cost.
+  void look_at(const std::vector<std::size_t>& unseen) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unseen.size(), 64), [&](const auto& range) {
       PilotLight::Looker looker(pilot_);
-      for (std::size_t i = range.begin(); i != range.end(); ++i)
-        nodes_[i].cut = best_cut(nodes_[i].cell, budget_.zone_area, pilot_, looker);
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        Node& node = nodes_[unseen[i]];
+        node.cut = best_cut(node.cell, budget_.zone_area, pilot_, looker);
+        node.is_seen = true;
+      }
     });
-    for (std::size_t i = first; i < nodes_.size(); ++i)
+    for (const std::size_t i : unseen)
       if (nodes_[i].cut.cost > kCellCost * budget_.zone_area * budget_.zone_area && nodes_[i].cut.saved > 0)
         open_.push({nodes_[i].cut.saved, i});
   }
