@@ -180,16 +180,20 @@ void GatherBatch::trace() {
   Hit16 hits;
   rays.closest16(rays_, count_, hits);
   const auto count = static_cast<std::size_t>(std::exchange(count_, 0));
+  alignas(64) std::uint32_t zones[kWidth];
+  mesh.zones_at16(hits.points(), zones);
+  // What is read of a room of many zones is rarely in the cache: all of it is asked for before any is used.
+  for (std::size_t i = 0; i < count; ++i)
+    if (zones[i] != ZoneMesh::kNone) gather_->fetch(ZoneId(zones[i]), keys_[i].part);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t t = hits.triangle[i];
     if (!second_look_[i] && rays.is_doubtful(t, hits.u[i], hits.v[i], hits.front[i])) {
       keep_for_second_look(i, hits);
       continue;
     }
-    if (t == RayTracer::kMiss) continue;
+    if (zones[i] == ZoneMesh::kNone) continue;
     float* weight = &weights_[i * bands_];
-    const ZoneId zone = mesh.zone_at(TriangleId(t), hits.u[i], hits.v[i], hits.front[i]);
-    if (!zone.valid()) continue;
+    const ZoneId zone(zones[i]);
     if (gather_->continues(zone, hits.distance[i]) || surfaces.is_specular(TriangleId(t), hits.front[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
       gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], weight, sums_[i],

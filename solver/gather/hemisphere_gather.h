@@ -53,6 +53,11 @@ class HemisphereGather {
   /// True if a hit of this zone at this distance [normalised units] is continued instead of read.
   bool continues(ZoneId zone, float distance) const { return distance < reach_[zone.index()]; }
   const RadianceField& field() const { return *field_; }
+  /// Has what a hit of this zone reads brought into the cache.
+  void fetch(ZoneId zone, std::size_t part) const {
+    __builtin_prefetch(&reach_[zone.index()]);
+    __builtin_prefetch(field_->reflected(zone, part));
+  }
 
   /// An estimate of weight[b]/pi times the irradiance of photons at x for two uniform numbers, added to
   /// sum[b], where u1 is below kPhotonLooks.
