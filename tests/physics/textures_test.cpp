@@ -174,9 +174,10 @@ TEST_F(TexturedRooms, ColoursInSpectralBandsAreThoseOfChecksAsFaces) {
       SurfaceModel::PointValues here;
       const float* rho = walls.surfaces().reflectance(x, here);
       for (const Material& m : checks.faceted.materials)
-        if (m.name == (is_white(i, j) ? "red" : "cyan"))
+        if (m.name == (is_white(i, j) ? "red" : "cyan")) {
           for (std::size_t b = 0; b < 16; ++b)
             EXPECT_NEAR(rho[b], m.reflectance[static_cast<Eigen::Index>(b)], 1e-6) << m.name << b;
+        }
       ++points;
     }
   }
