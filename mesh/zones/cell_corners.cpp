@@ -1,19 +1,8 @@
 #include "mesh/zones/cell_corners.h"
 
+#include "mesh/zones/grid_points.h"
+
 namespace reemit {
-namespace {
-
-/// Whether the middle between two points lies on their grid.
-bool has_middle(const GridPoint& a, const GridPoint& b) {
-  return (a.i + b.i) % 2 == 0 && (a.j + b.j) % 2 == 0;
-}
-
-GridPoint grid_point(std::int64_t i, std::int64_t j) {
-  return {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)};
-}
-
-}  // namespace
-
 double CellCorners::share() const {
   const auto from_first = [this](std::size_t k) {
     return std::array<std::int64_t, 2>{at[k].i - at[0].i, at[k].j - at[0].j};
@@ -36,12 +25,12 @@ CellHalves halves_of(const CellCorners& cell, std::size_t corner) {
   const std::size_t last = (corner + 2) % 3;
   if (!has_middle(cell.at[next], cell.at[last])) {
     fine.divisions *= 2;
-    for (GridPoint& p : fine.at) p = grid_point(2 * p.i, 2 * p.j);
+    for (GridPoint& p : fine.at) p = on_finer_grid(p, 2);
   }
   const GridPoint& from = fine.at[corner];
   const GridPoint& a = fine.at[next];
   const GridPoint& b = fine.at[last];
-  const GridPoint middle = grid_point((a.i + b.i) / 2, (a.j + b.j) / 2);
+  const GridPoint middle = middle_of(a, b);
   return {{fine.divisions, {from, a, middle}}, {fine.divisions, {from, middle, b}}};
 }
 

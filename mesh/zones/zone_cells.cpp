@@ -11,6 +11,10 @@ std::array<Vec3, 3> corner_points(const ZoneMesh& mesh, const SideCell& cell) {
   return points;
 }
 
+double cell_area(const ZoneMesh& mesh, const SideCell& cell) {
+  return mesh.triangle_area(cell.triangle) * cell.corners.share();
+}
+
 ZoneCells::ZoneCells(const ZoneMesh& mesh) : mesh_(&mesh) {
   first_.reserve(mesh.side_count() + 1);
   std::size_t next_zone = 0;
@@ -47,8 +51,7 @@ ZoneId ZoneCells::zone(std::size_t i) const {
 }
 
 double ZoneCells::area(std::size_t i) const {
-  const SideCell c = cell(i);
-  return mesh_->triangle_area(c.triangle) * c.corners.share();
+  return cell_area(*mesh_, cell(i));
 }
 
 }  // namespace reemit

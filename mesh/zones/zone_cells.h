@@ -10,6 +10,8 @@ namespace reemit {
 
 /// Corners of a cell [m], on the shape where it is curved.
 std::array<Vec3, 3> corner_points(const ZoneMesh& mesh, const SideCell& cell);
+/// Of a cell, holes of cut-outs included [m2].
+double cell_area(const ZoneMesh& mesh, const SideCell& cell);
 
 /// All cells, as far as they are cut, of all sides that have zones, by side. Those of sides that are in no
 /// group are the first zones of the mesh, in their order.

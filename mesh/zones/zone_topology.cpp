@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "mesh/zones/grid_points.h"
 #include "mesh/zones/smooth_patches.h"
 #include "mesh/zones/zone_cells.h"
 
@@ -27,9 +28,7 @@ struct EdgeVertices {
 /// The corners of a cell on a grid that is finer than its own, or that.
 std::array<GridPoint, 3> corners_of(const SideCell& cell, std::uint32_t divisions) {
   std::array<GridPoint, 3> corners = cell.corners.at;
-  const std::uint32_t step = divisions / cell.corners.divisions;
-  for (GridPoint& g : corners)
-    g = {static_cast<std::uint16_t>(step * g.i), static_cast<std::uint16_t>(step * g.j)};
+  for (GridPoint& g : corners) g = on_finer_grid(g, divisions / cell.corners.divisions);
   return corners;
 }
 
@@ -259,8 +258,7 @@ void TopologyBuilder::add_interior_vertices() {
     return;
   }
   for (std::uint32_t i = 1; i + 1 < n_; ++i)
-    for (std::uint32_t j = 1; i + j < n_; ++j)
-      add_interior_vertex({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)});
+    for (std::uint32_t j = 1; i + j < n_; ++j) add_interior_vertex(grid_point(i, j));
 }
 
 void TopologyBuilder::add_interior_vertex(const GridPoint& g) {
@@ -275,9 +273,8 @@ void TopologyBuilder::add_interior_vertex(const GridPoint& g) {
 
 // Appends the corners of smaller cells between two points inside the patch.
 void TopologyBuilder::append_between(const GridPoint& from, const GridPoint& to) {
-  if ((from.i + to.i) % 2 != 0 || (from.j + to.j) % 2 != 0) return;
-  const GridPoint middle{static_cast<std::uint16_t>((from.i + to.i) / 2),
-                         static_cast<std::uint16_t>((from.j + to.j) / 2)};
+  if (!has_middle(from, to)) return;
+  const GridPoint middle = middle_of(from, to);
   if (!std::binary_search(interior_.begin(), interior_.end(), middle)) return;
   append_between(from, middle);
   polygon_.emplace_back(static_cast<int>(vertex_at(middle)));

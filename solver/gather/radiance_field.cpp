@@ -7,6 +7,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "mesh/zones/zone_cells.h"
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
 #include "solver/solution/opposite_zones.h"
@@ -41,9 +42,7 @@ float RadianceField::mean_reflected(ZoneId zone, std::size_t band) const {
 
 float RadianceField::zone_size(ZoneId z) const {
   const ZoneMesh& mesh = room_->mesh();
-  const double area = mesh.is_group(z)
-                          ? mesh.zone_area(z)
-                          : mesh.triangle_area(mesh.zone_triangle(z)) * mesh.zone_cell(z).corners.share();
+  const double area = mesh.is_group(z) ? mesh.zone_area(z) : cell_area(mesh, mesh.zone_cell(z));
   const double metres = std::sqrt(2 * area);
   return static_cast<float>(metres / room_->rays().metres_per_unit());
 }

@@ -46,7 +46,7 @@ double variance_between_halves(const std::vector<SeenPoint>& points, std::uint32
 CellCut best_cut(const SideCell& cell, double zone_area, const PilotLight& pilot,
                  PilotLight::Looker& looker) {
   const ZoneMesh& mesh = pilot.mesh();
-  const double area = mesh.triangle_area(cell.triangle) * cell.corners.share();
+  const double area = cell_area(mesh, cell);
   const double place = place_variance(mesh, cell);
   const LightSpread light = looker.look(cell, kCellEffort);
   const auto cost_of_light = [&](double variance) {
