@@ -18,9 +18,6 @@ constexpr double kTypicalRays = 256;
 
 constexpr double kTypicalRadius = 0.3 * static_cast<double>(kLargestPhotonRadius);
 
-/// Rays along a face look for what stands on it at this share of the radius above it.
-constexpr float kLift = 0.1F;
-
 float kernel(float squared_distance, float radius) {
   const float r2 = radius * radius;
   return 2 / (std::numbers::pi_v<float> * r2) * (1 - squared_distance / r2);
@@ -30,7 +27,9 @@ float kernel(float squared_distance, float radius) {
 
 CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, const CausticPackets* known,
                        const StopToken* stop)
-    : room_(&room), left_to_rays_(room.surfaces().surface_count(), 1.0F) {
+    : room_(&room),
+      ends_(FaceEnds(room.rays(), room.mesh().flat_count())),
+      left_to_rays_(room.surfaces().surface_count(), 1.0F) {
   if (!room.surfaces().any_specular()) return;
   const CausticShooter shooter(room, seed);
   CausticShots shots = shoot_caustics(shooter, known, stop);
@@ -53,99 +52,49 @@ CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, 
 CausticMap::Photons CausticMap::of_part(CausticPhotons photons) {
   Photons result;
   result.all = std::move(photons);
-  result.gain = std::make_unique<std::atomic<float>[]>(result.all.size());
+  result.spread = std::make_unique<std::atomic<Spread>[]>(result.all.size());
   for (const std::uint8_t code : result.all.radius_codes) result.radius.push_back(photon_radius(code));
   std::array<std::vector<std::uint32_t>, kRadiusLevels> of_level;
   for (std::uint32_t i = 0; i < result.radius.size(); ++i) {
-    std::size_t level = 0;
-    while (level + 1 < kRadiusLevels && radius_of_level(level + 1) >= result.radius[i]) ++level;
-    of_level[level].push_back(i);
+    of_level[level_of_radius(result.radius[i])].push_back(i);
   }
   for (std::size_t level = 0; level < kRadiusLevels; ++level)
     result.grids[level] = PhotonGrid(result.all.places, of_level[level], 2 * radius_of_level(level));
   return result;
 }
 
-float CausticMap::gain_of(const Photons& photons, std::uint32_t i) const {
-  std::atomic<float>& gain = photons.gain[i];
-  if (const float known = gain.load(std::memory_order_relaxed); known != 0) return known;
+CausticMap::Spread CausticMap::spread_of(const Photons& photons, std::uint32_t i) const {
+  std::atomic<Spread>& spread = photons.spread[i];
+  if (const Spread known = spread.load(std::memory_order_relaxed); known.gain != 0) return known;
   const Vec3f& normal = photons.all.normals[i];
   const Vec3f& place = photons.all.places[i];
-  const float radius = photons.radius[i];
-  const bool walled = is_beside_wall(normal, place, radius);
-  float found = 1;
-  if (walled || !is_inside_triangle(photons.all.triangles[i], place, radius)) {
-    const double turn = static_cast<double>(i) * (std::numbers::phi - 1);
-    found = gain_at_end(normal, place, radius, static_cast<float>(turn - std::floor(turn)));
+  const float before = photons.radius[i];
+  const double turn = static_cast<double>(i) * (std::numbers::phi - 1);
+  const auto fraction = static_cast<float>(turn - std::floor(turn));
+  Spread found{.gain = 1, .shrunk = 0, .walled = false};
+  float radius = before;
+  // Share of the kernel that lies on the face; tells of walls and gains by the way.
+  const auto share_within = [&](float reach) {
+    found.walled = ends_->is_beside_wall(normal, place, reach);
+    FaceEnds::Kernel kernel;
+    if (found.walled || !ends_->is_inside_triangle(photons.all.triangles[i], place, reach))
+      kernel = ends_->kernel(normal, place, reach, fraction, found.walled);
+    found.gain = kernel.gain;
+    return kernel.share;
+  };
+  // On what is narrower than a third of the radius, gains cannot be told.
+  constexpr float kLeastShare = 0.3F;
+  constexpr int kMostTimes = 4;
+  const auto shrink = [&](float share) { radius *= std::sqrt(std::max(share, 0.1F * kLeastShare)); };
+  if (before < kLargestPhotonRadius) shrink(share_within(radius_of_level(level_of_radius(before))));
+  float share = share_within(radius);
+  for (int times = 0; share < kLeastShare && times < kMostTimes; ++times) {
+    shrink(share);
+    share = share_within(radius);
   }
-  if (walled) found = -found;
-  gain.store(found, std::memory_order_relaxed);
+  found.shrunk = static_cast<std::uint16_t>(std::lround(65535 * radius / before));
+  spread.store(found, std::memory_order_relaxed);
   return found;
-}
-
-bool CausticMap::is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const {
-  constexpr int kDirections = 8;
-  const Frame frame(normal);
-  const Vec3f from = place + kLift * radius * normal;
-  for (int k = 0; k < kDirections; ++k) {
-    const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
-    const Vec3f to = from + radius * frame.to_world({std::cos(phi), std::sin(phi), 0});
-    if (!room_->rays().visible(from, to)) return true;
-  }
-  return false;
-}
-
-bool CausticMap::is_inside_triangle(TriangleId triangle, const Vec3f& place, float radius) const {
-  const RayTracer& rays = room_->rays();
-  if (triangle.index() >= room_->mesh().flat_count()) return false;
-  const Vec3f& normal = rays.normal(triangle);
-  for (int k = 0; k < 3; ++k) {
-    const Vec3f from = rays.corner(triangle, k);
-    const Vec3f edge = rays.corner(triangle, (k + 1) % 3) - from;
-    if (normal.cross(edge).dot(place - from) < radius * edge.norm()) return false;
-  }
-  return true;
-}
-
-/// By what light there is multiplied, for the photon and for the point, where only a share of the kernel lies
-/// on the face. With both gains what a photon brings and even light stay what they are: they solve the
-/// scaling of [SK67] along the end of a half plane to 4 % (0.4 % in the mean), and where as much is lost all
-/// over a face smaller than the kernel. Which of the two it is shows in how far the lost part lies to one
-/// side. A gain of the point alone, the reciprocal of its share, keeps even light, and takes up to 30 % from
-/// what lies along the end.
-float CausticMap::gain_at_end(const Vec3f& normal, const Vec3f& place, float radius, float turn) const {
-  const RayTracer& rays = room_->rays();
-  constexpr int kPoints = 12;
-  const Frame frame(normal);
-  const float lift = kLift * radius;
-  const Vec3f from = place + lift * normal;
-  int beyond = 0;
-  Eigen::Vector2f beyond_mean = Eigen::Vector2f::Zero();
-  float beyond_distance = 0;
-  for (int k = 0; k < kPoints; ++k) {
-    // As the kernel weighs them, on a spiral.
-    const float u = (static_cast<float>(k) + 0.5F) / kPoints;
-    const float r = radius * std::sqrt(1 - std::sqrt(1 - u));
-    const float phi =
-        2 * std::numbers::pi_v<float> * (turn + static_cast<float>(k) * (std::numbers::phi_v<float> - 1));
-    const Eigen::Vector2f place_in_plane(r * std::cos(phi), r * std::sin(phi));
-    const Vec3f to = from + frame.to_world({place_in_plane.x(), place_in_plane.y(), 0});
-    Hit hit;
-    const bool is_on_face = rays.visible(from, to) && rays.closest(to, -normal, hit) &&
-                            hit.distance < 2.5F * lift &&
-                            side_normal(rays, hit.triangle, hit.u, hit.v, hit.front).dot(normal) > kSameFace;
-    if (is_on_face) continue;
-    ++beyond;
-    beyond_mean += place_in_plane;
-    beyond_distance += r;
-  }
-  if (beyond == 0) return 1;
-  constexpr float kRise = 2.4F;
-  constexpr float kOfHalfPlane = 2 / std::numbers::pi_v<float>;  // one-sidedness at its end
-  const float one_sided = std::min(1.0F, beyond_mean.norm() / (kOfHalfPlane * beyond_distance));
-  const float lost = static_cast<float>(std::min(beyond, kPoints - 1)) / kPoints;
-  const float all_over = 1 / std::sqrt(1 - lost);
-  return all_over + one_sided * (1 + kRise * lost * lost - all_over);
 }
 
 void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool whole, float turn,
@@ -165,17 +114,19 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
   std::vector<float> found;        // by band
   for (std::size_t level = 0; level < kRadiusLevels; ++level)
     photons.grids[level].visit(place, radius_of_level(level), [&](std::uint32_t i, float d2) {
-      const float radius = photons.radius[i];
+      float radius = photons.radius[i];
       if (d2 >= radius * radius || !photons.all.is_on_face(i, x.normal, place, radius)) return;
-      const float gain = gain_of(photons, i);
-      if (gain < 0) {
+      const Spread spread = spread_of(photons, i);
+      radius = spread.radius_of(radius);
+      if (d2 >= radius * radius) return;
+      if (spread.walled) {
         walled = true;
-        const Vec3f above = kLift * radius * x.normal;
+        const Vec3f above = kLiftOverFace * radius * x.normal;
         if (!rays.visible(place + above, photons.all.places[i] + above)) return;
       }
       if (found.empty()) found.assign(bands, 0.0F);
       const float share = whole ? 1 : 1 - left_to_rays(photons.all.luminaires[i]);
-      const float per_unit = share * kernel(d2, radius) * std::fabs(gain);
+      const float per_unit = share * kernel(d2, radius) * spread.gain;
       const float per_m2 = per_unit / (metres * metres);
       for (std::size_t b = 0; b < bands; ++b) found[b] += per_m2 * photons.all.power[i * bands + b];
       largest = std::max(largest, radius);
@@ -183,9 +134,10 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
       of_radii += static_cast<double>(per_unit) * static_cast<double>(radius);
     });
   if (!(count > 0)) return;
-  const float gain = !walled && is_inside_triangle(x.triangle, place, largest)
-                         ? 1
-                         : gain_at_end(x.normal, place, static_cast<float>(of_radii / count), turn);
+  const float gain =
+      !walled && ends_->is_inside_triangle(x.triangle, place, largest)
+          ? 1
+          : ends_->kernel(x.normal, place, static_cast<float>(of_radii / count), turn, walled).gain;
   for (std::size_t b = 0; b < bands; ++b) sum[b] += weight[b] * brdf(b) * found[b] * gain;
 }
 

@@ -3,10 +3,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "scenes/model/stop_token.h"
 #include "solver/gather/caustic_photons.h"
+#include "solver/gather/face_ends.h"
 #include "solver/gather/photon_grid.h"
 #include "solver/gather/photon_radii.h"
 #include "solver/reflect/lobe.h"
@@ -26,7 +28,8 @@ namespace reemit {
 /// caustic is blurred by as much, and a photon spreads the power that it has, no more and no less. With a
 /// radius of the point that is asked about, dark points would reach far into the bright edge beside them, and
 /// nothing make up for it. Where a face ends, or something stands on it, photons beyond are not counted, and
-/// a gain of the photon and one of the point make up for the part of the kernel that is lost there.
+/// a gain of the photon and one of the point make up for the part of the kernel that is lost there
+/// (FaceEnds); on what is much narrower than a photon's radius, that is made smaller.
 class CausticMap {
  public:
   /// Shoots the photons: `parts` independent sets, a power of two up to CausticShots::kParts. `known` (may be
@@ -50,24 +53,28 @@ class CausticMap {
                      const float* weight, float* sum) const;
 
  private:
+  /// How a photon spreads its power on its face.
+  struct Spread {
+    float gain = 0;            ///< FaceEnds::Kernel::gain at its place.
+    std::uint16_t shrunk = 0;  ///< Its radius over the one it had, in 65,535ths.
+    bool walled = false;       ///< Something stands on the face within its radius.
+
+    float radius_of(float before) const { return before * static_cast<float>(shrunk) / 65535; }
+  };
   struct Photons {
     CausticPhotons all;
-    std::vector<float> radius;  ///< By photon.
-    /// By photon: gain_of() where it has been asked for, else 0.
-    std::unique_ptr<std::atomic<float>[]> gain;
+    std::vector<float> radius;  ///< By photon, before spread_of.
+    /// By photon: spread_of() where it has been asked for, else a gain of 0.
+    std::unique_ptr<std::atomic<Spread>[]> spread;
     /// Of the photons of all radii down to half that of the level.
     std::array<PhotonGrid, kRadiusLevels> grids;
   };
   static Photons of_part(CausticPhotons photons);
-  /// gain_at_end of the place of a photon, below 0 if something stands on the face within its radius. Looked
-  /// for when it is asked for first, most photons lying where no one looks; all threads find the same.
-  float gain_of(const Photons& photons, std::uint32_t i) const;
-
-  bool is_beside_wall(const Vec3f& normal, const Vec3f& place, float radius) const;
-  bool is_inside_triangle(TriangleId triangle, const Vec3f& place, float radius) const;
-  float gain_at_end(const Vec3f& normal, const Vec3f& place, float radius, float turn) const;
+  /// Looked for when it is asked for first, most photons lying where no one looks; all threads find the same.
+  Spread spread_of(const Photons& photons, std::uint32_t i) const;
 
   const Room* room_ = nullptr;
+  std::optional<FaceEnds> ends_;
   std::vector<float> left_to_rays_;  // by surface
   std::vector<Photons> parts_;
 };

@@ -39,6 +39,12 @@ float photon_radius(std::uint8_t code) {
   return kLargestPhotonRadius * std::exp2(-static_cast<float>(code) / kCodesPerOctave);
 }
 
+std::size_t level_of_radius(float radius) {
+  std::size_t level = 0;
+  while (level + 1 < kRadiusLevels && radius_of_level(level + 1) >= radius) ++level;
+  return level;
+}
+
 PhotonRadii::PhotonRadii(CausticPhotons pilot, float share)
     : pilot_(std::move(pilot)), enough_(share * kPhotonsInRadius) {
   const std::vector<std::uint32_t> all = numbers_below(pilot_.size());

@@ -22,6 +22,9 @@ inline constexpr std::size_t kRadiusLevels = 6;
 constexpr float radius_of_level(std::size_t level) {
   return kLargestPhotonRadius / static_cast<float>(1U << level);
 }
+/// The last level whose radius is not smaller. Photons are counted within that of this level to find the
+/// radius, if they lie about evenly.
+std::size_t level_of_radius(float radius);
 
 /// Sets the radii of photons by how densely those of a pilot lie around them.
 class PhotonRadii {
