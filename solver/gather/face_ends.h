@@ -30,8 +30,8 @@ class FaceEnds {
   /// that count at points x by the kernel K(x, y) = 2/(pi r^2) (1 - |x-y|^2/r^2) then bring what they have,
   /// no more and no less, and even light is even up to the ends of the face. It is found on a patch of places
   /// around this one by the scaling of [SK67] in the symmetric form, as exact as 64 places are: within 2 % at
-  /// the end of a half plane and 4 % on strips from a third of the radius of width; 6 % at the very corner of
-  /// a square. `turn` in [0,1) places the places. `beside_wall`: rays along the face look what is beyond a
+  /// the end of a half plane and on strips as wide as half the radius, 4 % in corners and on faces that are
+  /// smaller. `turn` in [0,1) places the places. `beside_wall`: rays along the face look what is beyond a
   /// wall.
   Kernel kernel(const Vec3f& normal, const Vec3f& place, float radius, float turn, bool beside_wall) const;
 
