@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
@@ -60,12 +61,14 @@ class ImageReading {
   template <class T>
   bool read_rows(OIIO::TypeDesc type) {
     const OIIO::ImageSpec& spec = input_.spec();
-    std::vector<T> row(static_cast<std::size_t>(spec.width) * channels_);
+    const int together = std::max(1, spec.tile_height);
+    const std::size_t row_size = static_cast<std::size_t>(spec.width) * channels_;
+    std::vector<T> rows(row_size * static_cast<std::size_t>(together));
     std::vector<Texel> sums(static_cast<std::size_t>(image_.width));
     for (int y = 0; y < spec.height; ++y) {
-      if (!input_.read_scanlines(0, 0, spec.y + y, spec.y + y + 1, spec.z, 0, static_cast<int>(channels_),
-                                 type, row.data()))
+      if (y % together == 0 && !read_from(y, std::min(y + together, spec.height), type, rows.data()))
         return false;
+      const std::span row(&rows[row_size * static_cast<std::size_t>(y % together)], row_size);
       if (step_ == 1) {
         for (std::size_t i = 0; i < row.size(); i += channels_) keep(&row[i]);
         continue;
@@ -78,6 +81,15 @@ class ImageReading {
       if ((y + 1) % step_ == 0 || y + 1 == spec.height) keep_means(sums, y % step_ + 1);
     }
     return true;
+  }
+
+  /// Rows from `begin` on: one, or a row of tiles.
+  bool read_from(int begin, int end, OIIO::TypeDesc type, void* rows) {
+    const OIIO::ImageSpec& spec = input_.spec();
+    // read_scanlines sets 64 MB aside at every call.
+    if (spec.tile_height == 0) return input_.read_scanline(spec.y + begin, spec.z, type, rows);
+    return input_.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, spec.z,
+                             spec.z + 1, 0, static_cast<int>(channels_), type, rows);
   }
 
   /// Red, green, blue and opacity of what has 1 to 4 channels.

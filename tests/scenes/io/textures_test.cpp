@@ -81,6 +81,29 @@ TEST_F(Textures, ObjMapsOfEmissionAndOpacity) {
   EXPECT_FALSE(m.non_diffuse.transmits_specularly()) << "what d takes passes the cut-out, not a clear sheet";
 }
 
+TEST_F(Textures, ImagesInTilesAreThoseInRows) {
+  constexpr int kWidth = 45;  // neither side is a multiple of the tiles
+  constexpr int kHeight = 37;
+  std::vector<unsigned char> values;
+  for (int i = 0; i < kWidth * kHeight * 3; ++i) values.push_back(static_cast<unsigned char>(i * 7 % 256));
+  TextureImages images;
+  test::write_png(folder_ / "rows.tif", kWidth, kHeight, 3, values);
+  const TextureRead rows = images.from_file(folder_ / "rows.tif", TextureEncoding::kSrgb);
+  ASSERT_TRUE(rows.image) << rows.problem;
+  for (const char* name : {"tiles.tif", "tiles.exr"}) {
+    test::write_png(folder_ / name, kWidth, kHeight, 3, values, 16);
+    const TextureRead tiles = images.from_file(folder_ / name, TextureEncoding::kSrgb);
+    ASSERT_TRUE(tiles.image) << tiles.problem;
+    EXPECT_EQ(tiles.image->width, kWidth);
+    EXPECT_EQ(tiles.image->height, kHeight);
+    if (!tiles.image->bytes.empty()) {
+      EXPECT_EQ(tiles.image->bytes, rows.image->bytes);
+    }
+    for (std::size_t i = 0; i < tiles.image->texels.size(); ++i)  // EXR has no 8 bits
+      EXPECT_NEAR(tiles.image->texels[i][1], values[3 * i + 1] / 255.0, 1e-3);
+  }
+}
+
 TEST_F(Textures, BadCoordinatesOfObjFilesAreTold) {
   expect_input_error([&] { obj("newmtl a\n", "vt nan 0\n"); }, {"room.obj:12", "not a finite number"});
   expect_input_error([&] { obj("newmtl a\n", "vt 1 2 3 4\n"); }, {"room.obj:12", "'vt' has 4 numbers"});
