@@ -55,9 +55,8 @@ CausticMap::Photons CausticMap::of_part(CausticPhotons photons) {
   result.spread = std::make_unique<std::atomic<Spread>[]>(result.all.size());
   for (const std::uint8_t code : result.all.radius_codes) result.radius.push_back(photon_radius(code));
   std::array<std::vector<std::uint32_t>, kRadiusLevels> of_level;
-  for (std::uint32_t i = 0; i < result.radius.size(); ++i) {
+  for (std::uint32_t i = 0; i < result.radius.size(); ++i)
     of_level[level_of_radius(result.radius[i])].push_back(i);
-  }
   for (std::size_t level = 0; level < kRadiusLevels; ++level)
     result.grids[level] = PhotonGrid(result.all.places, of_level[level], 2 * radius_of_level(level));
   return result;
