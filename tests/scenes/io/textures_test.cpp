@@ -104,6 +104,21 @@ TEST_F(Textures, ImagesInTilesAreThoseInRows) {
   }
 }
 
+TEST_F(Textures, ImagesThatAreCutOffAreTold) {
+  const std::vector<unsigned char> values(96 * 96 * 3, 77);
+  TextureImages images;
+  for (const char* name : {"i.jpg", "i.png", "i.tif"}) {
+    test::write_png(folder_ / name, 96, 96, 3, values);
+    EXPECT_TRUE(images.from_file(folder_ / name, TextureEncoding::kSrgb).image);
+    const std::string whole = test::read_bytes(folder_ / name);
+    const std::string cut_name = std::string("cut_") + name;
+    const TextureRead read = images.from_file(folder_.write(cut_name, whole.substr(0, whole.size() * 4 / 5)),
+                                              TextureEncoding::kSrgb);
+    EXPECT_FALSE(read.image) << name;
+    EXPECT_THAT(read.problem, HasSubstr(cut_name));
+  }
+}
+
 TEST_F(Textures, BadCoordinatesOfObjFilesAreTold) {
   expect_input_error([&] { obj("newmtl a\n", "vt nan 0\n"); }, {"room.obj:12", "not a finite number"});
   expect_input_error([&] { obj("newmtl a\n", "vt 1 2 3 4\n"); }, {"room.obj:12", "'vt' has 4 numbers"});
