@@ -11,6 +11,7 @@
 
 #include "scenes/model/error.h"
 #include "viewer_export/output/smoothing_errors.h"
+#include "viewer_export/still/coarse_smoothing.h"
 #include "viewer_export/still/similar_pixels.h"
 #include "viewer_export/still/still_planes.h"
 
@@ -22,8 +23,11 @@ constexpr int kBlock = 16;   ///< Pixels to a side of a block.
 
 /// What a picture becomes, in the layout of StillImage.
 struct SmoothedLayers {
-  explicit SmoothedLayers(const StillImage& image)
-      : radiance(image.radiance.size()), direct(image.radiance.size()), caustic(image.caustic.size()) {}
+  SmoothedLayers(const StillImage& image, const StillPlanes& planes)
+      : irradiance{planes.irradiance, planes.direct, planes.caustic},
+        radiance(image.radiance.size()),
+        direct(image.radiance.size()),
+        caustic(image.caustic.size()) {}
 
   void take(const SimilarPixels& stripe, const StillPlanes& planes, const StillImage& image, int first,
             int last) {
@@ -32,21 +36,39 @@ struct SmoothedLayers {
     const std::size_t count = planes.at(0, last) - start;
     for (std::size_t p = 0; p < count; ++p) {
       for (std::size_t b = 0; b < planes.bands; ++b) {
+        const std::size_t from = b * n + start + p;
         const std::size_t k = (start + p) * planes.bands + b;
-        const float scale = planes.scale[b * n + start + p];
+        const float scale = planes.scale[from];
         const auto both = [&](std::size_t layer) {
-          return 0.5F * scale * (stripe.mean(0, layer, b, p) + stripe.mean(1, layer, b, p));
+          return 0.5F * (stripe.mean(0, layer, b, p) + stripe.mean(1, layer, b, p));
         };
-        radiance.value[k] = both(0);
-        direct[k] = both(1);
-        if (!image.caustic.empty()) caustic[k] = both(2);
+        for (std::size_t h = 0; h < 2; ++h) irradiance.halves[h][from] = stripe.mean(h, 0, b, p);
+        irradiance.direct[from] = both(1);
+        if (!caustic.empty()) irradiance.caustic[from] = both(2);
         radiance.variance[k] = scale * scale * stripe.variance(b, p);
-        radiance.halves_apart[k] = 0.5F * scale * (stripe.mean(0, 0, b, p) - stripe.mean(1, 0, b, p));
         radiance.covariance[k] = stripe.own_share(p) * image.radiance_stderr[k] * image.radiance_stderr[k];
       }
     }
   }
 
+  /// Radiance of the irradiance.
+  void finish(const StillPlanes& planes) {
+    const std::size_t n = planes.pixels();
+    for (std::size_t p = 0; p < n; ++p)
+      for (std::size_t b = 0; b < planes.bands; ++b) {
+        const std::size_t from = b * n + p;
+        const std::size_t k = p * planes.bands + b;
+        const float scale = planes.scale[from];
+        const float first = irradiance.halves[0][from];
+        const float second = irradiance.halves[1][from];
+        radiance.value[k] = 0.5F * scale * (first + second);
+        radiance.halves_apart[k] = 0.5F * scale * (first - second);
+        direct[k] = scale * irradiance.direct[from];
+        if (!caustic.empty()) caustic[k] = scale * irradiance.caustic[from];
+      }
+  }
+
+  SmoothedIrradiance irradiance;
   SmoothedValues radiance;
   std::vector<float> direct, caustic;
 };
@@ -82,7 +104,7 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
   if (image.radiance_stderr.empty()) return;
   try {
     const StillPlanes planes(image, halves);
-    SmoothedLayers smoothed(image);
+    SmoothedLayers smoothed(image, planes);
     const int stripes = (image.height + kStripe - 1) / kStripe;
     tbb::parallel_for(0, stripes, [&](int s) {
       if (stop.requested()) return;
@@ -92,7 +114,9 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
       stripe.average();
       smoothed.take(stripe, planes, image, first, last);
     });
+    if (!planes.caustic.empty()) smooth_coarsely(planes, stop, smoothed.irradiance);
     if (stop.requested()) return;
+    smoothed.finish(planes);
     image.info.error = 0;
     for (std::size_t b = 0; b < image.bands.count(); ++b)
       image.info.error =

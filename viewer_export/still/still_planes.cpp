@@ -46,6 +46,56 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
   find_slopes();
 }
 
+StillPlanes::StillPlanes(const StillPlanes& fine, int side)
+    : width((fine.width + side - 1) / side), height((fine.height + side - 1) / side), bands(fine.bands) {
+  // Of a square of one surface: how far normals lie from their mean, and depths from each other besides what
+  // their slope says.
+  constexpr float kTurned = 0.1F;
+  constexpr float kApart = 0.01F;
+  const std::size_t n = pixels();
+  const auto mean_over = [&](int x, int y, const std::vector<float>& values, std::size_t plane) {
+    float sum = 0;
+    float count = 0;
+    for (int v = y * side; v < std::min(fine.height, (y + 1) * side); ++v)
+      for (int u = x * side; u < std::min(fine.width, (x + 1) * side); ++u, ++count)
+        sum += values[plane * fine.pixels() + fine.at(u, v)];
+    return sum / count;
+  };
+  const auto reduce = [&](const std::vector<float>& values, std::size_t planes) {
+    std::vector<float> result(planes * n);
+    for (std::size_t k = 0; k < planes; ++k)
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) result[k * n + at(x, y)] = mean_over(x, y, values, k);
+    return result;
+  };
+  for (std::size_t h = 0; h < 2; ++h) irradiance[h] = reduce(fine.irradiance[h], bands);
+  direct = reduce(fine.direct, bands);
+  if (!fine.caustic.empty()) caustic = reduce(fine.caustic, bands);
+  precision = reduce(fine.precision, 1);
+  depth = reduce(fine.depth, 1);
+  for (std::size_t k = 0; k < 3; ++k) normal[k] = reduce(fine.normal[k], 1);
+  const auto is_one = [&](int x, int y) {
+    const std::size_t p = at(x, y);
+    const float reach = static_cast<float>(side);
+    for (int v = y * side; v < std::min(fine.height, (y + 1) * side); ++v)
+      for (int u = x * side; u < std::min(fine.width, (x + 1) * side); ++u) {
+        const std::size_t q = fine.at(u, v);
+        float turned = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+          turned += (fine.normal[k][q] - normal[k][p]) * (fine.normal[k][q] - normal[k][p]);
+        const float allowed = kApart * depth[p] + reach * (fine.slope_x[q] + fine.slope_y[q]);
+        if (turned > kTurned * kTurned || std::abs(fine.depth[q] - depth[p]) > allowed) return false;
+      }
+    return true;
+  };
+  std::vector<std::size_t> mixed;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (!is_one(x, y)) mixed.push_back(at(x, y));
+  for (const std::size_t p : mixed) normal[0][p] = kMixed * static_cast<float>(2 + p);
+  find_slopes();
+}
+
 void StillPlanes::find_slopes() {
   slope_x.assign(pixels(), 0.0F);
   slope_y.assign(pixels(), 0.0F);

@@ -12,6 +12,13 @@ namespace reemit {
 struct StillPlanes {
   /// Pre: the still has standard errors, and halves of its layout.
   StillPlanes(const StillImage& image, const StillHalves& halves);
+  /// Means over squares of `side` x `side` pixels, those at the right and lower rim smaller. `variance` is
+  /// left empty: noise that pixels share does not fall as that of theirs. Squares that hold more than one
+  /// surface get a normal that none other is like (holds_one()).
+  StillPlanes(const StillPlanes& fine, int side);
+
+  /// Of squares: whether pixel p is a mean over one surface.
+  bool holds_one(std::size_t p) const { return normal[0][p] < kMixed; }
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
   std::size_t at(int x, int y) const {
@@ -34,6 +41,8 @@ struct StillPlanes {
   std::vector<float> slope_x, slope_y;  ///< Of depth per pixel [m]: of both sides the smaller.
 
  private:
+  static constexpr float kMixed = 1e3F;
+
   void find_slopes();
 };
 
