@@ -21,7 +21,7 @@ constexpr int kAround = 3;  ///< Squares to each side whose noise is taken to be
 constexpr float kContrast = 0.5F;
 /// Of the value of a pixel.
 constexpr float kMostChange = 0.3F;
-constexpr int kStripe = 8;  ///< Rows of squares that are smoothed in one go.
+constexpr int kRowsTogether = 8;  ///< Rows of squares that are smoothed in one go.
 
 /// One surface goes on from a square to another, or to a pixel.
 struct Likeness {
@@ -68,10 +68,10 @@ SmoothedIrradiance smoothed_squares(const StillPlanes& squares, const StopToken&
   const std::size_t n = squares.pixels();
   SmoothedIrradiance result{squares.irradiance, std::vector<float>(squares.direct.size()),
                             std::vector<float>(squares.caustic.size())};
-  tbb::parallel_for(0, (squares.height + kStripe - 1) / kStripe, [&](int s) {
+  tbb::parallel_for(0, (squares.height + kRowsTogether - 1) / kRowsTogether, [&](int s) {
     if (stop.requested()) return;
-    const int first = s * kStripe;
-    const int last = std::min(squares.height, first + kStripe);
+    const int first = s * kRowsTogether;
+    const int last = std::min(squares.height, first + kRowsTogether);
     SimilarPixels stripe(squares, first, last);
     stripe.average();
     const std::size_t start = squares.at(0, first);

@@ -122,8 +122,14 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
       image.info.error =
           std::max(image.info.error, complete_errors(image, smoothed.radiance, b, error_floor));
     for (std::size_t k = 0; k < image.radiance.size(); ++k) {
-      const float caustic = image.caustic.empty() ? 0.0F : smoothed.caustic[k];
-      image.indirect[k] = std::max(0.0F, smoothed.radiance.value[k] - smoothed.direct[k] - caustic);
+      // Each layer has been bounded by itself; together they are the picture.
+      smoothed.direct[k] = std::min(smoothed.direct[k], smoothed.radiance.value[k]);
+      float rest = smoothed.radiance.value[k] - smoothed.direct[k];
+      if (!image.caustic.empty()) {
+        smoothed.caustic[k] = std::min(smoothed.caustic[k], rest);
+        rest -= smoothed.caustic[k];
+      }
+      image.indirect[k] = rest;
       image.radiance_stderr[k] = std::sqrt(smoothed.radiance.variance[k]);
     }
     image.smoothed = true;
