@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <tbb/parallel_for.h>
 
@@ -63,11 +64,16 @@ void find_variances(StillPlanes& squares) {
   });
 }
 
+/// Values by band and pixel, as those of StillPlanes.
+struct Changes {
+  std::array<std::vector<float>, 2> irradiance;
+  std::vector<float> direct, caustic;
+};
+
 /// What smoothing changes of squares.
-SmoothedIrradiance smoothed_squares(const StillPlanes& squares, const StopToken& stop) {
+Changes changes_of(const StillPlanes& squares, const StopToken& stop) {
   const std::size_t n = squares.pixels();
-  SmoothedIrradiance result{squares.irradiance, std::vector<float>(squares.direct.size()),
-                            std::vector<float>(squares.caustic.size())};
+  Changes result{squares.irradiance, squares.direct, squares.caustic};
   tbb::parallel_for(0, (squares.height + kRowsTogether - 1) / kRowsTogether, [&](int s) {
     if (stop.requested()) return;
     const int first = s * kRowsTogether;
@@ -77,13 +83,14 @@ SmoothedIrradiance smoothed_squares(const StillPlanes& squares, const StopToken&
     const std::size_t start = squares.at(0, first);
     for (std::size_t p = 0; p < squares.at(0, last) - start; ++p)
       for (std::size_t b = 0; b < squares.bands; ++b) {
-        const std::size_t to = b * n + start + p;
+        const std::size_t at = b * n + start + p;
         const auto both = [&](std::size_t layer) {
           return 0.5F * (stripe.mean(0, layer, b, p) + stripe.mean(1, layer, b, p));
         };
-        for (std::size_t h = 0; h < 2; ++h) result.halves[h][to] = stripe.mean(h, 0, b, p);
-        result.direct[to] = both(1);
-        if (!result.caustic.empty()) result.caustic[to] = both(2);
+        for (std::size_t h = 0; h < 2; ++h)
+          result.irradiance[h][at] = stripe.mean(h, 0, b, p) - squares.irradiance[h][at];
+        result.direct[at] = both(1) - squares.direct[at];
+        result.caustic[at] = both(2) - squares.caustic[at];
       }
   });
   return result;
@@ -148,34 +155,27 @@ struct Surrounding {
   }
 };
 
-/// The part of smooth_coarsely for squares of one size. `pixels` holds what `smoothed` does.
-void smooth_by_squares(const StillPlanes& pixels, int side, const StopToken& stop,
-                       SmoothedIrradiance& smoothed) {
+/// The part of smooth_coarsely for squares of one size.
+void smooth_by_squares(int side, const StopToken& stop, StillPlanes& pixels) {
   StillPlanes squares(pixels, side);
   find_variances(squares);
-  SmoothedIrradiance change = smoothed_squares(squares, stop);
+  const Changes changes = changes_of(squares, stop);
   if (stop.requested()) return;
-  const auto subtract = [](std::vector<float>& from, const std::vector<float>& what) {
-    for (std::size_t i = 0; i < from.size(); ++i) from[i] -= what[i];
-  };
-  for (std::size_t h = 0; h < 2; ++h) subtract(change.halves[h], squares.irradiance[h]);
-  subtract(change.direct, squares.direct);
-  subtract(change.caustic, squares.caustic);
   const std::vector<std::uint8_t> even = even_squares(pixels, squares, side);
   const std::size_t n = pixels.pixels();
   tbb::parallel_for(0, pixels.height, [&](int y) {
     for (int x = 0; x < pixels.width; ++x) {
       const Surrounding around(pixels, squares, even, side, x, y);
       const std::size_t p = pixels.at(x, y);
-      const auto add = [&](std::vector<float>& values, const std::vector<float>& changes, std::size_t b) {
+      const auto change = [&](std::vector<float>& values, const std::vector<float>& by, std::size_t b) {
         float& value = values[b * n + p];
         const float most = kMostChange * value;
-        value += std::clamp(around.mean(&changes[b * squares.pixels()]), -most, most);
+        value += std::clamp(around.mean(&by[b * squares.pixels()]), -most, most);
       };
       for (std::size_t b = 0; b < pixels.bands; ++b) {
-        for (std::size_t h = 0; h < 2; ++h) add(smoothed.halves[h], change.halves[h], b);
-        add(smoothed.direct, change.direct, b);
-        add(smoothed.caustic, change.caustic, b);
+        for (std::size_t h = 0; h < 2; ++h) change(pixels.irradiance[h], changes.irradiance[h], b);
+        change(pixels.direct, changes.direct, b);
+        change(pixels.caustic, changes.caustic, b);
       }
     }
   });
@@ -183,14 +183,8 @@ void smooth_by_squares(const StillPlanes& pixels, int side, const StopToken& sto
 
 }  // namespace
 
-void smooth_coarsely(const StillPlanes& sampled, const StopToken& stop, SmoothedIrradiance& smoothed) {
-  StillPlanes pixels = sampled;
-  for (const int side : kSides) {
-    pixels.irradiance = smoothed.halves;
-    pixels.direct = smoothed.direct;
-    pixels.caustic = smoothed.caustic;
-    smooth_by_squares(pixels, side, stop, smoothed);
-  }
+void smooth_coarsely(StillPlanes& smoothed, const StopToken& stop) {
+  for (const int side : kSides) smooth_by_squares(side, stop, smoothed);
 }
 
 }  // namespace reemit

@@ -21,13 +21,13 @@ namespace {
 constexpr int kStripe = 16;  ///< Rows that are averaged in one go.
 constexpr int kBlock = 16;   ///< Pixels to a side of a block.
 
-/// What a picture becomes, in the layout of StillImage.
+/// What a picture becomes.
 struct SmoothedLayers {
   SmoothedLayers(const StillImage& image, const StillPlanes& planes)
-      : irradiance{planes.irradiance, planes.direct, planes.caustic},
-        radiance(image.radiance.size()),
-        direct(image.radiance.size()),
-        caustic(image.caustic.size()) {}
+      : irradiance(planes.irradiance),
+        direct(planes.direct),
+        caustic(planes.caustic),
+        radiance(image.radiance.size()) {}
 
   void take(const SimilarPixels& stripe, const StillPlanes& planes, const StillImage& image, int first,
             int last) {
@@ -36,42 +36,58 @@ struct SmoothedLayers {
     const std::size_t count = planes.at(0, last) - start;
     for (std::size_t p = 0; p < count; ++p) {
       for (std::size_t b = 0; b < planes.bands; ++b) {
-        const std::size_t from = b * n + start + p;
+        const std::size_t at = b * n + start + p;
         const std::size_t k = (start + p) * planes.bands + b;
-        const float scale = planes.scale[from];
+        const float scale = planes.scale[at];
         const auto both = [&](std::size_t layer) {
           return 0.5F * (stripe.mean(0, layer, b, p) + stripe.mean(1, layer, b, p));
         };
-        for (std::size_t h = 0; h < 2; ++h) irradiance.halves[h][from] = stripe.mean(h, 0, b, p);
-        irradiance.direct[from] = both(1);
-        if (!caustic.empty()) irradiance.caustic[from] = both(2);
+        for (std::size_t h = 0; h < 2; ++h) irradiance[h][at] = stripe.mean(h, 0, b, p);
+        direct[at] = both(1);
+        if (!caustic.empty()) caustic[at] = both(2);
         radiance.variance[k] = scale * scale * stripe.variance(b, p);
         radiance.covariance[k] = stripe.own_share(p) * image.radiance_stderr[k] * image.radiance_stderr[k];
       }
     }
   }
 
-  /// Radiance of the irradiance.
-  void finish(const StillPlanes& planes) {
-    const std::size_t n = planes.pixels();
-    for (std::size_t p = 0; p < n; ++p)
-      for (std::size_t b = 0; b < planes.bands; ++b) {
-        const std::size_t from = b * n + p;
-        const std::size_t k = p * planes.bands + b;
-        const float scale = planes.scale[from];
-        const float first = irradiance.halves[0][from];
-        const float second = irradiance.halves[1][from];
-        radiance.value[k] = 0.5F * scale * (first + second);
-        radiance.halves_apart[k] = 0.5F * scale * (first - second);
-        direct[k] = scale * irradiance.direct[from];
-        if (!caustic.empty()) caustic[k] = scale * irradiance.caustic[from];
-      }
-  }
-
-  SmoothedIrradiance irradiance;
-  SmoothedValues radiance;
+  /// By band, as those of StillPlanes.
+  std::array<std::vector<float>, 2> irradiance;
   std::vector<float> direct, caustic;
+  SmoothedValues radiance;  ///< In the layout of StillImage; of the values take() finds the errors alone.
 };
+
+/// Radiance of the irradiance that the planes hold.
+void put_radiance(const StillPlanes& planes, SmoothedValues& radiance) {
+  const std::size_t n = planes.pixels();
+  for (std::size_t p = 0; p < n; ++p)
+    for (std::size_t b = 0; b < planes.bands; ++b) {
+      const std::size_t at = b * n + p;
+      const std::size_t k = p * planes.bands + b;
+      const float first = planes.irradiance[0][at];
+      const float second = planes.irradiance[1][at];
+      radiance.value[k] = 0.5F * planes.scale[at] * (first + second);
+      radiance.halves_apart[k] = 0.5F * planes.scale[at] * (first - second);
+    }
+}
+
+/// Layers that together are the picture, though each was averaged by itself.
+void put_layers(const StillPlanes& planes, const std::vector<float>& radiance, StillImage& image) {
+  const std::size_t n = planes.pixels();
+  for (std::size_t p = 0; p < n; ++p)
+    for (std::size_t b = 0; b < planes.bands; ++b) {
+      const std::size_t at = b * n + p;
+      const std::size_t k = p * planes.bands + b;
+      float rest = radiance[k];
+      image.direct[k] = std::min(planes.scale[at] * planes.direct[at], rest);
+      rest -= image.direct[k];
+      if (!image.caustic.empty()) {
+        image.caustic[k] = std::min(planes.scale[at] * planes.caustic[at], rest);
+        rest -= image.caustic[k];
+      }
+      image.indirect[k] = rest;
+    }
+}
 
 /// The pixels of the block that begins at (x0,y0).
 std::vector<std::size_t> pixels_of_block(const StillImage& image, int x0, int y0) {
@@ -103,7 +119,7 @@ double complete_errors(const StillImage& image, SmoothedValues& smoothed, std::s
 void smooth_still(StillImage& image, const StillHalves& halves, double error_floor, const StopToken& stop) {
   if (image.radiance_stderr.empty()) return;
   try {
-    const StillPlanes planes(image, halves);
+    StillPlanes planes(image, halves);
     SmoothedLayers smoothed(image, planes);
     const int stripes = (image.height + kStripe - 1) / kStripe;
     tbb::parallel_for(0, stripes, [&](int s) {
@@ -114,28 +130,22 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
       stripe.average();
       smoothed.take(stripe, planes, image, first, last);
     });
-    if (!planes.caustic.empty()) smooth_coarsely(planes, stop, smoothed.irradiance);
     if (stop.requested()) return;
-    smoothed.finish(planes);
+    planes.irradiance = std::move(smoothed.irradiance);
+    planes.direct = std::move(smoothed.direct);
+    planes.caustic = std::move(smoothed.caustic);
+    if (!planes.caustic.empty()) smooth_coarsely(planes, stop);
+    if (stop.requested()) return;
+    put_radiance(planes, smoothed.radiance);
     image.info.error = 0;
     for (std::size_t b = 0; b < image.bands.count(); ++b)
       image.info.error =
           std::max(image.info.error, complete_errors(image, smoothed.radiance, b, error_floor));
-    for (std::size_t k = 0; k < image.radiance.size(); ++k) {
-      // Each layer has been bounded by itself; together they are the picture.
-      smoothed.direct[k] = std::min(smoothed.direct[k], smoothed.radiance.value[k]);
-      float rest = smoothed.radiance.value[k] - smoothed.direct[k];
-      if (!image.caustic.empty()) {
-        smoothed.caustic[k] = std::min(smoothed.caustic[k], rest);
-        rest -= smoothed.caustic[k];
-      }
-      image.indirect[k] = rest;
-      image.radiance_stderr[k] = std::sqrt(smoothed.radiance.variance[k]);
-    }
+    std::transform(smoothed.radiance.variance.begin(), smoothed.radiance.variance.end(),
+                   image.radiance_stderr.begin(), [](float variance) { return std::sqrt(variance); });
+    put_layers(planes, smoothed.radiance.value, image);
     image.smoothed = true;
     image.radiance = std::move(smoothed.radiance.value);
-    image.direct = std::move(smoothed.direct);
-    image.caustic = std::move(smoothed.caustic);
   } catch (const std::bad_alloc&) {
     throw ResourceError("still", "out of memory to smooth " + std::to_string(image.pixel_count()) + " pixels",
                         "Choose a smaller picture, or do not smooth it.");
