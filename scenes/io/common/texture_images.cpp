@@ -59,7 +59,7 @@ class ImageReading {
 
  private:
   template <class T>
-  bool read_rows(OIIO::TypeDesc type) {
+  bool read_rows(const OIIO::TypeDesc& type) {
     const OIIO::ImageSpec& spec = input_.spec();
     const int together = std::max(1, spec.tile_height);
     const std::size_t row_size = static_cast<std::size_t>(spec.width) * channels_;
@@ -84,7 +84,7 @@ class ImageReading {
   }
 
   /// Rows from `begin` on: one, or a row of tiles.
-  bool read_from(int begin, int end, OIIO::TypeDesc type, void* rows) {
+  bool read_from(int begin, int end, const OIIO::TypeDesc& type, void* rows) {
     const OIIO::ImageSpec& spec = input_.spec();
     // read_scanlines sets 64 MB aside at every call.
     if (spec.tile_height == 0) return input_.read_scanline(spec.y + begin, spec.z, type, rows);
