@@ -37,6 +37,30 @@ struct Noisy {
   StillHalves halves;
 };
 
+/// One sample of a replicate at a pixel.
+struct Light {
+  float direct = 0, indirect = 0, caustic = 0;
+};
+void add(Film& film, int x, int y, std::size_t replicate, const Seen& seen, const Light& light) {
+  const auto albedo = static_cast<float>(seen.albedo);
+  film.add(static_cast<std::size_t>(y * kWidth + x), replicate,
+           {.direct = &light.direct,
+            .indirect = &light.indirect,
+            .caustic = &light.caustic,
+            .albedo = &albedo,
+            .normal = seen.normal,
+            .depth = seen.depth,
+            .seen = 1,
+            .samples = 1});
+}
+
+Noisy finished(Film& film) {
+  Noisy noisy;
+  noisy.halves = film.halves();
+  noisy.image = film.finish();
+  return noisy;
+}
+
 /// A still of eight replicates with normal noise; two thirds of the light are direct.
 template <class Pixel>
 Noisy noisy_picture(Pixel&& seen_at) {
@@ -50,21 +74,9 @@ Noisy noisy_picture(Pixel&& seen_at) {
         const auto radiance =
             static_cast<float>(seen.albedo * seen.light * std::max(0.0, 1 + kNoise * normal(random)));
         const float direct = radiance * 2 / 3;
-        const float indirect = radiance - direct;
-        const auto albedo = static_cast<float>(seen.albedo);
-        film.add(static_cast<std::size_t>(y * kWidth + x), r,
-                 {.direct = &direct,
-                  .indirect = &indirect,
-                  .albedo = &albedo,
-                  .normal = seen.normal,
-                  .depth = seen.depth,
-                  .seen = 1,
-                  .samples = 1});
+        add(film, x, y, r, seen, {.direct = direct, .indirect = radiance - direct});
       }
-  Noisy noisy;
-  noisy.halves = film.halves();
-  noisy.image = film.finish();
-  return noisy;
+  return finished(film);
 }
 
 void smooth(Noisy& noisy, bool stopped = false) {
@@ -123,22 +135,9 @@ Noisy blotchy_picture(Pixel&& seen_at) {
         const auto blotch = static_cast<std::size_t>(y / kBlotch * kColumns + x / kBlotch);
         const auto caustic =
             static_cast<float>(seen.albedo * seen.light * (1 + noise[r * kBlotches + blotch]));
-        const float none = 0;
-        const auto albedo = static_cast<float>(seen.albedo);
-        film.add(static_cast<std::size_t>(y * kWidth + x), r,
-                 {.direct = &none,
-                  .indirect = &none,
-                  .caustic = &caustic,
-                  .albedo = &albedo,
-                  .normal = seen.normal,
-                  .depth = seen.depth,
-                  .seen = 1,
-                  .samples = 1});
+        add(film, x, y, r, seen, {.caustic = caustic});
       }
-  Noisy noisy;
-  noisy.halves = film.halves();
-  noisy.image = film.finish();
-  return noisy;
+  return finished(film);
 }
 
 TEST(Smoothing, takes_blotches_of_photons_out) {
