@@ -24,24 +24,19 @@ constexpr float kContrast = 0.5F;
 constexpr float kMostChange = 0.3F;
 constexpr int kRowsTogether = 8;  ///< Rows of squares that are smoothed in one go.
 
-/// One surface goes on from a square to another, or to a pixel.
-struct Likeness {
-  float normals = 0.25F;
-  float depth = 0.02F;
-
-  bool operator()(const StillPlanes& a, std::size_t p, const StillPlanes& b, std::size_t q,
-                  float steps) const {
-    float turned = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      turned += (a.normal[k][p] - b.normal[k][q]) * (a.normal[k][p] - b.normal[k][q]);
-    const float allowed = depth * a.depth[p] + steps * (a.slope_x[p] + a.slope_y[p]);
-    return turned < normals * normals && std::abs(a.depth[p] - b.depth[q]) < allowed;
-  }
-};
+/// Whether the surface of a pixel or square goes on to another, at most so many of its steps away.
+bool goes_on(const StillPlanes& from, std::size_t p, const StillPlanes& to, std::size_t q, float steps) {
+  constexpr float kNormals = 0.25F;  // length of the difference
+  constexpr float kDepth = 0.02F;    // relative, besides what the slope says
+  float turned = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    turned += (from.normal[k][p] - to.normal[k][q]) * (from.normal[k][p] - to.normal[k][q]);
+  const float allowed = kDepth * from.depth[p] + steps * (from.slope_x[p] + from.slope_y[p]);
+  return turned < kNormals * kNormals && std::abs(from.depth[p] - to.depth[q]) < allowed;
+}
 
 /// Variance of one half of each square, from how far the halves of those around it are apart.
 void find_variances(StillPlanes& squares) {
-  const Likeness alike;
   squares.variance.assign(squares.bands * squares.pixels(), 0.0F);
   const std::size_t n = squares.pixels();
   tbb::parallel_for(0, squares.height, [&](int y) {
@@ -50,7 +45,7 @@ void find_variances(StillPlanes& squares) {
       std::vector<std::size_t> around{p};
       for (int v = std::max(0, y - kAround); v <= std::min(squares.height - 1, y + kAround); ++v)
         for (int u = std::max(0, x - kAround); u <= std::min(squares.width - 1, x + kAround); ++u)
-          if (const std::size_t q = squares.at(u, v); q != p && alike(squares, p, squares, q, 2 * kAround))
+          if (const std::size_t q = squares.at(u, v); q != p && goes_on(squares, p, squares, q, 2 * kAround))
             around.push_back(q);
       for (std::size_t b = 0; b < squares.bands; ++b) {
         float sum = 0;
@@ -124,7 +119,6 @@ struct Surrounding {
 
   Surrounding(const StillPlanes& pixels, const StillPlanes& squares, const std::vector<std::uint8_t>& even,
               int side, int x, int y) {
-    const Likeness alike;
     const std::size_t p = pixels.at(x, y);
     const auto place = [&](int i) {
       return (static_cast<float>(i) + 0.5F) / static_cast<float>(side) - 0.5F;
@@ -139,7 +133,7 @@ struct Surrounding {
       const float along_x = (k & 1) != 0 ? place(x) - fx : 1 - (place(x) - fx);
       const float along_y = (k >> 1) != 0 ? place(y) - fy : 1 - (place(y) - fy);
       if (even[square[k]] != 0 && squares.holds_one(square[k]) &&
-          alike(pixels, p, squares, square[k], static_cast<float>(2 * side)))
+          goes_on(pixels, p, squares, square[k], static_cast<float>(2 * side)))
         share[k] = along_x * along_y;
       sum += share[k];
     }

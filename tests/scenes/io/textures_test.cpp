@@ -96,6 +96,7 @@ TEST_F(Textures, ImagesInTilesAreThoseInRows) {
     ASSERT_TRUE(tiles.image) << tiles.problem;
     EXPECT_EQ(tiles.image->width, kWidth);
     EXPECT_EQ(tiles.image->height, kHeight);
+    EXPECT_NE(tiles.image->bytes.empty(), tiles.image->texels.empty());
     if (!tiles.image->bytes.empty()) {
       EXPECT_EQ(tiles.image->bytes, rows.image->bytes);
     }
