@@ -40,14 +40,15 @@ install(DIRECTORY scenes mesh solver viewer_export DESTINATION ${CMAKE_INSTALL_I
         REGEX "/scenes/io/(common/json_cursor|gltf/gltf_(accessors|document|draco|draco_mesh|extensions|materials|meshes|meshopt|model|nodes|texture))\\.h$" EXCLUDE
         REGEX "/scenes/io/native/native_(ies_light|materials|objects|shapes|sky|textures|transform|view)\\.h$" EXCLUDE
         REGEX "/solver/(solution/(audit_group|gather_plan_group|hdf5_[a-z_]+|texture_group)|trace/embree_tree)\\.h$" EXCLUDE
-        REGEX "/viewer_export/(formats/glb_file|still/oiio_output)\\.h$" EXCLUDE)
+        REGEX "/viewer_export/formats/glb_file\\.h$" EXCLUDE)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/generated/reemit/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/reemit)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/reemit)
 install(TARGETS reemit_library reemit_viewer_export reemit_solver reemit_mesh reemit_scenes reemit_flags
         EXPORT reemit ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT reemit NAMESPACE reemit:: FILE reemitTargets.cmake DESTINATION ${package_dir})
-configure_package_config_file(cmake/reemitConfig.cmake.in reemitConfig.cmake INSTALL_DESTINATION ${package_dir})
+configure_package_config_file(cmake/reemitConfig.cmake.in reemitConfig.cmake INSTALL_DESTINATION ${package_dir}
+                              PATH_VARS REEMIT_INSTALL_MODULE_DIR)
 # Before 1.0 every minor version may change what others use.
 write_basic_package_version_file(reemitConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/reemitConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/reemitConfigVersion.cmake

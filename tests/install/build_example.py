@@ -17,6 +17,16 @@ LIBRARIES = {"Eigen", "OpenMesh", "fmt", "tbb"}
 INSTALLED = ["bin/reemit", "share/man/man1/reemit.1", "share/bash-completion/completions/reemit",
              "share/doc/reemit/LICENSE", "include/reemit/version.h"]
 
+# Needs the module that reads images, which lies beside the libraries.
+IMAGE_SIZE = """#include <cstdio>
+#include <reemit/scenes/io/images/image_library.h>
+
+int main(int, char** argv) {
+  const reemit::OpenedImage image = reemit::image_library().open(argv[1]);
+  if (image.reader) std::printf("%d x %d\\n", image.reader->layout().width, image.reader->layout().height);
+}
+"""
+
 
 class Failure(Exception):
     """A check that did not hold, in words."""
@@ -67,7 +77,10 @@ def extend_project(project: pathlib.Path, prefix: pathlib.Path) -> None:
                    "target_link_libraries(headers PRIVATE reemit::reemit)\n"
                    "add_executable(irradiance_native main.cpp)\n"
                    "target_link_libraries(irradiance_native PRIVATE reemit::reemit)\n"
-                   "target_compile_options(irradiance_native PRIVATE -march=native)\n")
+                   "target_compile_options(irradiance_native PRIVATE -march=native)\n"
+                   "add_executable(image_size image_size.cpp)\n"
+                   "target_link_libraries(image_size PRIVATE reemit::reemit)\n")
+    (project / "image_size.cpp").write_text(IMAGE_SIZE)
 
 
 def printed_values(program: pathlib.Path, room: pathlib.Path) -> dict:
@@ -114,6 +127,13 @@ def check(cmake: str, generator: str, build: pathlib.Path, source: pathlib.Path,
     room = rooms / "cornell_box.json"
     check_values("Cornell box", printed_values(scratch / "build/irradiance", room),
                  stored_values(prefix / "bin/reemit", room, scratch / "room.h5"), 1e-6)
+
+    picture = scratch / "room.png"
+    run(prefix / "bin/reemit", "render", scratch / "room.h5", "-o", picture, "--size", "40x30", "--spp", "1")
+    size = run(scratch / "build/image_size", picture)
+    if size != "40 x 30\n":
+        raise Failure(f"{picture} has '{size}' pixels instead of 40 x 30")
+    print("a picture is written by the installed program and read by one that uses the library")
 
 
 def main() -> int:

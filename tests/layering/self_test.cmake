@@ -27,7 +27,7 @@ expect_refused(solver/planted.cpp "#include \"bench/anything.h\"" "bench/anythin
 expect_refused(solver/planted.cpp "#include <CGAL/Polygon_2.h>" "CGAL/Polygon_2.h")
 expect_refused(viewer_export/vertex/planted.cpp "#include <OpenMesh/Tools/Utils/Timer.hh>" "OpenMesh/Tools/Utils/Timer.hh")
 expect_refused(mesh/planted.cpp "#include <embree3/rtcore.h>" "embree3/rtcore.h")
-expect_refused(viewer_export/formats/planted.cpp "#include <OpenImageIO/imageio.h>" "OpenImageIO/imageio.h")
+expect_refused(scenes/io/common/planted.cpp "#include <OpenImageIO/imageio.h>" "OpenImageIO/imageio.h")
 
 # Three folders of one layer in a circle, and one that only looks into it.
 file(REMOVE_RECURSE ${WORK_DIR})

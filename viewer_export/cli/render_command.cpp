@@ -2,6 +2,7 @@
 #include <cctype>
 #include <chrono>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/io/images/image_library.h"
 #include "scenes/model/error.h"
 #include "scenes/model/memory.h"
 #include "solver/losses/open_room.h"
@@ -234,12 +236,15 @@ ExitCode run_render(RenderOptions options) {
     for (const fs::path& file : options.files) check_output_file(output, file);
   };
   if (!into_folder) check_output(options.output);
+  // Beside what is read and built on one core; if it is not there, that is known before the work.
+  std::future<void> images = std::async(std::launch::async, [] { image_library(); });
   const auto [scene, solution] = load_source(options);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
   const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, room, into_folder));
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) check_output(job.file);
+  images.get();
 
   options.still.width = options.size.width;
   options.still.height = options.size.height;

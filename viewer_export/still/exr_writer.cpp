@@ -1,10 +1,11 @@
 #include "viewer_export/still/exr_writer.h"
 
-#include <array>
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "viewer_export/still/oiio_output.h"
+#include "viewer_export/still/image_encoding.h"
 
 namespace reemit {
 namespace {
@@ -60,22 +61,23 @@ std::vector<Channel> channels_of(const StillImage& image, std::span<const float>
 void write_exr(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
                OutputFile& file) {
   const std::vector<Channel> channels = channels_of(image, rgb);
-  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
-  for (std::size_t c = 0; c < channels.size(); ++c) spec.channelnames[c] = channels[c].name;
-  constexpr std::array<float, 8> kRec709 = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
-  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), kRec709.data());
-  spec.attribute("whiteLuminance", kWhiteLuminance);
-  spec.attribute("compression", image.interrupted ? "none" : "zip");
-  spec.attribute("oiio:ColorSpace", "Linear");
-  describe_image(image, spec);
-  spec.attribute("reemit:suggested_display", tone_map.statement());
+  std::vector<std::string> names(channels.size());
+  std::transform(channels.begin(), channels.end(), names.begin(), [](const Channel& c) { return c.name; });
+  ImageDescription description = sized_as(image, "openexr", PixelType::kFloat, std::move(names));
+  const std::vector<float> rec709 = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+  description.attributes = {{"chromaticities", rec709},
+                            {"whiteLuminance", kWhiteLuminance},
+                            {"compression", image.interrupted ? "none" : "zip"},
+                            {"oiio:ColorSpace", "Linear"}};
+  add_metadata(image, description);
+  description.attributes.emplace_back("reemit:suggested_display", tone_map.statement());
 
   std::vector<float> pixels(image.pixel_count() * channels.size());
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
     for (std::size_t c = 0; c < channels.size(); ++c)
       pixels[pixel * channels.size() + c] =
           channels[c].values[pixel * channels[c].stride + channels[c].offset];
-  encode_image("openexr", spec, OIIO::TypeDesc::FLOAT, pixels.data(), file);
+  encode_image(description, pixels.data(), file);
 }
 
 }  // namespace reemit

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "scenes/model/error.h"
-#include "viewer_export/still/oiio_output.h"
+#include "viewer_export/still/image_encoding.h"
 
 namespace reemit {
 namespace {
@@ -48,11 +48,10 @@ std::vector<float> representable(std::span<const float> rgb) {
 
 void write_hdr(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
                OutputFile& file) {
-  const OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT);
   const std::vector<float> pixels = representable(rgb);
-  const std::vector<unsigned char> encoded = encode_image("hdr", spec, OIIO::TypeDesc::FLOAT, pixels.data());
+  const std::string encoded = encode_image(sized_as(image, "hdr", PixelType::kFloat), pixels.data());
 
-  const std::string_view bytes(reinterpret_cast<const char*>(encoded.data()), encoded.size());
+  const std::string_view bytes = encoded;
   const std::size_t header_end = bytes.find("\n\n");
   if (header_end == std::string_view::npos ||
       bytes.substr(0, header_end).find("PRIMARIES=") != std::string_view::npos)

@@ -3,17 +3,16 @@
 #include <vector>
 
 #include "solver/sampling/counter_rng.h"
-#include "viewer_export/still/oiio_output.h"
+#include "viewer_export/still/image_encoding.h"
 
 namespace reemit {
 
 void write_png(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
                OutputFile& file) {
-  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("ImageDescription", tone_map.statement());
-  describe_image(image, spec);
-  spec.attribute("reemit:tone_map", tone_map.statement());
+  ImageDescription description = sized_as(image, "png", PixelType::kByte);
+  description.attributes = {{"oiio:ColorSpace", "sRGB"}, {"ImageDescription", tone_map.statement()}};
+  add_metadata(image, description);
+  description.attributes.emplace_back("reemit:tone_map", tone_map.statement());
 
   const CounterRng dither(0, RngPurpose::kDither);
   std::vector<std::uint8_t> bytes;
@@ -24,7 +23,7 @@ void write_png(const StillImage& image, std::span<const float> rgb, const ToneMa
     for (std::size_t c = 0; c < 3; ++c)
       bytes.push_back(srgb_byte(shown[static_cast<Eigen::Index>(c)], static_cast<double>(noise[c])));
   }
-  encode_image("png", spec, OIIO::TypeDesc::UINT8, bytes.data(), file);
+  encode_image(description, bytes.data(), file);
 }
 
 }  // namespace reemit

@@ -92,7 +92,8 @@ class ParseGuard {
       if (level.is_array) {
         path += fmt::format("/{}", level.index);
       } else if (!level.last_key.empty()) {
-        path += "/" + escaped(level.last_key);
+        path += '/';
+        path += escaped(level.last_key);
       }
     }
     return path;
@@ -126,7 +127,8 @@ bool find_path(const json& from, const json& wanted, std::string& path) {
   const std::size_t length = path.size();
   if (from.is_object()) {
     for (const auto& [key, value] : from.items()) {
-      path += "/" + escaped(key);
+      path += '/';
+      path += escaped(key);
       if (find_path(value, wanted, path)) return true;
       path.resize(length);
     }

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include "scenes/io/common/text_file.h"
+#include "scenes/io/images/image_library.h"
 #include "scenes/model/colour.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
@@ -42,11 +42,9 @@ Pixels load_pixels(const std::filesystem::path& file) {
     return InputError(name, "it cannot be read as an image: " + reason,
                       "Give a complete latitude-longitude image as .hdr or .exr.");
   };
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name);
-  if (!input) throw unreadable(OIIO::geterror());
-  const int columns = input->spec().width;
-  const int rows = input->spec().height;
-  const int channels = input->spec().nchannels;
+  const OpenedImage opened = image_library().open(name);
+  if (!opened.reader) throw unreadable(opened.problem);
+  const auto [columns, rows, channels, is_float, rows_together] = opened.reader->layout();
   if (rows < kLeastRows || columns != 2 * rows || channels < 1)
     throw InputError(
         name, fmt::format("{} x {} pixels are no latitude-longitude image of the sky", columns, rows),
@@ -55,14 +53,13 @@ Pixels load_pixels(const std::filesystem::path& file) {
     throw InputError(
         name, fmt::format("{} x {} pixels of {} values are too many", columns, rows, channels),
         fmt::format("Make it {} x {} or smaller, of red, green and blue.", 2 * kMostRowsRead, kMostRowsRead));
-  if (!input->spec().format.is_floating_point())
+  if (!is_float)
     throw InputError(name, "its pixels are whole numbers, which cannot hold the range of a sky",
                      "Give an image of floating-point values: .hdr or .exr.");
   const int used = channels >= 3 ? 3 : 1;
   const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   std::vector<float> values(count * static_cast<std::size_t>(used));
-  if (!input->read_image(0, 0, 0, used, OIIO::TypeDesc::FLOAT, values.data()))
-    throw unreadable(input->geterror());
+  if (!opened.reader->read_image(used, values.data())) throw unreadable(opened.reader->take_message());
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] >= 0 && std::isfinite(values[i])) continue;
     const std::size_t pixel = i / static_cast<std::size_t>(used);

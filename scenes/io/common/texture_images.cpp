@@ -5,12 +5,11 @@
 #include <span>
 #include <vector>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include "scenes/io/common/srgb.h"
 #include "scenes/io/common/text_file.h"
+#include "scenes/io/images/image_library.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -34,62 +33,52 @@ std::array<float, 256> decoding_table(TextureEncoding encoding) {
 /// Reads one image row by row, averaging blocks of `step` x `step` texels.
 class ImageReading {
  public:
-  ImageReading(OIIO::ImageInput& input, TextureEncoding encoding, double most_texels)
-      : input_(input), channels_(static_cast<std::size_t>(input.spec().nchannels)), encoding_(encoding) {
-    const OIIO::ImageSpec& spec = input.spec();
-    image_.read_width = spec.width;
-    image_.read_height = spec.height;
+  ImageReading(ImageReader& reader, TextureEncoding encoding, double most_texels)
+      : reader_(reader),
+        layout_(reader.layout()),
+        channels_(static_cast<std::size_t>(layout_.channels)),
+        encoding_(encoding) {
+    image_.read_width = layout_.width;
+    image_.read_height = layout_.height;
     const auto texels = [&] {
-      return std::ceil(1.0 * spec.width / step_) * std::ceil(1.0 * spec.height / step_);
+      return std::ceil(1.0 * layout_.width / step_) * std::ceil(1.0 * layout_.height / step_);
     };
     while (texels() > most_texels) ++step_;
-    image_.width = (spec.width + step_ - 1) / step_;
-    image_.height = (spec.height + step_ - 1) / step_;
+    image_.width = (layout_.width + step_ - 1) / step_;
+    image_.height = (layout_.height + step_ - 1) / step_;
     image_.decoded = decoding_table(encoding);
     image_.has_opacity = channels_ == 2 || channels_ == 4;
-    is_float_ = spec.format.is_floating_point();
   }
 
   /// False if the file ends early or is damaged.
   bool read() {
-    return is_float_ ? read_rows<float>(OIIO::TypeDesc::FLOAT)
-                     : read_rows<std::uint8_t>(OIIO::TypeDesc::UINT8);
+    return layout_.is_float ? read_rows<float>(PixelType::kFloat) : read_rows<std::uint8_t>(PixelType::kByte);
   }
   TextureImage take() { return std::move(image_); }
 
  private:
   template <class T>
-  bool read_rows(const OIIO::TypeDesc& type) {
-    const OIIO::ImageSpec& spec = input_.spec();
-    const int together = std::max(1, spec.tile_height);
-    const std::size_t row_size = static_cast<std::size_t>(spec.width) * channels_;
+  bool read_rows(PixelType type) {
+    const int width = layout_.width, height = layout_.height, together = layout_.rows_together;
+    const std::size_t row_size = static_cast<std::size_t>(width) * channels_;
     std::vector<T> rows(row_size * static_cast<std::size_t>(together));
     std::vector<Texel> sums(static_cast<std::size_t>(image_.width));
-    for (int y = 0; y < spec.height; ++y) {
-      if (y % together == 0 && !read_from(y, std::min(y + together, spec.height), type, rows.data()))
+    for (int y = 0; y < height; ++y) {
+      if (y % together == 0 && !reader_.read_rows(y, std::min(y + together, height), type, rows.data()))
         return false;
       const std::span row(&rows[row_size * static_cast<std::size_t>(y % together)], row_size);
       if (step_ == 1) {
         for (std::size_t i = 0; i < row.size(); i += channels_) keep(&row[i]);
         continue;
       }
-      for (int x = 0; x < spec.width; ++x) {
+      for (int x = 0; x < width; ++x) {
         const Texel t = linear(&row[static_cast<std::size_t>(x) * channels_]);
         Texel& sum = sums[static_cast<std::size_t>(x / step_)];
         for (std::size_t c = 0; c < 4; ++c) sum[c] += t[c];
       }
-      if ((y + 1) % step_ == 0 || y + 1 == spec.height) keep_means(sums, y % step_ + 1);
+      if ((y + 1) % step_ == 0 || y + 1 == height) keep_means(sums, y % step_ + 1);
     }
     return true;
-  }
-
-  /// Rows from `begin` on: one, or a row of tiles.
-  bool read_from(int begin, int end, const OIIO::TypeDesc& type, void* rows) {
-    const OIIO::ImageSpec& spec = input_.spec();
-    // read_scanlines sets 64 MB aside at every call.
-    if (spec.tile_height == 0) return input_.read_scanline(spec.y + begin, spec.z, type, rows);
-    return input_.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, spec.z,
-                             spec.z + 1, 0, static_cast<int>(channels_), type, rows);
   }
 
   /// Red, green, blue and opacity of what has 1 to 4 channels.
@@ -120,7 +109,7 @@ class ImageReading {
       const int columns = std::min(step_, image_.read_width - x * step_);
       Texel& t = sums[static_cast<std::size_t>(x)];
       for (float& v : t) v /= static_cast<float>(rows * columns);
-      if (is_float_)
+      if (layout_.is_float)
         image_.texels.push_back(t);
       else
         for (std::size_t c = 0; c < 4; ++c) image_.bytes.push_back(encoded(t[c], c));
@@ -133,11 +122,11 @@ class ImageReading {
     return static_cast<std::uint8_t>(std::lround(255 * (srgb ? srgb_from_linear(v) : v)));
   }
 
-  OIIO::ImageInput& input_;
+  ImageReader& reader_;
+  ImageLayout layout_;
   std::size_t channels_;
   TextureEncoding encoding_;
   int step_ = 1;
-  bool is_float_ = false;
   TextureImage image_;
 };
 
@@ -145,22 +134,20 @@ TextureRead failed(std::string problem) {
   return {nullptr, std::move(problem)};
 }
 
-TextureRead read_image(std::unique_ptr<OIIO::ImageInput> input, const std::string& source,
-                       TextureEncoding encoding, double most_texels) {
-  if (!input) {
-    const std::string error = OIIO::geterror();  // clears it, so that it does not surface elsewhere
-    return failed(fmt::format("{} cannot be read as an image: {}", source, error));
-  }
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.nchannels < 1 || spec.nchannels > 4)
+TextureRead read_image(const OpenedImage& opened, const std::string& source, TextureEncoding encoding,
+                       double most_texels) {
+  if (!opened.reader) return failed(fmt::format("{} cannot be read as an image: {}", source, opened.problem));
+  const ImageLayout layout = opened.reader->layout();
+  const int width = layout.width, height = layout.height;
+  if (layout.channels < 1 || layout.channels > 4)
     return failed(fmt::format("{} has {} channels; textures have 1 (grey) to 4 (red, green, blue, opacity)",
-                              source, spec.nchannels));
-  if (spec.width < 1 || spec.height < 1 || spec.width > kLongestSide || spec.height > kLongestSide ||
-      1.0 * spec.width * spec.height > kMostRead)
-    return failed(fmt::format("{} has {} x {} texels, which is too much", source, spec.width, spec.height));
-  ImageReading reading(*input, encoding, most_texels);
+                              source, layout.channels));
+  if (width < 1 || height < 1 || width > kLongestSide || height > kLongestSide ||
+      1.0 * width * height > kMostRead)
+    return failed(fmt::format("{} has {} x {} texels, which is too much", source, width, height));
+  ImageReading reading(*opened.reader, encoding, most_texels);
   const bool whole = reading.read();
-  const std::string error = input->geterror();
+  const std::string error = opened.reader->take_message();
   // The JPEG decoder makes up what a file lacks at its end, and what else it tells of is often harmless.
   if (!whole || error.find("Premature end") != std::string::npos)
     return failed(fmt::format("{} is damaged or cut off: {}", source, error));
@@ -179,9 +166,7 @@ TextureRead TextureImages::from_file(const std::filesystem::path& file, TextureE
   TextureRead read;
   try {
     check_readable_file(file);
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    read = read_image(OIIO::ImageInput::open(name, &config), name, encoding,
+    read = read_image(image_library().open(name), name, encoding,
                       std::max(kLeastTexels, std::min(kMostTexels, texels_left_ / 4)));
   } catch (const InputError& error) {
     read = failed(error.what());
@@ -195,12 +180,7 @@ TextureRead TextureImages::from_memory(const std::string& name, const std::strin
                                        TextureEncoding encoding) {
   const auto known = known_.find({name, encoding});
   if (known != known_.end()) return known->second;
-  OIIO::Filesystem::IOMemReader memory(bytes, size);
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  OIIO::Filesystem::IOProxy* proxy = &memory;  // with a configuration, only that is asked for it
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  TextureRead read = read_image(OIIO::ImageInput::open(kind, &config, proxy), name, encoding,
+  TextureRead read = read_image(image_library().open(kind, bytes, size), name, encoding,
                                 std::max(kLeastTexels, std::min(kMostTexels, texels_left_ / 4)));
   if (read.image) texels_left_ -= 1.0 * read.image->width * read.image->height;
   return known_[{name, encoding}] = read;
