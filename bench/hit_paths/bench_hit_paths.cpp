@@ -62,13 +62,19 @@ std::vector<Camera> cameras_of(const Scene& scene, const CameraChoice& choice) {
   return cameras;
 }
 
-/// Stills are shaded with normals of the file, which turn what is seen in mirrors; the reference has those of
-/// the polygons.
-void drop_normals(Scene& scene) {
+/// What the reference does not know. Stills are shaded with normals of the file, which turn what is seen in
+/// mirrors; the reference has those of the polygons. Images on surfaces count with their means.
+void drop_details(Scene& scene) {
   for (Surface& surface : scene.surfaces) {
     surface.normals.clear();
-    for (Face& face : surface.faces) face.normals.clear();
+    surface.texture_points.clear();
+    surface.has_vertex_colours = false;
+    for (Face& face : surface.faces) {
+      face.normals.clear();
+      face.texture_points.clear();
+    }
   }
+  for (Material& material : scene.materials) material.textures = {};
 }
 
 std::size_t compare(const std::string& name, const Scene& scene, const ComparisonSettings& settings,
@@ -110,7 +116,9 @@ int main(int argc, char** argv) {
   app.add_option("--photometry", settings.photometry,
                  "IES file of the measured luminaires, read anew for the reference")
       .existing_file();
-  app.add_flag("--flat", flat, "Leave out the normals of files, which the reference does not know");
+  app.add_flag("--flat", flat,
+               "Leave out what the reference does not know: normals of files, images and colours of\n"
+               "vertices on surfaces");
   app.add_option("--cameras", cameras.most, "Cameras of each room");
   app.add_option("--camera", cameras.name, "Camera by name, auto-1, auto-2, ... of rooms without any");
   app.add_option(
@@ -147,7 +155,7 @@ int main(int argc, char** argv) {
         "|---|---|---|---|---|---|---|---|---|\n");
     std::size_t different = 0;
     const auto compare_next = [&](const std::string& name, Scene scene) {
-      if (flat) drop_normals(scene);
+      if (flat) drop_details(scene);
       different += compare(name, scene, settings, cameras);
       ++settings.seed;
     };

@@ -60,6 +60,14 @@ void check_size(const Vec3& opening, const Vec3& file) {
     throw std::invalid_argument("an opening is not as its IES file says");
 }
 
+/// Throws std::invalid_argument if a surface has an image or colours of vertices.
+void check_plain(const Scene& scene) {
+  for (const Surface& surface : scene.surfaces)
+    if (scene.is_textured(surface))
+      throw std::invalid_argument("the reference knows no images on surfaces, such as " + surface.name +
+                                  " has (--flat leaves them out)");
+}
+
 }  // namespace
 
 HitPathTracer::HitPathTracer(const Scene& scene, const Camera& camera, int width, int height,
@@ -69,6 +77,7 @@ HitPathTracer::HitPathTracer(const Scene& scene, const Camera& camera, int width
       sky_(scene),
       clearance_(kClearance * bounds(scene).size().maxCoeff()),
       eye_(camera.eye) {
+  check_plain(scene);
   std::map<const IntensityTable*, std::shared_ptr<const Photometry>> tables;
   std::shared_ptr<const Photometry> file;
   if (!photometry.empty()) file = std::make_shared<Photometry>(photometry);
