@@ -95,9 +95,9 @@ Changes changes_of(const StillPlanes& squares, const StopToken& stop) {
 std::vector<std::uint8_t> even_squares(const StillPlanes& pixels, const StillPlanes& squares, int side) {
   std::vector<std::uint8_t> even(squares.pixels(), 1);
   const std::size_t n = pixels.pixels();
-  for (std::size_t b = 0; b < pixels.bands; ++b)
-    for (int y = 0; y < squares.height; ++y)
-      for (int x = 0; x < squares.width; ++x) {
+  tbb::parallel_for(0, squares.height, [&](int y) {
+    for (int x = 0; x < squares.width; ++x)
+      for (std::size_t b = 0; b < pixels.bands; ++b) {
         float least = std::numeric_limits<float>::infinity();
         float most = 0;
         for (int v = y * side; v < std::min(pixels.height, (y + 1) * side); ++v)
@@ -109,6 +109,7 @@ std::vector<std::uint8_t> even_squares(const StillPlanes& pixels, const StillPla
           }
         if (most - least > kContrast * most) even[squares.at(x, y)] = 0;
       }
+  });
   return even;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/parallel_for.h>
+
 namespace reemit {
 namespace {
 
@@ -63,9 +65,10 @@ StillPlanes::StillPlanes(const StillPlanes& fine, int side)
   };
   const auto reduce = [&](const std::vector<float>& values, std::size_t planes) {
     std::vector<float> result(planes * n);
-    for (std::size_t k = 0; k < planes; ++k)
-      for (int y = 0; y < height; ++y)
+    tbb::parallel_for(0, height, [&](int y) {
+      for (std::size_t k = 0; k < planes; ++k)
         for (int x = 0; x < width; ++x) result[k * n + at(x, y)] = mean_over(x, y, values, k);
+    });
     return result;
   };
   for (std::size_t h = 0; h < 2; ++h) irradiance[h] = reduce(fine.irradiance[h], bands);
@@ -88,11 +91,10 @@ StillPlanes::StillPlanes(const StillPlanes& fine, int side)
       }
     return true;
   };
-  std::vector<std::size_t> mixed;
-  for (int y = 0; y < height; ++y)
+  tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x)
-      if (!is_one(x, y)) mixed.push_back(at(x, y));
-  for (const std::size_t p : mixed) normal[0][p] = kMixed * static_cast<float>(2 + p);
+      if (!is_one(x, y)) normal[0][at(x, y)] = kMixed * static_cast<float>(2 + at(x, y));
+  });
   find_slopes();
 }
 
