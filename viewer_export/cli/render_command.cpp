@@ -2,7 +2,6 @@
 #include <cctype>
 #include <chrono>
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -236,15 +235,13 @@ ExitCode run_render(RenderOptions options) {
     for (const fs::path& file : options.files) check_output_file(output, file);
   };
   if (!into_folder) check_output(options.output);
-  // Beside what is read and built on one core; if it is not there, that is known before the work.
-  std::future<void> images = std::async(std::launch::async, [] { image_library(); });
+  image_library();  // if it cannot be loaded, that is known before the work
   const auto [scene, solution] = load_source(options);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
   const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, room, into_folder));
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) check_output(job.file);
-  images.get();
 
   options.still.width = options.size.width;
   options.still.height = options.size.height;
