@@ -17,7 +17,8 @@ function(reemit_add_headers name)
   target_precompile_headers(${name} PRIVATE ${REEMIT_COMMON_HEADERS} ${arg_HEADERS})
 endfunction()
 
-# Every target of these folders compiles with the headers of `owner`, EXCEPT those that do not link what they include.
+# Every target of these folders compiles with the headers of `owner`, EXCEPT those that do not link what they include or
+# are optimised otherwise.
 function(reemit_reuse_headers owner)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "EXCEPT")
   foreach(folder ${arg_UNPARSED_ARGUMENTS})
@@ -34,7 +35,7 @@ endfunction()
 reemit_add_headers(reemit_headers
   LINK Eigen3::Eigen fmt::fmt TBB::tbb
   HEADERS <tbb/blocked_range.h> <tbb/parallel_for.h> <tbb/task_arena.h>)
-reemit_reuse_headers(reemit_headers scenes solver viewer_export)
+reemit_reuse_headers(reemit_headers scenes solver viewer_export EXCEPT reemit_cli)
 target_precompile_headers(reemit_mesh PRIVATE ${REEMIT_COMMON_HEADERS})
 if(REEMIT_BENCH)
   reemit_reuse_headers(reemit_headers bench bench/validation bench/hit_paths EXCEPT reemit_bench_curve reemit_bench_options)

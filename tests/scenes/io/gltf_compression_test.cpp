@@ -242,13 +242,14 @@ TEST(GltfCompression, DataCutOffOrDamagedNeverPass) {
     for (std::size_t i = 1; i < whole.document["bufferViews"].size(); ++i) {
       const json& view = whole.document["bufferViews"][i];
       const bool is_meshopt = view.contains("extensions");
-      const std::string pointer = "/bufferViews/" + std::to_string(i) +
-                                  (is_meshopt ? std::string("/extensions/") + kMeshopt : "") + "/byteLength";
-      const auto length = whole.document[json::json_pointer(pointer)].get<std::size_t>();
+      json::json_pointer pointer = json::json_pointer("/bufferViews") / i;
+      if (is_meshopt) pointer = pointer / "extensions" / kMeshopt;
+      pointer /= "byteLength";
+      const auto length = whole.document[pointer].get<std::size_t>();
       for (const std::size_t cut : {std::size_t{1}, length / 4, length / 2, length - 9}) {
-        SCOPED_TRACE(pointer);
+        SCOPED_TRACE(pointer.to_string());
         Glb glb = whole;
-        glb.document[json::json_pointer(pointer)] = cut;
+        glb.document[pointer] = cut;
         test::expect_input_error([&] { read_glb(glb); }, {"#/"});
       }
     }

@@ -1,10 +1,12 @@
-#include <memory>
+#include <string>
+#include <vector>
 
-#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/scenes/io/gltf_building.h"
+#include "tests/support/encoded_image.h"
+#include "tests/support/temp_folder.h"
 
 namespace reemit {
 namespace {
@@ -157,13 +159,11 @@ TEST(GltfMaterials, RefusesWrongValues) {
 
 /// A PNG of one black and three white texels.
 std::string checker_png(const test::TempFolder& folder) {
-  const auto file = folder / "checker.png";
-  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file.string());
   const std::vector<unsigned char> texels{0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 128, 0};
-  out->open(file.string(), OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::UINT8));
-  out->write_image(OIIO::TypeDesc::UINT8, texels.data());
-  out->close();
-  return test::read_bytes(file);
+  const ImageDescription description{"png", 2, 2, {"R", "G", "B"}, PixelType::kByte, {}};
+  const std::string bytes = test::encoded_image(description, texels.data());
+  folder.write("checker.png", bytes);
+  return bytes;
 }
 
 TEST(GltfMaterials, TexturesHaveTheirLinearMean) {

@@ -1,15 +1,14 @@
 #include "scenes/io/images/image_library.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "tests/support/encoded_image.h"
 #include "tests/support/temp_folder.h"
 
 namespace reemit {
@@ -28,24 +27,14 @@ const Bytes& pixels() {
   return values;
 }
 
-class Memory final : public ByteSink {
- public:
-  void write_at(std::uint64_t offset, const void* from, std::size_t size) override {
-    bytes.resize(std::max(bytes.size(), offset + size));
-    std::memcpy(&bytes[offset], from, size);
-  }
-  Bytes bytes;
-};
-
 class FullDisk final : public ByteSink {
  public:
   void write_at(std::uint64_t, const void*, std::size_t) override { throw std::length_error("no room"); }
 };
 
 Bytes encoded() {
-  Memory memory;
-  EXPECT_EQ(image_library().encode(grey("png"), pixels().data(), memory), "");
-  return memory.bytes;
+  const std::string bytes = test::encoded_image(grey("png"), pixels().data());
+  return {bytes.begin(), bytes.end()};
 }
 
 void expect_pixels(const OpenedImage& opened) {
@@ -97,7 +86,7 @@ TEST(ImageLibrary, SaysWhyThereIsNoImage) {
     EXPECT_FALSE(opened.reader);
     EXPECT_NE(opened.problem, "");
   }
-  Memory memory;
+  test::ImageBytes memory;
   EXPECT_NE(image_library().encode(grey("nothing"), pixels().data(), memory), "");
   EXPECT_TRUE(memory.bytes.empty());
 }

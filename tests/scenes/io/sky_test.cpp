@@ -4,7 +4,6 @@
 #include <limits>
 #include <numbers>
 
-#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 
 #include "scenes/io/native/sky_option.h"
@@ -12,6 +11,7 @@
 #include "scenes/model/error.h"
 #include "tests/scenes/io/expect_input_error.h"
 #include "tests/scenes/io/native_reading.h"
+#include "tests/support/encoded_image.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/temp_folder.h"
 
@@ -42,12 +42,8 @@ double lux(const Scene& scene, const Spectrum& irradiance) {
 /// An image of 16 x 8 pixels as .exr.
 std::filesystem::path write_image(const TempFolder& folder, std::vector<float> rgb, int width = 16,
                                   int height = 8) {
-  const std::filesystem::path file = folder / "sky.exr";
-  const auto output = OIIO::ImageOutput::create(file.string());
-  output->open(file.string(), OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT));
-  output->write_image(OIIO::TypeDesc::FLOAT, rgb.data());
-  output->close();
-  return file;
+  const ImageDescription description{"openexr", width, height, {"R", "G", "B"}, PixelType::kFloat, {}};
+  return folder.write("sky.exr", test::encoded_image(description, rgb.data()));
 }
 
 std::vector<float> even_pixels(float value, int count = 16 * 8) {

@@ -1,8 +1,10 @@
 // What each format says of textures, and what is told where it is wrong.
 
 #include <algorithm>
+#include <memory>
 #include <string>
 
+#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,6 +34,19 @@ std::array<double, 2> uv_of(const Scene& scene, std::size_t corner) {
 
 Eigen::Vector2d in_image(const Texture& t, double u, double v) {
   return t.to_image * Eigen::Vector3d(u, v, 1);
+}
+
+/// Any number of 8-bit channels, in the format of the extension; `tile` > 0: in tiles of so many pixels to a
+/// side, where the format has them.
+void write_image_file(const std::filesystem::path& file, int width, int height, int channels,
+                      const std::vector<unsigned char>& values, int tile = 0) {
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file.string());
+  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.tile_width = spec.tile_height = tile;
+  out->open(file.string(), spec);
+  out->write_image(OIIO::TypeDesc::UINT8, values.data());
+  out->close();
 }
 
 class Textures : public testing::Test {
@@ -87,11 +102,11 @@ TEST_F(Textures, ImagesInTilesAreThoseInRows) {
   std::vector<unsigned char> values;
   for (int i = 0; i < kWidth * kHeight * 3; ++i) values.push_back(static_cast<unsigned char>(i * 7 % 256));
   TextureImages images;
-  test::write_png(folder_ / "rows.tif", kWidth, kHeight, 3, values);
+  write_image_file(folder_ / "rows.tif", kWidth, kHeight, 3, values);
   const TextureRead rows = images.from_file(folder_ / "rows.tif", TextureEncoding::kSrgb);
   ASSERT_TRUE(rows.image) << rows.problem;
   for (const char* name : {"tiles.tif", "tiles.exr"}) {
-    test::write_png(folder_ / name, kWidth, kHeight, 3, values, 16);
+    write_image_file(folder_ / name, kWidth, kHeight, 3, values, 16);
     const TextureRead tiles = images.from_file(folder_ / name, TextureEncoding::kSrgb);
     ASSERT_TRUE(tiles.image) << tiles.problem;
     EXPECT_EQ(tiles.image->width, kWidth);
@@ -109,7 +124,7 @@ TEST_F(Textures, ImagesThatAreCutOffAreTold) {
   const std::vector<unsigned char> values(96 * 96 * 3, 77);
   TextureImages images;
   for (const char* name : {"i.jpg", "i.png", "i.tif"}) {
-    test::write_png(folder_ / name, 96, 96, 3, values);
+    write_image_file(folder_ / name, 96, 96, 3, values);
     EXPECT_TRUE(images.from_file(folder_ / name, TextureEncoding::kSrgb).image);
     const std::string whole = test::read_bytes(folder_ / name);
     const std::string cut_name = std::string("cut_") + name;
@@ -137,7 +152,7 @@ TEST_F(Textures, FacesWithoutCoordinatesCountWithTheMean) {
 
 TEST_F(Textures, GltfSamplersTransformsAndSets) {
   test::write_pixmap(folder_ / "t.ppm", 1, 1, {{255, 255, 255}});
-  test::write_png(folder_ / "t.png", 2, 1, 4, {255, 255, 255, 255, 255, 0, 0, 0});
+  write_image_file(folder_ / "t.png", 2, 1, 4, {255, 255, 255, 255, 255, 0, 0, 0});
   GltfBuilder gltf;
   gltf.square();
   gltf.json["images"] = {{{"uri", "t.png"}}};
@@ -213,7 +228,7 @@ TEST_F(Textures, NativeTexturesAndWhatIsWrongWithThem) {
                R"("polygon": {"vertices": [[0,0,0],[1,0,0],[0,1,0]], "texture_coordinates": [[0,0],[1,0]]})");
       },
       {"/polygon/texture_coordinates", "2 texture coordinates for 3 vertices"});
-  test::write_png(folder_ / "five.tif", 1, 1, 5, {1, 2, 3, 4, 5});
+  write_image_file(folder_ / "five.tif", 1, 1, 5, {1, 2, 3, 4, 5});
   expect_input_error([&] { native(R"("texture": {"file": "five.tif"})"); }, {"five.tif has 5 channels"});
   const std::string whole = test::read_bytes(folder_ / "t.ppm");
   folder_.write("cut.ppm", whole.substr(0, whole.size() - 3));
