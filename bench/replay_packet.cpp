@@ -91,8 +91,12 @@ struct Run {
     BatchBooks books = transport.new_books();
     BatchTask task{transport, emission, solution.settings, batch, packets};
     task.ray_observer = &observer;
-    if (direct && direct->is_for(packets / static_cast<std::int64_t>(solution.record.unit_packets)))
-      task.first_together = SampledDirectLight::kFirstTogether;
+    const auto unit = static_cast<std::uint32_t>(solution.record.unit_packets);
+    const bool may_be_sampled = direct && direct->is_for(packets / std::int64_t{unit});
+    if (may_be_sampled && !direct->has_looked_at_all() &&
+        !prepare(transport, emission, solution.settings, unit, *direct))
+      direct.reset();
+    if (may_be_sampled && direct) task.first_together = SampledDirectLight::kFirstTogether;
     if (solution.settings.method == SolveMethod::kShooting)
       shoot_batch(task, books);
     else

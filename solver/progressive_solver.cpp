@@ -155,6 +155,7 @@ class ProgressiveSolver::Run {
     if (solution_.sums.batches == 0) return;
     state_.batches = solution_.sums.batches;
     state_.weight = solution_.sums.weight();
+    if (const std::int64_t last = last_weight(); direct_ && direct_->is_for(last)) prepare_direct();
     arena_.execute([&] { look_at_error(); });
     if (const std::optional<StopReason> reason = rule_.stop(state_)) end_batches(*reason);
   }
@@ -194,7 +195,8 @@ class ProgressiveSolver::Run {
     if (room_.is_dark()) return std::move(solution_);
     if (record().stopped == StopReason::kUnderWay) end_batches(StopReason::kInterrupted);
     arena_.execute([&] {
-      gather_what_is_small(room_.room, direct_.has_value(), schedule_, interrupt_, solution_);
+      gather_what_is_small(room_.room, direct_ && direct_->is_for(last_weight()), schedule_, interrupt_,
+                           solution_);
       if (examination == Examination::kWhole) examine(room_, schedule_, progress, interrupt_, solution_);
       record_error(room_.room.surfaces(), solution_);
       record().seconds = seconds_since(begin_);
@@ -256,9 +258,24 @@ class ProgressiveSolver::Run {
     }
   }
 
+  /// Weight of the last batch, if nothing shortened it.
+  std::int64_t last_weight() const {
+    return plan_.next_weight(std::max<std::int64_t>(state_.batches, 1) - 1, 0);
+  }
+
+  /// From here on direct light is sampled, or left to packets for good.
+  void prepare_direct() {
+    arena_.execute([&] {
+      if (!prepare(room_.transport, room_.emission, solution_.settings, plan_.unit_packets(), *direct_))
+        direct_.reset();
+    });
+  }
+
   /// How a batch finds direct light, if not by its packets.
-  DirectInstead direct_instead(std::uint32_t number, std::int64_t weight) const {
+  DirectInstead direct_instead(std::uint32_t number, std::int64_t weight) {
     if (!direct_ || !direct_->is_for(weight)) return {};
+    if (!direct_->has_looked_at_all()) prepare_direct();
+    if (!direct_) return {};
     return {SampledDirectLight::kFirstTogether, [this, number, weight](BatchBooks& books) {
               books.rays += direct_->put(number, weight, room_.emission.watts_per_quantum, books);
             }};

@@ -155,6 +155,8 @@ int main(int argc, char** argv) {
         "|---|---|---|---|---|---|---|---|---|\n");
     std::size_t different = 0;
     const auto compare_next = [&](const std::string& name, Scene scene) {
+      // Among them what paths lack, and so the reference.
+      for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}: {}\n", name, warning);
       if (flat) drop_details(scene);
       different += compare(name, scene, settings, cameras);
       ++settings.seed;

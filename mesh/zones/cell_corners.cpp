@@ -3,6 +3,7 @@
 #include "mesh/zones/grid_points.h"
 
 namespace reemit {
+
 double CellCorners::share() const {
   const auto from_first = [this](std::size_t k) {
     return std::array<std::int64_t, 2>{at[k].i - at[0].i, at[k].j - at[0].j};

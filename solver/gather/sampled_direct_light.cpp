@@ -18,7 +18,7 @@ namespace {
 
 /// Points of a zone that the pilot looks from.
 constexpr int kPilotPoints = 16;
-/// Zones that the pilot looks at first, to find out whether it should look at the rest.
+/// Zones of the first look.
 constexpr std::size_t kFirstZones = 1024;
 /// Rooms of more zones are left to packets: the pilot, which nothing interrupts, takes a second or two here.
 constexpr std::size_t kMostZones = std::size_t{1} << 19;
@@ -60,7 +60,7 @@ SampledDirectLight::SampledDirectLight(const Room& room, std::uint64_t seed, dou
   weighed_ = light_.is_weighed_by_point() && zones * light_.luminaires_weighed() <= kMostWeights
                  ? light_.luminaires_weighed()
                  : 0;
-  const double cost =
+  cost_ =
       kShadowRayCost + (weighed_ > 0 ? 0 : kWeighingCost * static_cast<double>(light_.luminaires_weighed()));
   const std::size_t stride = std::max<std::size_t>(1, zones / kFirstZones);
   const std::size_t first = (zones + stride - 1) / stride;
@@ -72,21 +72,24 @@ SampledDirectLight::SampledDirectLight(const Room& room, std::uint64_t seed, dou
   for (std::size_t i = 0; i < first; ++i) {
     const ZoneId z(i * stride);
     needs += need(z, looks[i]);
+    if (looks[i].lit) lit_zones_ += static_cast<std::int64_t>(stride);
     const double* rho = surfaces.reflectance(z, room.mesh().zone_triangle(z), room.mesh().zone_is_front(z));
     by_packets += looks[i].mean * *std::max_element(rho, rho + bands_);
   }
-  if (!(needs > 0)) return;
-  gain_ = kPacketVariance * watts * by_packets / (cost * needs * needs * static_cast<double>(stride));
-  if (!pays()) return;
+  if (needs > 0)
+    gain_ = kPacketVariance * watts * by_packets / (cost_ * needs * needs * static_cast<double>(stride));
+}
 
+void SampledDirectLight::look_at_all() {
+  const std::size_t zones = room_->mesh().zone_count();
   weights_.resize(zones * weighed_);
-  looks.assign(zones, {});
+  std::vector<Look> looks(zones);
   for_zones(zones, [&](std::size_t z) {
     looks[z] = look(ZoneId(z), weighed_ > 0 ? &weights_[z * weighed_] : nullptr);
   });
   // Where the variance of one way is that of packets over the gain, and as much work goes into each part as
   // leaves the least error for all.
-  plan_samples(looks, unit_packets / (cost * std::sqrt(gain_)));
+  plan_samples(looks, unit_packets_ / (cost_ * std::sqrt(gain_)));
 }
 
 void SampledDirectLight::plan_samples(const std::vector<Look>& looks, double per_unit) {
@@ -96,7 +99,6 @@ void SampledDirectLight::plan_samples(const std::vector<Look>& looks, double per
   for (std::size_t z = 0; z < looks.size(); ++z) {
     if (!looks[z].lit) continue;
     samples_[z] = std::max(kLeastSamples, static_cast<float>(per_unit * need(ZoneId(z), looks[z]) / needs));
-    ++lit_zones_;
     lit_watts_ += looks[z].irradiance * room_->mesh().zone_area(ZoneId(z));
   }
 }
@@ -218,10 +220,15 @@ std::optional<SampledDirectLight> sampled_direct_light(const PacketRoom& transpo
       std::accumulate(quantum.begin(), quantum.end(), 0.0) * static_cast<double>(kBatchQuanta);
   SampledDirectLight sampled(transport.room(), settings.seed, watts, unit_packets);
   if (!sampled.pays()) return std::nullopt;
+  return sampled;
+}
+
+bool prepare(const PacketRoom& transport, const PacketSources& emission, const SolverSettings& settings,
+             std::uint32_t unit_packets, SampledDirectLight& direct) {
+  direct.look_at_all();
   BatchBooks books = transport.new_books();
   shoot_first_flight({transport, emission, settings, kPilot, unit_packets}, books);
-  if (!sampled.finds_what_packets_find(quantum, books)) return std::nullopt;
-  return sampled;
+  return direct.finds_what_packets_find(emission.watts_per_quantum, books);
 }
 
 }  // namespace reemit

@@ -14,9 +14,10 @@ namespace reemit {
 
 /// Direct light of zones by shadow rays from points of them, in the place of what the packets of luminaires
 /// brought. Where few luminaires light much of a room, a shadow ray says as much about the direct light of a
-/// zone as several packets do, so that packets can be spent on the light that is reflected. How many shadow
-/// rays a zone gets follows from a short pilot, whose random numbers are its own: what it finds biases
-/// nothing.
+/// zone as several packets do, so that packets can be spent on the light that is reflected. Whether it does
+/// in this room, a first look at some of its zones tells. How many shadow rays a zone gets follows from a
+/// pilot that looks at all of them, before the first batch that is large enough for it. Both have random
+/// numbers of their own: what they find biases nothing.
 class SampledDirectLight {
  public:
   /// BatchTask::first_together of a batch whose direct light is sampled. Its first flight only fills the
@@ -24,11 +25,12 @@ class SampledDirectLight {
   /// the same time.
   static constexpr std::uint32_t kFirstTogether = 8;
 
-  /// `watts`: power of all luminaires and bands together. `unit_packets`: packets of a batch of weight 1
-  /// (BatchPlan), over whose noise that of shadow rays is weighed. The room must outlive it.
+  /// Takes the first look. `watts`: power of all luminaires and bands together. `unit_packets`: packets of a
+  /// batch of weight 1 (BatchPlan), over whose noise that of shadow rays is weighed. The room must outlive
+  /// it.
   SampledDirectLight(const Room& room, std::uint64_t seed, double watts, std::uint32_t unit_packets);
 
-  /// Variance of direct light times the work for it, by packets over that by shadow rays, as the pilot
+  /// Variance of direct light times the work for it, by packets over that by shadow rays, as the first look
   /// foresees; 0 where it met no light.
   double gain() const { return gain_; }
   /// Whether shadow rays are clearly the better way in this room.
@@ -39,15 +41,19 @@ class SampledDirectLight {
   bool is_for(std::int64_t weight) const {
     return pays() && weight * std::int64_t{unit_packets_} >= kPacketsPerZone * lit_zones_;
   }
+
+  /// The pilot. Pre: pays().
+  void look_at_all();
+  bool has_looked_at_all() const { return !samples_.empty(); }
   /// Whether it would leave nothing out: of the direct light that packets brought, nearly all fell on zones
   /// that the pilot found lit, and as much as it found there. Beams that miss the points of the pilot are
-  /// left to packets, which are few then.
+  /// left to packets, which are few then. Pre: has_looked_at_all().
   bool finds_what_packets_find(const std::vector<double>& watts_per_quantum, const BatchBooks& books) const;
 
   /// Replaces books.direct of the zones that the pilot found lit by an estimate that is independent of those
   /// of all other batches. Where packets lost no light on their way, the sum over the zones is kept. Zones
   /// that it did not see any light from keep what packets brought. Returns how many shadow rays were sent.
-  /// Pre: is_for(weight).
+  /// Pre: is_for(weight), has_looked_at_all().
   std::uint64_t put(std::uint32_t batch, std::int64_t weight, const std::vector<double>& watts_per_quantum,
                     BatchBooks& books) const;
 
@@ -77,14 +83,15 @@ class SampledDirectLight {
   std::size_t bands_;
   std::size_t weighed_;  // luminaires that are weighed once for a zone; 0: anew for every sample
   double gain_ = 0;
-  std::int64_t lit_zones_ = 0;  // that the pilot found lit
-  double lit_watts_ = 0;        // on them, as it found
+  double cost_ = 1;             // of a shadow ray, in rays of packets
+  std::int64_t lit_zones_ = 0;  // as the first look tells
+  double lit_watts_ = 0;        // on those that the pilot found lit
   std::vector<float> samples_;  // by zone, in a batch of weight 1; 0: left to packets
   std::vector<float> weights_;  // by zone and luminaire
 };
 
-/// That of a run with these settings. None where packets are to find all light, or find it as well: where
-/// luminaires are many or hidden, or beams narrow. Nor in rooms with light groups, which shadow rays do not
+/// That of a run with these settings, after its first look. None where packets are to find all light, or find
+/// it as well: where luminaires are many or hidden. Nor in rooms with light groups, which shadow rays do not
 /// tell apart; with mirrors, glass or gloss, whose caustics take as many packets as direct light; with
 /// cut-outs, whose zones have points that are not there; and with more than half a million zones. Must run
 /// inside the task arena of the caller.
@@ -92,5 +99,10 @@ std::optional<SampledDirectLight> sampled_direct_light(const PacketRoom& transpo
                                                        const PacketSources& emission,
                                                        const SolverSettings& settings,
                                                        std::uint32_t unit_packets);
+
+/// Looks at all zones, and at what `unit_packets` packets find. False where these find what shadow rays do
+/// not: where beams are narrow. Must run inside the task arena of the caller.
+bool prepare(const PacketRoom& transport, const PacketSources& emission, const SolverSettings& settings,
+             std::uint32_t unit_packets, SampledDirectLight& direct);
 
 }  // namespace reemit

@@ -34,7 +34,6 @@ struct Pixels {
   std::vector<float> rgb;
 };
 
-/// Not through an ImageBuf, whose cache would hand out what a file of this name held before.
 Pixels load_pixels(const std::filesystem::path& file) {
   check_readable_file(file);
   const std::string name = file.string();

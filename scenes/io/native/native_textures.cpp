@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "scenes/model/colour.h"
 #include "scenes/model/colour_spectra.h"
 #include "scenes/model/texture_checks.h"
 
@@ -78,8 +79,7 @@ Spectrum NativeTextures::mean_of(const Texture& texture) const {
   }
   const Eigen::Array3d rgb(mean[0], mean[1], mean[2]);
   if (scene_.bands.kind() == BandKind::kRgb) return rgb;
-  const Eigen::Array3d luminance(0.2126, 0.7152, 0.0722);
-  return Spectrum::Constant(1, (luminance * rgb).sum());
+  return Spectrum::Constant(1, (rec709_luminance_weights() * rgb).sum());
 }
 
 void NativeTextures::read(const JsonCursor& at, Material& material) {

@@ -1,6 +1,7 @@
 #include "solver/gather/sampled_direct_light.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -31,7 +32,10 @@ bool is_sampled_in(const RoomBuilder& room) {
   const MeshResult meshed = room.mesh();
   const Room walls(room.scene(), meshed.mesh);
   const PacketRoom transport(walls);
-  return sampled_direct_light(transport, collect_packet_sources(transport), {}, 65536).has_value();
+  constexpr std::uint32_t kUnit = 65536;
+  const PacketSources emission = collect_packet_sources(transport);
+  std::optional<SampledDirectLight> direct = sampled_direct_light(transport, emission, {}, kUnit);
+  return direct && prepare(transport, emission, {}, kUnit, *direct);
 }
 
 Solution solved(const RoomBuilder& room, const SolverSettings& settings) {
