@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <span>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -53,9 +52,14 @@ std::vector<ZoneId> zones_by_size(const ZoneMesh& mesh, bool small) {
   return zones;
 }
 
-/// Small zones, smallest first.
-std::vector<ZoneId> small_zones(const ZoneMesh& mesh) {
+/// Small zones that can be gathered, smallest first. No gather ray leaves the inner side of a body of glass
+/// (GatherBatch).
+std::vector<ZoneId> small_zones(const Room& room) {
+  const ZoneMesh& mesh = room.mesh();
   std::vector<ZoneId> zones = zones_by_size(mesh, true);
+  std::erase_if(zones, [&](ZoneId z) {
+    return !mesh.zone_is_front(z) && room.surfaces().specular(mesh.zone_triangle(z)).is_body();
+  });
   std::stable_sort(zones.begin(), zones.end(),
                    [&](ZoneId a, ZoneId b) { return mesh.zone_area(a) < mesh.zone_area(b); });
   return zones;
@@ -67,13 +71,12 @@ int whole_points(double points) {
   return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(points, 1.0, kMostPoints))));
 }
 
-/// The irradiance of one zone in one band, one value per replicate.
+/// The irradiance of one zone in one band without caustics, one value per replicate.
 struct ZoneReplicates {
   std::array<double, kReplicates> direct{};
   std::array<double, kReplicates> indirect{};
-  std::array<double, kReplicates> caustic{};
 
-  double total(std::size_t r) const { return direct[r] + indirect[r] + caustic[r]; }
+  double total(std::size_t r) const { return direct[r] + indirect[r]; }
 };
 
 /// Gathers at zones; every replicate reads its own part of the zone solution.
@@ -83,11 +86,11 @@ class Gatherer {
       : room_(room),
         stop_(stop),
         bands_(room.band_count()),
-        parts_(solution.sums.has_caustics() ? 3 : 2),
         seed_(solution.settings.seed),
         field_(room, solution, kReplicates),
         direct_(room),
-        gather_(field_, direct_, GatherSettings{.close_hit = 0, .seed = solution.settings.seed}) {}
+        gather_(field_, direct_,
+                GatherSettings{.close_hit = 0, .caustics = false, .seed = solution.settings.seed}) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
 
@@ -114,10 +117,10 @@ class Gatherer {
   template <class Use>
   bool gather_chunk(const std::vector<ZoneId>& zones, std::size_t first, std::size_t last, int points,
                     RngPurpose purpose, Use&& use) const {
-    // Per zone and replicate: direct irradiance, then mean reflected radiance over the hemisphere, then that
-    // of caustics.
-    const std::size_t stride = parts_ * bands_;
+    // Per zone and replicate: direct irradiance, then mean reflected radiance over the hemisphere.
+    const std::size_t stride = 2 * bands_;
     std::vector<float> found((last - first) * kReplicates * stride, 0.0F);
+    std::vector<float> caustic(bands_, 0.0F);
     GatherBatch batch(gather_);
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i)
@@ -129,7 +132,7 @@ class Gatherer {
         const auto place = [&](const std::array<float, 2>& u) { return point_in_zone(room_, zones[i], u); };
         add_replicate(direct_, sampler, {points, kGathersPerPoint},
                       {zones[i].index(), replicate, 0, replicate}, place, batch, next, next + bands_,
-                      parts_ > 2 ? next + 2 * bands_ : nullptr);
+                      caustic.data());
       }
     batch.flush();
     for (std::size_t i = first; i < last; ++i)
@@ -139,8 +142,6 @@ class Gatherer {
           const float* values = &found[((i - first) * kReplicates + r) * stride];
           replicates.direct[r] = static_cast<double>(values[b]);
           replicates.indirect[r] = std::numbers::pi * static_cast<double>(values[bands_ + b]);
-          if (parts_ > 2)
-            replicates.caustic[r] = std::numbers::pi * static_cast<double>(values[2 * bands_ + b]);
         }
         use(i, b, replicates);
       }
@@ -150,14 +151,13 @@ class Gatherer {
   const Room& room_;
   const StopToken& stop_;
   std::size_t bands_;
-  std::size_t parts_;  // of the light
   std::uint64_t seed_;
   RadianceField field_;
   DirectLight direct_;
   HemisphereGather gather_;
 };
 
-/// What the pilot found out about a zone, all bands together.
+/// What the pilot found out about a zone, all bands together, caustics left out.
 struct PilotResult {
   double irradiance = 0;  // that packets bring [W/m2]
   double variance = 0;    // of all its irradiance
@@ -195,7 +195,7 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
                         const StopToken& stop) {
   if (solution.sums.batches < static_cast<std::int64_t>(kReplicates)) return false;
   const ZoneMesh& mesh = solution.mesh;
-  std::vector<ZoneId> zones = small_zones(mesh);
+  std::vector<ZoneId> zones = small_zones(room);
   if (zones.empty()) return false;
   const Gatherer gatherer(room, solution, stop);
   const double affordable = limits.solver_rays / cost_per_point(gatherer.luminaires_weighed());
@@ -242,9 +242,7 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   solution.gathered.keep(solution.sums, chosen);
   const std::size_t gathered = gatherer.gather(
       chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, std::size_t b, const ZoneReplicates& x) {
-        std::span<const double> caustic;
-        if (solution.sums.has_caustics()) caustic = x.caustic;
-        store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect, caustic);
+        store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect);
       });
   solution.record.gathered_zones = gathered;
   const std::uint64_t gather_rays = gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);

@@ -76,40 +76,75 @@ void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit)
   }
 }
 
+namespace {
+
+constexpr std::size_t kGroups = ZoneSums::kGroups;
+
+/// The caustic part of one value of the sums.
+struct CausticPart {
+  double mean = 0;
+  double squared_error = 0;
+  std::array<double, kGroups> of_group{};  // the mean of a batch group
+};
+
+/// Groups are known by their totals only. Those of the caustic part deviate from its mean as these do, as far
+/// as its error says.
+CausticPart caustic_part(const ZoneSums& sums, std::size_t i) {
+  CausticPart part;
+  if (!sums.has_caustics() || sums.caustic[i] == 0) return part;
+  const auto w = static_cast<double>(sums.weight());
+  part.mean = sums.caustic[i] / w;
+  part.of_group.fill(part.mean);
+  if (sums.batches < 2) return part;
+  part.squared_error = sums.squared_error(sums.caustic[i], sums.caustic_cross[i], sums.caustic_squared[i]);
+  const double of_total = sums.squared_error(sums.total(i), sums.total_cross(i), sums.total_squared[i]);
+  if (!(of_total > 0)) return part;
+  const double share = std::sqrt(part.squared_error / of_total);
+  for (std::size_t g = 0; g < kGroups; ++g)
+    if (sums.group_weight[g] > 0)
+      part.of_group[g] += share * (static_cast<double>(sums.group_total[g * sums.direct.size() + i]) /
+                                       static_cast<double>(sums.group_weight[g]) -
+                                   sums.total(i) / w);
+  return part;
+}
+
+}  // namespace
+
 void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> direct,
-                      std::span<const double> indirect, std::span<const double> caustic) {
+                      std::span<const double> indirect) {
+  const CausticPart caustic = caustic_part(sums, i);
   const std::size_t count = direct.size();
   const auto w = static_cast<double>(sums.weight());
+  const auto replicates = [&](auto&& value) {
+    ReplicateMean x = mean_of_replicates(count, count, value);
+    if (count < 2) x.squared_error = 0;
+    return x;
+  };
   // The sums that ZoneSums::squared_error gives this mean and this error for.
-  const auto store = [&](auto&& value, double& sum, double& squares) {
-    const ReplicateMean x = mean_of_replicates(count, count, value);
-    const double error2 = count > 1 ? x.squared_error : 0;
+  const auto squares_of = [&](double mean, double cross, double squared_error) {
+    return (w * w - sums.weight_squared) * squared_error + 2 * mean * cross -
+           sums.weight_squared * mean * mean;
+  };
+  const auto store = [&](std::span<const double> value, double& sum, double& cross, double& squares) {
+    const ReplicateMean x = replicates([&](std::size_t g) { return value[g]; });
     sum = w * x.mean;
-    squares = (w * w - sums.weight_squared) * error2 + sums.weight_squared * x.mean * x.mean;
+    cross = sums.weight_squared * x.mean;
+    squares = squares_of(x.mean, cross, x.squared_error);
   };
-  const auto total = [&](std::size_t g) {
-    return caustic.empty() ? direct[g] + indirect[g] : direct[g] + indirect[g] + caustic[g];
-  };
-  double sum_of_total = 0;
-  store([&](std::size_t g) { return direct[g]; }, sums.direct[i], sums.direct_squared[i]);
-  store([&](std::size_t g) { return indirect[g]; }, sums.indirect[i], sums.indirect_squared[i]);
-  store(total, sum_of_total, sums.total_squared[i]);
-  sums.direct_cross[i] = sums.weight_squared * sums.direct[i] / w;
-  sums.indirect_cross[i] = sums.weight_squared * sums.indirect[i] / w;
-  if (!caustic.empty()) {
-    store([&](std::size_t g) { return caustic[g]; }, sums.caustic[i], sums.caustic_squared[i]);
-    sums.caustic_cross[i] = sums.weight_squared * sums.caustic[i] / w;
-  }
+  store(direct, sums.direct[i], sums.direct_cross[i], sums.direct_squared[i]);
+  store(indirect, sums.indirect[i], sums.indirect_cross[i], sums.indirect_squared[i]);
+  const ReplicateMean both = replicates([&](std::size_t g) { return direct[g] + indirect[g]; });
+  sums.total_squared[i] =
+      squares_of(both.mean + caustic.mean, sums.total_cross(i), both.squared_error + caustic.squared_error);
   const std::size_t values = sums.direct.size();
   for (std::size_t g = 0; g < count; ++g)
-    sums.group_total[g * values + i] =
-        static_cast<float>(total(g) * static_cast<double>(sums.group_weight[g]));
+    sums.group_total[g * values + i] = static_cast<float>((direct[g] + indirect[g] + caustic.of_group[g]) *
+                                                          static_cast<double>(sums.group_weight[g]));
 }
 
 namespace {
 
 constexpr std::size_t kChunk = 4096;
-constexpr std::size_t kGroups = ZoneSums::kGroups;
 
 /// Sums over zones for one channel.
 struct ChannelError {

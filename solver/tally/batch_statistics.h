@@ -34,10 +34,10 @@ void add_batch(const BatchBooks& books, std::int64_t weight, EnergyAudit& audit)
 
 /// Replaces the sums of value i = zone * channels + channel by what gives the means, and the standard errors
 /// that follow from the spread, of independent estimates of its irradiance [W/m2]: one per group that has
-/// batches, that is min(kGroups, batches) of them, taken as equally good. Pre: batches > 0. `caustic` may be
-/// empty: nothing.
+/// batches, that is min(kGroups, batches) of them, taken as equally good. What batches found of caustics is
+/// kept; it is independent of them. Pre: batches > 0.
 void store_replicates(ZoneSums& sums, std::size_t i, std::span<const double> direct,
-                      std::span<const double> indirect, std::span<const double> caustic = {});
+                      std::span<const double> indirect);
 
 /// Rms error so far; infinite before two batches.
 double zone_rms_error(const SurfaceModel& surfaces, const ZoneMesh& mesh, const ZoneSums& sums);

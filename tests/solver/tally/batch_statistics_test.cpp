@@ -88,13 +88,42 @@ TEST(StoreReplicates, gives_back_mean_and_error) {
   check(s.irradiance(ZoneId(3), 0), [&](std::size_t g) { return direct[g] + indirect[g]; });
   EXPECT_FLOAT_EQ(s.sums.group_total[2 * s.sums.direct.size() + 3],
                   static_cast<float>(2 * (direct[2] + indirect[2])));
+}
 
-  s.sums.caustic = s.sums.caustic_cross = s.sums.caustic_squared = std::vector<double>(s.sums.direct.size());
-  std::array<double, ZoneSums::kGroups> caustic{};
-  for (std::size_t g = 0; g < caustic.size(); ++g) caustic[g] = 0.5 + 0.2 * static_cast<double>(g % 3);
-  store_replicates(s.sums, 3, direct, indirect, caustic);
-  check(s.caustic_irradiance(ZoneId(3), 0), [&](std::size_t g) { return caustic[g]; });
-  check(s.irradiance(ZoneId(3), 0), [&](std::size_t g) { return direct[g] + indirect[g] + caustic[g]; });
+TEST(StoreReplicates, keeps_caustics_and_their_error) {
+  Solution s = run(lit_box(1), 30'000, 1, 30);
+  // Batches that found every third of the direct light over mirrors.
+  ZoneSums& sums = s.sums;
+  for (const auto& [caustic, direct] :
+       {std::pair(&sums.caustic, &sums.direct), std::pair(&sums.caustic_cross, &sums.direct_cross),
+        std::pair(&sums.caustic_squared, &sums.direct_squared)}) {
+    *caustic = *direct;
+    for (double& x : *caustic) x /= caustic == &sums.caustic_squared ? 9 : 3;
+  }
+  const Estimate caustic = s.caustic_irradiance(ZoneId(3), 0);
+  ASSERT_GT(caustic.mean, 0);
+  ASSERT_GT(caustic.stderr_of_mean, 0);
+  const double before = s.irradiance(ZoneId(3), 0).mean;
+  std::array<double, ZoneSums::kGroups> direct{};
+  std::array<double, ZoneSums::kGroups> indirect{};
+  for (std::size_t g = 0; g < direct.size(); ++g) {
+    direct[g] = 0.01 * static_cast<double>(g);
+    indirect[g] = 0.03 * static_cast<double>(g % 5);
+  }
+  store_replicates(sums, 3, direct, indirect);
+  EXPECT_EQ(s.caustic_irradiance(ZoneId(3), 0).mean, caustic.mean);
+  EXPECT_EQ(s.caustic_irradiance(ZoneId(3), 0).stderr_of_mean, caustic.stderr_of_mean);
+  const ReplicateMean both = mean_of_replicates(direct.size(), direct.size(),
+                                                [&](std::size_t g) { return direct[g] + indirect[g]; });
+  const Estimate all = s.irradiance(ZoneId(3), 0);
+  EXPECT_NE(all.mean, before);
+  EXPECT_NEAR(all.mean, both.mean + caustic.mean, 1e-12);
+  EXPECT_NEAR(all.stderr_of_mean, std::sqrt(both.squared_error + std::pow(caustic.stderr_of_mean, 2)), 1e-9);
+  double of_groups = 0;
+  for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
+    of_groups += static_cast<double>(sums.group_total[g * sums.direct.size() + 3]);
+  EXPECT_NEAR(of_groups / static_cast<double>(sums.weight()), all.mean, 0.05 * all.mean)
+      << "groups have one or two batches, which counted alike in the mean of the replicates";
 }
 
 /// Shares of 95 % intervals that hold the truth, of means of `batches` batches of a large room whose variance
