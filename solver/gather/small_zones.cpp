@@ -79,6 +79,15 @@ struct ZoneReplicates {
   double total(std::size_t r) const { return direct[r] + indirect[r]; }
 };
 
+/// What is small stands close to what is large: the part of the floor that a foot sees lies in its shadow,
+/// the zone of the floor mostly not. So near hits are continued, unless zones are to send out light evenly,
+/// as the matrix method has it.
+GatherSettings gather_settings(const SolverSettings& solver) {
+  GatherSettings settings{.continue_uneven = false, .seed = solver.seed};
+  if (solver.reemission == Reemission::kFromZones) settings.close_hit = 0;
+  return settings;
+}
+
 /// Gathers at zones; every replicate reads its own part of the zone solution.
 class Gatherer {
  public:
@@ -89,8 +98,7 @@ class Gatherer {
         seed_(solution.settings.seed),
         field_(room, solution, kReplicates),
         direct_(room),
-        gather_(field_, direct_,
-                GatherSettings{.close_hit = 0, .caustics = false, .seed = solution.settings.seed}) {}
+        gather_(field_, direct_, gather_settings(solution.settings)) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
 

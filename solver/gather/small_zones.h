@@ -24,15 +24,16 @@ struct SmallZoneLimits {
 };
 
 /// Gives zones too small to meet enough packets their irradiance by gathering from the rest of the zone
-/// solution, as [GI98] (Monte Carlo notes) proposes. The estimate is that of the zonal system,
-/// E_i = sum_j F_ij B_j: rays from uniform points of the zone read the zones they hit as they stand, one
-/// replicate per batch group, so that the standard error holds the noise of the zones read. Caustics, which
-/// few gather rays would find, stay those that packets brought, as do the inner sides of bodies of glass. A
-/// short pilot gather of every small zone decides whether gathering it will beat its packets; the pilot's
-/// random numbers are its own, and what packets found has no say, so the choice biases nothing. `limits`
-/// bound the work. Adds to record.rays and sets record.gathered_zones. Returns true if the clock had a say in
-/// what was gathered, by the limit or by `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When
-/// `stop` is requested the zones not yet done keep what packets found.
+/// solution, as [GI98] (Monte Carlo notes) proposes: rays from uniform points of the zone read the zones they
+/// hit, one replicate per batch group, so that the standard error holds the noise of the zones read. Near
+/// hits are continued (GatherSettings::close_hit), unless the run has Reemission::kFromZones: then it is the
+/// equation of the zonal system, E_i = sum_j F_ij B_j. Caustics, which few gather rays would find, stay those
+/// that packets brought, as do the inner sides of bodies of glass. A short pilot gather of every small zone
+/// decides whether gathering it will beat its packets; the pilot's random numbers are its own, and what
+/// packets found has no say, so the choice biases nothing. `limits` bound the work. Adds to record.rays and
+/// sets record.gathered_zones. Returns true if the clock had a say in what was gathered, by the limit or by
+/// `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When `stop` is requested the zones not yet
+/// done keep what packets found.
 bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solution& solution,
                         const StopToken& stop);
 

@@ -57,7 +57,7 @@ void look_for_lost_light(const PreparedRoom& room, const std::atomic<bool>& inte
     for (std::string& warning : lost_light_warnings(room.transport, room.emission, solution, &stop))
       warnings.push_back(std::move(warning));
   } catch (const Interrupted&) {
-    warnings.push_back(
+    warnings.emplace_back(
         "the run was interrupted before it had looked for light that is lost; solve again to know");
   }
 }

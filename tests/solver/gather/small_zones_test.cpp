@@ -1,5 +1,6 @@
 #include "solver/gather/small_zones.h"
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -7,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "solver/progressive_solver.h"
+#include "solver/tally/replicates.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/never.h"
+#include "tests/support/test_rooms.h"
 #include "tests/support/variable_furnace.h"
 
 namespace reemit {
@@ -103,6 +106,83 @@ TEST(SmallZones, have_the_right_mean_and_error) {
   };
   EXPECT_GT(fit(VariableFurnace::kRadiosity), test::kFalseAlarm);
   EXPECT_LT(fit(1.02 * VariableFurnace::kRadiosity), test::kFalseAlarm);
+}
+
+/// A box with a low table whose feet stand in its shadow, and zones of the floor much larger than that.
+test::RoomBuilder room_with_low_table() {
+  test::RoomBuilder room;
+  const MaterialId white = room.material("white", 0.7, 0, true);
+  const MaterialId lamp = room.material("lamp", 0.5, 20);
+  room.box({0, 0, 0}, {1, 1, 1}, {white, white, white, white, white, white}, 2);
+  room.quad(lamp, {Vec3(0.3, 0.3, 0.98), Vec3(0.3, 0.7, 0.98), Vec3(0.7, 0.7, 0.98), Vec3(0.7, 0.3, 0.98)},
+            2);
+  const double top = 0.08;
+  room.quad(white, {Vec3(0.1, 0.1, top), Vec3(0.45, 0.1, top), Vec3(0.45, 0.35, top), Vec3(0.1, 0.35, top)},
+            4);
+  for (const double x : {0.12, 0.4})
+    for (const double y : {0.12, 0.3})
+      room.box({x, y, 0}, {x + 0.03, y + 0.03, top}, {white, white, white, white, {}, {}}, 4);
+  return room;
+}
+
+/// Power of the light on all small zones together.
+test::Measured light_on_small_zones(const Solution& s) {
+  std::array<double, ZoneSums::kGroups> power{};
+  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)
+    if (is_small(s, z))
+      for (std::size_t g = 0; g < power.size(); ++g)
+        power[g] += s.mesh.zone_area(ZoneId(z)) *
+                    (static_cast<double>(s.sums.group_total[g * s.sums.direct.size() + z]) /
+                     static_cast<double>(s.sums.group_weight[g]));
+  const ReplicateMean mean =
+      mean_of_replicates(power.size(), power.size(), [&](std::size_t g) { return power[g]; });
+  return {mean.mean, std::sqrt(mean.squared_error)};
+}
+
+// Their floor is dark, but the mean of its zones is not: read as they stand they make feet a quarter
+// brighter. Five standard errors, 2.5 %, are passed once in two million runs.
+TEST(SmallZones, see_the_shadows_they_stand_in) {
+  const test::RoomBuilder room = room_with_low_table();
+  SolverSettings settings;
+  settings.packets = 6'000'000;
+  const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  EXPECT_GT(gathered.record.gathered_zones, 100U);
+  settings.gather_small_zones = false;
+  settings.seed = 2;
+  const Solution packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  const test::Measured a = light_on_small_zones(gathered);
+  const test::Measured b = light_on_small_zones(packets);
+  const double error = std::hypot(a.stderr_of_mean, b.stderr_of_mean);
+  EXPECT_LT(error, 0.005 * b.mean);
+  EXPECT_NEAR(a.mean, b.mean, 5 * error);
+}
+
+TEST(SmallZones, keep_caustics_and_the_inside_of_glass) {
+  test::RoomBuilder room = room_with_low_table();
+  Scene& scene = room.scene();
+  const MaterialId glass = room.material("glass", 0, 0, true);
+  NonDiffusePart& part = scene.materials[glass.index()].non_diffuse;
+  part.specular_transmittance = room.flat(1);
+  part.index_of_refraction = 1.5;
+  part.angle_law = AngleLaw::kDielectric;
+  part.is_solid = true;
+  room.solid({0.5, 0.5, 0.2}, {0.55, 0.55, 0.25}, glass, 4);
+  const MaterialId tray = room.material("tray", 0.5, 0, true);
+  room.quad(tray,
+            {Vec3(0.5, 0.5, 0.15), Vec3(0.55, 0.5, 0.15), Vec3(0.55, 0.55, 0.15), Vec3(0.5, 0.55, 0.15)}, 4);
+  SolverSettings settings;
+  settings.packets = 2'000'000;
+  const Solution gathered = solve_zones(scene, room.mesh(), settings, {}, kNever);
+  settings.gather_small_zones = false;
+  const Solution packets = solve_zones(scene, room.mesh(), settings, {}, kNever);
+  EXPECT_EQ(gathered.sums.caustic, packets.sums.caustic);
+  std::size_t over_glass = 0;
+  for (const ZoneId z : gathered.gathered.zones) {
+    const bool is_glass = scene.surfaces[gathered.mesh.zone_surface(z).index()].material == glass;
+    EXPECT_FALSE(is_glass && !gathered.mesh.zone_is_front(z)) << z.index();
+    if (gathered.sums.caustic[z.index()] > 0) ++over_glass;
+  }
+  EXPECT_GT(over_glass, 10U);
 }
 
 TEST(SmallZones, need_all_batch_groups) {
