@@ -79,8 +79,9 @@ bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample,
     if (!(distance > 0)) return true;
     const Vec3f direction = sample.at_infinity ? way : Vec3f(way / distance);
     Hit hit;
-    if (!rays_->closest(from, direction, hit)) return true;
-    if (!(hit.distance < distance)) return true;
+    if (!(sample.at_infinity ? rays_->closest(from, direction, hit)
+                             : rays_->first_on_way(from, direction, distance, hit)))
+      return true;
     if (!surfaces_->is_specular(hit.triangle, hit.front) || !surfaces_->specular(hit.triangle).is_pane())
       return false;
     if (!step) {

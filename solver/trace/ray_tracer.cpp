@@ -64,6 +64,11 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float f
   return ray;
 }
 
+/// Where a way to a ray origin ends, so that what it lies on is not in the way.
+float shortened(float distance) {
+  return distance * (1 - 1e-6F);
+}
+
 Vec3f turned(const Vec3f& d) {
   return Vec3f(d.x() + kTurn * d.y(), d.y() + kTurn * d.z(), d.z() - kTurn * d.x()).normalized();
 }
@@ -236,17 +241,21 @@ Vec3f RayTracer::ray_origin(TriangleId t, float u, float v, bool front, Vec3f& f
   return is_foot(t) ? clear_of_shapes(t, start) : start;
 }
 
+bool RayTracer::nearest(const Vec3f& origin, const Vec3f& direction, float far, std::uint32_t key,
+                        Hit& hit) const {
+  RTCRayHit query{};
+  query.ray = make_ray(origin, direction, 0, far, key);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  intersect1(embree_->scene(), query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, direction,
+           hit);
+  return true;
+}
+
 bool RayTracer::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
   const std::uint32_t key = cut_out_key(origin, direction);
-  const auto trace = [&](const Vec3f& d, Hit& found) {
-    RTCRayHit query{};
-    query.ray = make_ray(origin, d, 0, kInfinity, key);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    intersect1(embree_->scene(), query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    read_hit(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, origin, d, found);
-    return true;
-  };
+  const auto trace = [&](const Vec3f& d, Hit& found) { return nearest(origin, d, kInfinity, key, found); };
   const auto number = [](const Hit& found) { return static_cast<std::uint32_t>(found.triangle.index()); };
   const bool any = trace(direction, hit);
   const std::uint32_t met = any ? number(hit) : kMiss;
@@ -397,12 +406,19 @@ void RayTracer::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   }
 }
 
+bool RayTracer::first_on_way(const Vec3f& origin, const Vec3f& direction, float distance, Hit& hit) const {
+  const float far = shortened(distance);
+  if (!nearest(origin, direction, far, cut_out_key(origin, direction), hit)) return false;
+  // From within, curved shapes are met sooner than the ray origins on them.
+  return !is_curved(hit.triangle) || hit.distance < far - static_cast<float>(ShapeTarget::kSooner);
+}
+
 bool RayTracer::visible(const Vec3f& from, const Vec3f& to) const {
   const Vec3f d = to - from;
   const float distance = d.norm();
   if (!(distance > 0)) return true;
   const Vec3f direction = d / distance;
-  RTCRay ray = make_ray(from, direction, 0, distance * (1 - 1e-6F), cut_out_key(from, direction));
+  RTCRay ray = make_ray(from, direction, 0, shortened(distance), cut_out_key(from, direction));
   occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;
 }

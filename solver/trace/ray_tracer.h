@@ -144,6 +144,9 @@ class RayTracer {
     if (cut_outs_ == nullptr) return 0;
     return rays.key[lane] != 0 ? rays.key[lane] : key_of(rays.origin(lane), rays.direction(lane));
   }
+  /// Nearest hit on the way to a ray origin at this distance, or at infinity, along a unit direction, without
+  /// a second look, as `visible` has it. False if there is none.
+  bool first_on_way(const Vec3f& origin, const Vec3f& direction, float distance, Hit& hit) const;
   /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
   /// eye).
   bool visible(const Vec3f& from, const Vec3f& to) const;
@@ -164,6 +167,8 @@ class RayTracer {
   /// Edges within kEdgeWidth of (u,v), as bits: bit k is the edge opposite to corner k.
   unsigned edges_near(std::uint32_t triangle, float u, float v) const;
   Vec3f into_triangle(TriangleId t, int corner, float& height) const;
+  /// Nearest hit before `far`, without a second look.
+  bool nearest(const Vec3f& origin, const Vec3f& direction, float far, std::uint32_t key, Hit& hit) const;
   void read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
                 const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
 

@@ -15,6 +15,7 @@ constexpr double kProud = 1e-6;
 constexpr double kRimBand = 4 * kProud;
 /// How much sooner a shape is met from within.
 constexpr double kEncloses = 2 * kProud;
+static_assert(kEncloses <= ShapeTarget::kSooner);
 
 double nearest_of(double a, double b, double near, double far) {
   if (a > near && a < far) return a;

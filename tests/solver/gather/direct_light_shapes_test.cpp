@@ -33,6 +33,8 @@ struct Lamp {
   std::function<double(const Vec3& x, const Vec3& n)> irradiance;
   Vec3 near_point;  ///< On the luminaire.
   Vec3 away;        ///< Unit direction in which points leave it.
+  /// A pane stands behind the receiver: shadow rays ask what they meet, not whether they meet anything.
+  bool beside_a_pane = false;
 };
 
 constexpr std::array<std::array<double, 2>, 4> kRectangle{{{0, 0}, {1, 0}, {1, 0.7}, {0, 0.7}}};
@@ -191,6 +193,12 @@ class LitReceiver {
     room_.scene().materials[m.index()].emits_both_sides = lamp.both_sides;
     room_.scene().materials[m.index()].emission_exponent = exponent;
     lamp.add(room_, m);
+    if (lamp.beside_a_pane) {
+      const MaterialId pane = room_.material("pane", 0, 0, true);
+      room_.scene().materials[pane.index()].non_diffuse.specular_transmittance = room_.flat(0.5);
+      const Vec3 behind = x - 0.1 * size * n;
+      room_.triangle(pane, {behind, behind + 0.1 * size * u, behind + 0.1 * size * v}, 1);
+    }
     return build_mesh(room_.scene());
   }
 
@@ -261,6 +269,19 @@ TEST(DirectLightShapes, AtAThousandthOfTheirSize) {
 
 TEST(DirectLightShapes, AtAThousandTimesTheirSize) {
   for (const Lamp& lamp : all_lamps()) expect_lit_as_stated(lamp, 1e3, 2e-4);
+}
+
+TEST(DirectLightShapes, BesideAPaneTheyAreSeenAsWithout) {
+  for (Lamp lamp : all_lamps()) {
+    lamp.beside_a_pane = true;
+    expect_lit_as_stated(lamp, 0.8, 2e-5);
+    expect_lit_as_stated(lamp, 1e3, 2e-4);
+  }
+  Lamp lamp = sphere_lamp();
+  lamp.both_sides = lamp.beside_a_pane = true;
+  for (const Vec3& n : {Vec3(0, 0, 1), Vec3(0.6, 0, 0.8)})
+    expect_agreement("sphere from inside",
+                     LitReceiver(lamp, Vec3(0.1, 0.2, 0.3), n, 1e-2).precise_irradiance(), pi, 2e-5);
 }
 
 TEST(DirectLightShapes, AlmostInThePlaneOfFlatOnes) {
