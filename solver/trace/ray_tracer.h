@@ -144,8 +144,8 @@ class RayTracer {
     if (cut_outs_ == nullptr) return 0;
     return rays.key[lane] != 0 ? rays.key[lane] : key_of(rays.origin(lane), rays.direction(lane));
   }
-  /// Nearest hit on the way to a ray origin at this distance, or at infinity, along a unit direction, without
-  /// a second look, as `visible` has it. False if there is none.
+  /// Nearest hit on the way to a ray origin at this distance along a unit direction, without a second look,
+  /// as `visible` has it. False if there is none.
   bool first_on_way(const Vec3f& origin, const Vec3f& direction, float distance, Hit& hit) const;
   /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
   /// eye).
