@@ -25,13 +25,17 @@ std::vector<float> light_on_sides(const PilotLight& pilot, const std::vector<Sid
     watch.at(static_cast<double>(begin) / static_cast<double>(uses.size()));
     const std::size_t end = std::min(begin + kSidesPerStep, uses.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 256), [&](const auto& range) {
-      PilotLight::Looker looker(pilot);
+      std::vector<SideCell> cells;
       for (std::size_t s = range.begin(); s != range.end(); ++s) {
         const SideId side(s);
-        if (uses[s] != SideUse::kShared || !mesh.has_zones(side)) continue;
-        const LightSpread light = looker.look({triangle_of(side), is_front(side), {}}, kEffort);
-        levels[s] = static_cast<float>(light_level(light.mean(), pilot.mean()));
+        if (uses[s] == SideUse::kShared && mesh.has_zones(side))
+          cells.push_back({triangle_of(side), is_front(side), {}});
       }
+      std::vector<LightSpread> light(cells.size());
+      PilotLight::Looker(pilot).look_at_all(cells, kEffort, light.data());
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        levels[side_of(cells[i].triangle, cells[i].front).index()] =
+            static_cast<float>(light_level(light[i].mean(), pilot.mean()));
     });
   }
   return levels;

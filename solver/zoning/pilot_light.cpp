@@ -106,23 +106,38 @@ PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& wat
 PilotLight::Looker::Looker(const PilotLight& pilot) : pilot_(&pilot), batch_(*pilot.gather_) {}
 
 LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& effort) {
+  LightSpread light;
+  look_at_all({&cell, 1}, effort, &light);
+  return light;
+}
+
+void PilotLight::Looker::look_at_all(std::span<const SideCell> cells, const LookEffort& effort,
+                                     LightSpread* light) {
+  const auto points = static_cast<std::size_t>(effort.points);
+  const std::size_t values = points * kHalves * pilot_->room().band_count();
+  points_.clear();
+  found_.assign(cells.size() * values, 0.0F);
+  for (std::size_t i = 0; i < cells.size(); ++i) send_rays(cells[i], effort, &found_[i * values]);
+  batch_.flush();
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    light[i] = spread(cells[i], std::span(points_).subspan(i * points, points), &found_[i * values]);
+}
+
+void PilotLight::Looker::send_rays(const SideCell& cell, const LookEffort& effort, float* found) {
   const Room& room = pilot_->room();
   const std::size_t bands = room.band_count();
   const float* reflectance = room.surfaces().reflectance(cell.triangle, cell.front);
-  std::vector<float> direct_weight(bands);
-  std::vector<float> ray_weight(bands);
+  direct_weight_.resize(bands);
+  ray_weight_.resize(bands);
   for (std::size_t b = 0; b < bands; ++b) {
     const float weight = pilot_->band_weight_[b];
-    direct_weight[b] =
+    direct_weight_[b] =
         lambert_reflected_radiance(weight * reflectance[b], 1.0F / static_cast<float>(effort.shadows));
-    ray_weight[b] = weight * reflectance[b] / static_cast<float>(effort.gathers);
+    ray_weight_[b] = weight * reflectance[b] / static_cast<float>(effort.gathers);
   }
-  found_.assign(static_cast<std::size_t>(effort.points * kHalves) * bands, 0.0F);
   const std::uint64_t key = key_of(cell);
   const PointSampler sampler(kPilotSeed, RngPurpose::kPilotLight, key, 0,
                              std::countr_zero(std::bit_ceil(static_cast<unsigned>(effort.points))));
-  points_.clear();
-  float* next = found_.data();
   for (int i = 0; i < effort.points; ++i) {
     const std::array<float, 2> u = sampler.place(i);
     const auto [a, b] = sample_triangle(u[0], u[1]);
@@ -132,26 +147,30 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& eff
                                          static_cast<float>(at.at.v), at.front);
     // The same rays from every point, so that their noise is the same and only differences of the light are
     // left.
-    for (int half = 0; half < kHalves; ++half, next += bands) {
+    for (int half = 0; half < kHalves; ++half, found += bands) {
       for (int ray = 0; ray < effort.shadows; ++ray)
-        pilot_->direct_->add_sample(x, sampler.light(half, ray, effort.shadows), direct_weight.data(), next);
+        pilot_->direct_->add_sample(x, sampler.light(half, ray, effort.shadows), direct_weight_.data(),
+                                    found);
       const auto part =
           static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_->parts());
       for (int ray = 0; ray < effort.gathers; ++ray) {
         const std::array<float, 2> d = sampler.hemisphere(half, ray, effort.gathers);
         const auto path = static_cast<std::uint32_t>((i * kHalves + half) * effort.gathers + ray);
-        batch_.add(x, d[0], d[1], {key, part, path, part}, ray_weight.data(), next);
+        batch_.add(x, d[0], d[1], {key, part, path, part}, ray_weight_.data(), found);
       }
     }
   }
-  batch_.flush();
-  LightSpread light;
+}
+
+LightSpread PilotLight::Looker::spread(const SideCell& cell, std::span<SeenPoint> points,
+                                       const float* found) const {
+  const Room& room = pilot_->room();
   const double need = need_of(room, cell);
-  const float* value = found_.data();
-  for (SeenPoint& point : points_) {
+  LightSpread light;
+  for (SeenPoint& point : points) {
     std::array<double, kHalves> sum{};
     for (double& of_half : sum)
-      for (std::size_t b = 0; b < bands; ++b) of_half += static_cast<double>(*value++);
+      for (std::size_t b = 0; b < room.band_count(); ++b) of_half += static_cast<double>(*found++);
     point.first_look = need * sum[0];
     point.second_look = need * sum[1];
     light.add(point.first_look, point.second_look);

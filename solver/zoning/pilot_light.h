@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/zones/zone_mesh.h"
@@ -47,13 +48,21 @@ class PilotLight {
     /// Looks at points of the cell, twice at each, with halves of the pilot solution. The same for the same
     /// cell and effort.
     LightSpread look(const SideCell& cell, const LookEffort& effort);
-    /// The points of the last look.
+    /// The same for each of these cells, with their gather rays in common packets: for few rays from each.
+    void look_at_all(std::span<const SideCell> cells, const LookEffort& effort, LightSpread* light);
+    /// The points of the last look, cell by cell.
     const std::vector<SeenPoint>& points() const { return points_; }
 
    private:
+    /// Adds to `found` by point, half and band, and to `points_`.
+    void send_rays(const SideCell& cell, const LookEffort& effort, float* found);
+    LightSpread spread(const SideCell& cell, std::span<SeenPoint> points, const float* found) const;
+
     const PilotLight* pilot_;
     GatherBatch batch_;
-    std::vector<float> found_;  // by point, half and band
+    std::vector<float> direct_weight_;  // by band
+    std::vector<float> ray_weight_;     // by band
+    std::vector<float> found_;          // by cell, point, half and band
     std::vector<SeenPoint> points_;
   };
 

@@ -19,8 +19,13 @@ constexpr std::uint64_t kRaySeed = 1;  // nothing of a solution should depend on
 /// Rays from every side at least, and in all in rooms of few sides.
 constexpr std::uint32_t kLeastRounds = 4;
 constexpr std::size_t kManyRays = 400'000;
+/// Rays sent at once: enough for all cores.
+constexpr std::size_t kRaysAtOnce = 65'536;
 /// Further rays from each side that seems sealed.
 constexpr std::uint32_t kSecondThoughts = 28;
+/// Of sides that have met each other so many send one in a round of these, in turn: a ray that gets out from
+/// any of them opens all.
+constexpr std::size_t kSpeakers = 32;
 constexpr std::uint32_t kRaysPerLight = 4096;
 /// Points keep this share of a triangle's size away from its edges, where rounding decides what a ray meets.
 constexpr float kMargin = 0.02F;
@@ -55,16 +60,17 @@ class Reach {
     std::vector<std::uint32_t> asked;
     for (std::uint32_t s = 0; s < sides_; ++s)
       if (has_zones(s)) asked.push_back(s);
-    std::uint32_t round = 0;
-    for (; round < rounds; ++round) {
+    const auto at_once = static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(kRaysAtOnce / std::max<std::size_t>(1, asked.size()), 1, rounds));
+    for (std::uint32_t round = 0; round < rounds; round += at_once) {
       watch.at(0.8 * round / rounds);
-      join_seen(asked, round);
+      join_seen(asked, round, std::min(at_once, rounds - round));
     }
-    for (std::uint32_t more = 0; more < kSecondThoughts; ++more, ++round) {
+    for (std::uint32_t more = 0; more < kSecondThoughts; ++more) {
       watch.at(0.8 + 0.2 * more / kSecondThoughts);
       std::erase_if(asked, [&](std::uint32_t s) { return is_lit(s); });
       if (asked.empty()) break;
-      join_seen(asked, round);
+      join_seen(speakers(asked, more), rounds + more, 1);
     }
   }
 
@@ -110,22 +116,39 @@ class Reach {
     }
   }
 
-  /// One ray from each of these sides.
-  void join_seen(const std::vector<std::uint32_t>& sides, std::uint32_t round) {
-    std::vector<std::uint32_t> met(sides.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides.size(), 1024), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) {
-        const std::uint32_t s = sides[i];
-        const std::array<float, 4> u = rng_.uniform4(s, round, 0);
-        auto [a, b] = sample_triangle(u[0], u[1]);
-        a = kMargin + (1 - 3 * kMargin) * a;
-        b = kMargin + (1 - 3 * kMargin) * b;
-        const SurfacePoint x = surface_point(rays_, triangle_of(SideId(s)), a, b, is_front(SideId(s)));
-        const Vec3f direction = Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3]));
-        met[i] = seen(ray_origin(rays_, x), direction);
-      }
+  /// Of `sides`, which seem sealed, those whose turn it is among sides that have met each other.
+  std::vector<std::uint32_t> speakers(const std::vector<std::uint32_t>& sides, std::uint32_t turn) {
+    std::vector<std::uint32_t> size(sides_, 0);
+    for (const std::uint32_t s : sides) ++size[sets_.find(s)];
+    std::vector<std::uint32_t> seen(sides_, 0);
+    std::vector<std::uint32_t> chosen;
+    for (const std::uint32_t s : sides) {
+      const std::size_t set = sets_.find(s);
+      const std::size_t turns = (size[set] + kSpeakers - 1) / kSpeakers;
+      if (seen[set]++ % turns == turn % turns) chosen.push_back(s);
+    }
+    return chosen;
+  }
+
+  /// Rays number `first` to `first` + `count` - 1 of each of these sides.
+  void join_seen(const std::vector<std::uint32_t>& sides, std::uint32_t first, std::uint32_t count) {
+    std::vector<std::uint32_t> met(sides.size() * count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, met.size(), 1024), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i)
+        met[i] = met_by(sides[i / count], first + static_cast<std::uint32_t>(i % count));
     });
-    for (std::size_t i = 0; i < sides.size(); ++i) join(sides[i], met[i]);
+    for (std::size_t i = 0; i < met.size(); ++i) join(sides[i / count], met[i]);
+  }
+
+  /// What ray number `round` of a side meets.
+  std::uint32_t met_by(std::uint32_t side, std::uint32_t round) const {
+    const std::array<float, 4> u = rng_.uniform4(side, round, 0);
+    auto [a, b] = sample_triangle(u[0], u[1]);
+    a = kMargin + (1 - 3 * kMargin) * a;
+    b = kMargin + (1 - 3 * kMargin) * b;
+    const SurfacePoint x = surface_point(rays_, triangle_of(SideId(side)), a, b, is_front(SideId(side)));
+    const Vec3f direction = Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3]));
+    return seen(ray_origin(rays_, x), direction);
   }
 
   const ZoneMesh& mesh_;
