@@ -4,14 +4,19 @@
 Usage: random_rooms.py PROGRAM [--seed N] [--count N] [--packets N] [--keep FOLDER] [--planted SHARE]
 
 A room is a box or an L with three to nine things (boxes, cylinders, cones, balls, sheets, rods, disks, shelves, tubes; matt,
-mirrors, gloss, metal, opal, panes and balls of glass) and one to four luminaires of any shape. The same number gives the same room
-on any machine. Of every room
+mirrors, gloss, metal, opal, panes and balls of glass), up to three more that are half there, have only a front or two
+different sides, one to four luminaires of any shape, at times a measured one, and at times a window or a hole with a sky behind
+it. The same number gives the same room on any machine. Of every room
 
 - the direct light that packets brought must be what shadow rays find (reemit audit --direct);
-- the books must balance, and nothing may come to backs;
+- the books must balance, and nothing may come to backs but to those of things that have only a front;
 - the light that small zones got by gathering must be what packets had brought to them, within 5 standard errors or 3 %; of
-  all rooms together within 4 standard errors or 1 %. --planted 0.02 makes what was gathered 2 % more, which must be noticed.
+  all rooms together within 4 standard errors or 1 %;
+- the light on every side of every surface, but for the inside of glass, must be what random walks (solve --method walk) bring,
+  within 7 standard errors or 2 %: with 15 degrees of freedom at most four of a million differ by more; of all rooms together within
+  4 standard errors or 0.5 %.
 
+--planted 0.02 makes what was gathered and what walks brought 2 % more, which must be noticed both times.
 Exit code 0: all of this held; 1: it did not, and the rooms are named. With --keep the rooms stay, for
 bench_hit_paths FOLDER/*.json. Needs h5py and numpy.
 """
@@ -27,6 +32,9 @@ import h5py
 import numpy
 
 EVEN_WITHOUT_NOISE = 0.005  # what small zones of one room may be off by
+GLASS_BODY = "glass ball"  # how bodies of glass begin
+ODD_SHEET = "odd sheet"  # how things begin that may have a back that only absorbs
+MEASURED_LUMINAIRE = pathlib.Path(__file__).resolve().parent.parent / "docs/examples/downlight.ies"
 
 
 class Maker:
@@ -34,6 +42,7 @@ class Maker:
 
     def __init__(self, number):
         self.draw = random.Random(number)
+        self.more = random.Random(f"more of {number}")  # leaves what `draw` gives as it is
         self.size = (self.between(2, 7), self.between(2.2, 3.5), self.between(2, 6))  # x, up, z [m]
         self.objects, self.lights = [], []
         self.materials = {}
@@ -53,7 +62,16 @@ class Maker:
             self.add_thing(i)
         for i in range(self.draw.randint(1, 4)):
             self.add_luminaire(i)
+        self.draw = self.more
+        for i in range(self.draw.randint(0, 3)):
+            self.add_odd_sheet(i)
+        if self.draw.random() < 0.3:
+            self.add_measured_luminaire()
         text = {"format": "reemit-room", "version": 1, "bands": "rgb", "materials": self.materials, "objects": self.objects}
+        if self.draw.random() < 0.4:
+            sky = self.open_window()
+            if sky:
+                text["sky"] = sky
         if self.lights:
             text["lights"] = self.lights
         return text
@@ -95,7 +113,7 @@ class Maker:
         x, z, s = between(0.15, 0.85) * self.size[0], between(0.15, 0.85) * self.size[2], between(0.1, 0.5)
         matt = draw.choice(["cloth", "wood", "floor", "wall"])
         any_kind = draw.choice([matt] * 3 + ["mirror", "satin", "metal"])
-        kind = draw.choice(["box", "box", "cylinder", "ball", "sheet", "rods", "disk", "shelf", "tube", "glass ball", "pane"])
+        kind = draw.choice(["box", "box", "cylinder", "ball", "sheet", "rods", "disk", "shelf", "tube", GLASS_BODY, "pane"])
         name = f"{kind} {i}"
         if kind == "box":
             sides = {"min": [-s, 0, -s * between(0.1, 1)], "max": [s, between(0.1, 1.2), s * between(0.1, 1)]}
@@ -133,11 +151,47 @@ class Maker:
             self.add(name, matt, cylinder={"base": [draw.choice([-0.02, 0.2]), height, z],
                                            "top": [between(0.5, 0.9) * self.size[0], between(0.3, 0.8) * up, z],
                                            "radius": between(0.01, 0.08)})
-        elif kind == "glass ball":
+        elif kind == GLASS_BODY:
             self.add(name, "solid", sphere={"center": [x, between(0.3, 0.7) * up, z], "radius": 0.4 * s})
         else:
             self.add(name, draw.choice(["pane", "opal"]),
                      quad={"corner": [x, 0.01, z], "u": [between(0.3, 0.8), 0, between(-0.4, 0.4)], "v": [0, between(0.5, 1.5), 0]})
+
+    def add_odd_sheet(self, i):
+        between = self.between
+        self.materials.update({
+            "half there": {"reflectance": self.colour(0.2, 0.8), "opacity": between(0.2, 0.8)},
+            "front only": {"reflectance": self.colour(0.2, 0.8), "sides": "front"},
+            "two colours": {"reflectance": self.colour(0.2, 0.8), "back_reflectance": self.colour(0.2, 0.8)}})
+        x, up, z = (between(0.15, 0.7) * length for length in self.size)
+        self.add(f"{ODD_SHEET} {i}", self.draw.choice(["half there", "front only", "two colours"]), quad={
+            "corner": [x, 0.8 * up, z], "u": [between(-0.8, 0.8), between(-0.2, 0.2), between(-0.8, 0.8)],
+            "v": [between(-0.2, 0.2), between(0.2, 0.9), between(-0.2, 0.2)]})
+
+    def add_measured_luminaire(self):
+        x, up, z = self.size
+        self.lights.append({"type": "ies", "name": "measured", "file": str(MEASURED_LUMINAIRE), "mount": "ceiling",
+                            "position": [self.between(0.2, 0.8) * x, up, self.between(0.2, 0.8) * z]})
+
+    def open_window(self):
+        """Puts a window into one wall of a box and returns the sky behind it; None if the room is no box."""
+        shell = self.objects[0]
+        if "box" not in shell:
+            return None
+        between = self.between
+        x, up, _ = shell["box"]["max"]
+        shell["box"]["open"] = ["z-"]
+        left, right = sorted(between(0.1, 0.9) * x for _ in range(2))
+        low, high = sorted(between(0.1, 0.9) * up for _ in range(2))
+        self.add("window wall", "wall", polygon={"vertices": [[0, 0, 0], [x, 0, 0], [x, up, 0], [0, up, 0]],
+                                                 "holes": [[[left, low, 0], [left, high, 0], [right, high, 0], [right, low, 0]]]})
+        if self.draw.random() < 0.7:
+            self.add("window", self.draw.choice(["pane", "pane", "opal"]),
+                     quad={"corner": [left, low, 0], "u": [right - left, 0, 0], "v": [0, high - low, 0]})
+        sky = {"type": self.draw.choice(["uniform", "overcast"]), "illuminance_lx": between(500, 3000)}
+        if self.draw.random() < 0.5:
+            sky["sun"] = {"altitude_deg": between(15, 50), "azimuth_deg": between(-30, 30), "illuminance_lx": 3000}
+        return sky
 
     def add_luminaire(self, i):
         draw, between = self.draw, self.between
@@ -187,24 +241,64 @@ def small_zones(solution):
     return by_packets.mean(), error[0], gathered.mean(), error[1]
 
 
-def examine(program, number, folder, options):
-    """What is wrong with the solution of one room, and the deviation of its small zones with its error, or None."""
-    room = folder / f"random_{number}.json"
-    room.write_text(json.dumps(Maker(number).room(), indent=1))
-    solution = folder / f"random_{number}.h5"
-    solution.unlink(missing_ok=True)
-    run = subprocess.run([program, "solve", room.name, "-o", solution.name, "--packets", str(options.packets), "--quiet"],
-                         cwd=folder, capture_output=True, text=True)
-    if run.returncode != 0:
-        return [f"solve ended with {run.returncode}: {run.stderr.strip()}"], None
-    run = subprocess.run([program, "audit", solution.name, "--direct", "--json"], cwd=folder, capture_output=True, text=True)
-    if run.returncode not in (0, 1):
-        return [f"audit ended with {run.returncode}: {run.stderr.strip()}"], None
-    audit = json.loads(run.stdout)
+def run_json(program, folder, *arguments):
+    """What a command prints with --json; raises RuntimeError if it fails."""
+    run = subprocess.run([program, *arguments, "--json"], cwd=folder, capture_output=True, text=True)
+    if run.returncode not in (0, 1) or not run.stdout:
+        raise RuntimeError(f"{arguments[0]} ended with {run.returncode}: {run.stderr.strip()}")
+    return json.loads(run.stdout)
+
+
+def solve(program, folder, room, solution, *options):
+    (folder / solution).unlink(missing_ok=True)
+    run_json(program, folder, "solve", room, "-o", solution, *options)
+
+
+def light_on_surfaces(program, folder, solution):
+    """By name and side: area [m2], irradiances by band [W/m2] and their standard errors."""
+    return {(surface["name"], surface["side"]): (surface["area_m2"], numpy.array(surface["irradiance_W_m2"]),
+                                                 numpy.array(surface["irradiance_stderr_W_m2"]))
+            for surface in run_json(program, folder, "info", solution)["surfaces"]}
+
+
+def compare_with_walks(shot, walked, planted):
+    """What differs by side, and the deviation of all light together with its error."""
     faults = []
+    flux, difference, squares = 0, 0, 0
+    for key, (area, light, error) in shot.items():
+        if key[0].startswith(GLASS_BODY) and key[1] == "back":
+            continue  # some paths go round in glass ten thousand times
+        _, other, other_error = walked[key]
+        other = other * (1 + planted)
+        both = numpy.hypot(error, other_error)
+        far = abs(light - other) > numpy.maximum(7 * both, 0.02 * numpy.maximum(light, other))
+        if far.any():
+            faults.append(f"light on the {key[1]} of '{key[0]}': {light} W/m2, by walks {other}")
+        flux += area * light.sum()
+        difference += area * (other - light).sum()
+        squares += (area * both).sum() ** 2
+    return faults, (difference / flux, squares ** 0.5 / flux) if flux > 0 else None
+
+
+def examine(program, number, folder, options):
+    """What is wrong with the solution of one room, and the deviations of its small zones and of walks with their errors, or None."""
+    room = f"random_{number}.json"
+    (folder / room).write_text(json.dumps(Maker(number).room(), indent=1))
+    solution, walks = f"random_{number}.h5", f"random_{number}_walks.h5"
+    packets = ("--packets", str(options.packets))
+    faults = []
+    try:
+        solve(program, folder, room, solution, *packets)
+        solve(program, folder, room, walks, *packets, "--method", "walk", "--seed", "2")
+        audit = run_json(program, folder, "audit", solution, "--direct")
+        walked, deviation_of_walks = compare_with_walks(light_on_surfaces(program, folder, solution),
+                                                        light_on_surfaces(program, folder, walks), options.planted)
+    except RuntimeError as fault:
+        return [str(fault)], None, None
+    faults += walked
     if not audit["balanced"]:
         faults.append("the books do not balance")
-    if any(sum(surface["absorbed_on_backs_W"]) > 0 for surface in audit["surfaces"]):
+    if any(sum(surface["absorbed_on_backs_W"]) > 0 and not surface["name"].startswith(ODD_SHEET) for surface in audit["surfaces"]):
         faults.append("light came to backs")
     direct = audit["direct"]
     for surface in direct["surfaces"]:
@@ -212,17 +306,29 @@ def examine(program, number, folder, options):
             faults.append("direct light on '{name}': {by_packets_W:.4g} W by packets, {by_shadow_rays_W:.4g} by shadow rays".format(**surface))
     if direct["zones_different"]:
         faults.append(f"direct light of {direct['zones_different']} zones")
-    small = small_zones(solution)
+    small = small_zones(folder / solution)
     if not options.keep:
-        solution.unlink()
+        (folder / solution).unlink()
+        (folder / walks).unlink()
     if small is None or not small[0] > 0:
-        return faults, None
+        return faults, None, deviation_of_walks
     packets, packets_error, gathered, gathered_error = small
     deviation = gathered * (1 + options.planted) / packets - 1
     error = numpy.hypot(packets_error, gathered_error) / packets
     if abs(deviation) > max(5 * error, 0.03):
         faults.append(f"small zones: {100 * deviation:+.1f} +- {100 * error:.1f} % by gathering")
-    return faults, (deviation, error)
+    return faults, (deviation, error), deviation_of_walks
+
+
+def mean_of_rooms(deviations, without_noise):
+    """No room alone decides. Mean of these deviations and its error, where each may be off by `without_noise` for other reasons."""
+    values = numpy.array(deviations)
+    weight = 1 / (values[:, 1] ** 2 + without_noise ** 2)
+    return (weight * values[:, 0]).sum() / weight.sum(), weight.sum() ** -0.5
+
+
+def in_words(deviation):
+    return "none" if deviation is None else f"{100 * deviation[0]:+.2f} +- {100 * deviation[1]:.2f} %"
 
 
 def main():
@@ -232,29 +338,29 @@ def main():
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--packets", type=int, default=2_000_000)
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the rooms and their solutions")
-    parser.add_argument("--planted", type=float, default=0, help="share by which small zones are made brighter")
+    parser.add_argument("--planted", type=float, default=0, help="share by which small zones and walks are made brighter")
     options = parser.parse_args()
     program = str(pathlib.Path(options.program).resolve())
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
         bad = 0
-        deviations = []
+        of_small_zones, of_walks = [], []
         for number in range(options.seed, options.seed + options.count):
-            faults, deviation = examine(program, number, folder, options)
-            if deviation is not None:
-                deviations.append(deviation)
+            faults, small, walks = examine(program, number, folder, options)
+            of_small_zones += [small] if small else []
+            of_walks += [walks] if walks else []
             bad += bool(faults)
-            small = "none" if deviation is None else f"{100 * deviation[0]:+.2f} +- {100 * deviation[1]:.2f} %"
-            print(f"room {number}: small zones {small}" + "".join(f"\n  {fault}" for fault in faults), flush=True)
-    if deviations:
-        # No room alone decides: what reads zones differs a little from what packets do.
-        values = numpy.array(deviations)
-        weight = 1 / (values[:, 1] ** 2 + EVEN_WITHOUT_NOISE ** 2)
-        mean = (weight * values[:, 0]).sum() / weight.sum()
-        error = weight.sum() ** -0.5
-        print(f"small zones of all rooms: {100 * mean:+.2f} +- {100 * error:.2f} % by gathering")
-        bad += abs(mean) > max(4 * error, 0.01)
+            print(f"room {number}: small zones {in_words(small)}, walks {in_words(walks)}" + "".join(f"\n  {fault}" for fault in faults),
+                  flush=True)
+    # What reads zones differs a little from what packets do; walks and packets do not differ.
+    for what, deviations, without_noise, allowed in (("small zones", of_small_zones, EVEN_WITHOUT_NOISE, 0.01),
+                                                     ("walks", of_walks, 0, 0.005)):
+        if not deviations:
+            continue
+        mean, error = mean_of_rooms(deviations, without_noise)
+        print(f"{what} of all rooms: {in_words((mean, error))}")
+        bad += abs(mean) > max(4 * error, allowed)
     print(f"{options.count} rooms, {bad} complaints")
     return 1 if bad else 0
 
