@@ -241,10 +241,10 @@ def small_zones(solution):
     return by_packets.mean(), error[0], gathered.mean(), error[1]
 
 
-def run_json(program, folder, *arguments):
-    """What a command prints with --json; raises RuntimeError if it fails."""
+def run_json(program, folder, *arguments, good_codes=(0,)):
+    """What a command prints with --json; raises RuntimeError if it ends with another code than these."""
     run = subprocess.run([program, *arguments, "--json"], cwd=folder, capture_output=True, text=True)
-    if run.returncode not in (0, 1) or not run.stdout:
+    if run.returncode not in good_codes:
         raise RuntimeError(f"{arguments[0]} ended with {run.returncode}: {run.stderr.strip()}")
     return json.loads(run.stdout)
 
@@ -290,7 +290,7 @@ def examine(program, number, folder, options):
     try:
         solve(program, folder, room, solution, *packets)
         solve(program, folder, room, walks, *packets, "--method", "walk", "--seed", "2")
-        audit = run_json(program, folder, "audit", solution, "--direct")
+        audit = run_json(program, folder, "audit", solution, "--direct", good_codes=(0, 1))
         walked, deviation_of_walks = compare_with_walks(light_on_surfaces(program, folder, solution),
                                                         light_on_surfaces(program, folder, walks), options.planted)
     except RuntimeError as fault:

@@ -49,6 +49,7 @@ class PilotLight {
     /// cell and effort.
     LightSpread look(const SideCell& cell, const LookEffort& effort);
     /// The same for each of these cells, with their gather rays in common packets: for few rays from each.
+    /// `light` has room for one result a cell.
     void look_at_all(std::span<const SideCell> cells, const LookEffort& effort, LightSpread* light);
     /// The points of the last look, cell by cell.
     const std::vector<SeenPoint>& points() const { return points_; }

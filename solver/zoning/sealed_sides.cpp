@@ -21,7 +21,7 @@ constexpr std::uint32_t kLeastRounds = 4;
 constexpr std::size_t kManyRays = 400'000;
 /// Rays sent at once: enough for all cores.
 constexpr std::size_t kRaysAtOnce = 65'536;
-/// Further rays from each side that seems sealed.
+/// Rounds of further rays from sides that seem sealed.
 constexpr std::uint32_t kSecondThoughts = 28;
 /// Of sides that have met each other so many send one in a round of these, in turn: a ray that gets out from
 /// any of them opens all.
