@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -92,6 +93,13 @@ class SpecularSurface {
   /// Shares of the light that arrives at `cosine` (0,1] to the normal of a side. Returns the sum of the
   /// chances that the ways would have by roulette; it may be above 1 where bands differ.
   float shares(float cosine, bool front, SpecularStep& step) const;
+  /// Not less than what shares() returns, for a fraction of its time; 1 or more where that says little.
+  float most_shares(float cosine) const {
+    if (solid_ || law_ == AngleLaw::kDielectric) return 1;
+    if (law_ != AngleLaw::kSchlick) return most_shares_;
+    const float d = 1 - std::clamp(cosine, 0.0F, 1.0F);
+    return most_shares_ + d * d * d * d * d;
+  }
   /// Chooses a way for light seen from x.towards by a number that is uniform in [0,most); 0 < most <= 1 is
   /// what all chances may add up to. Two uniform numbers spread it. False if it ends here.
   bool choose(const SurfacePoint& x, float u, const std::array<float, 2>& spread, Survival survival,
@@ -141,6 +149,7 @@ class SpecularSurface {
   std::vector<float> transmittance_;  // by band
   std::vector<float> diffuse_;        // by band
   std::vector<float> absorption_;     // by band, per unit; empty = none
+  float most_shares_ = 0;             // of all ways, along the normal where these follow Schlick's law
 };
 
 }  // namespace reemit

@@ -43,8 +43,19 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomT
     const bool varies = textures.varies_reflectance(s);
     const bool glows = emits && textures.varies_emission(s);
     const bool back_emits = emits && back && emits_both_sides[s.index()];
-    sides_.push_back({true, emits, varies, glows});
-    sides_.push_back({back, back_emits, varies && back && textures.varies_back(s), glows && back_emits});
+    const SpecularSurface& specular = specular_[surface];
+    sides_.push_back({.reflects = true,
+                      .emits = emits,
+                      .reflectance_varies = varies,
+                      .emission_varies = glows,
+                      .specular = specular.exists(),
+                      .absorbs_before = false});
+    sides_.push_back({.reflects = back,
+                      .emits = back_emits,
+                      .reflectance_varies = varies && back && textures.varies_back(s),
+                      .emission_varies = glows && back_emits,
+                      .specular = specular.exists() && back,
+                      .absorbs_before = specular.absorbs_inside()});
   }
   if (!textures.empty()) add_zone_rows(mesh);
 }

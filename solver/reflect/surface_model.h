@@ -82,8 +82,12 @@ class SurfaceModel {
   bool any_transmits() const { return any_transmits_; }
   /// That part of a triangle; it holds for both sides, but backs that absorb have none.
   const SpecularSurface& specular(TriangleId t) const { return specular_[surface_of(t)]; }
-  bool is_specular(TriangleId t, bool front) const {
-    return any_specular_ && specular(t).exists() && side(t, front).reflects;
+  bool is_specular(TriangleId t, bool front) const { return side(t, front).specular; }
+  /// Whether a ray that ends on a side of a triangle may have lost light in a body of glass that it started
+  /// in, or else goes on from there.
+  bool is_specular_or_inside(TriangleId t, bool front) const {
+    const Side& s = side(t, front);
+    return s.specular || s.absorbs_before;
   }
   /// Whether DirectLight finds light that lobes of a specular triangle spread.
   bool spreads(TriangleId t) const {
@@ -94,9 +98,8 @@ class SurfaceModel {
   /// The body of glass that absorbed light on a way that ended on a side of a triangle: `known`, where a ray
   /// has been sent into one, else the one whose inside that side is. Not valid if there is none.
   TriangleId body_around(TriangleId t, bool front, TriangleId known) const {
-    if (!any_transmits_) return {};
-    const TriangleId body = known.valid() || front ? known : t;
-    return body.valid() && specular(body).absorbs_inside() ? body : TriangleId();
+    if (!known.valid()) return side(t, front).absorbs_before ? t : TriangleId();
+    return specular(known).absorbs_inside() ? known : TriangleId();
   }
   /// The body that a ray is in when it goes on from a side of a triangle, for the one that it came through.
   TriangleId body_beyond(TriangleId t, bool leaves_front, TriangleId around) const {
@@ -153,11 +156,13 @@ class SurfaceModel {
     double emission_exponent;
     bool emits;
   };
-  struct Side {
-    bool reflects;
-    bool emits;
-    bool reflectance_varies = false;  // and it reflects
-    bool emission_varies = false;     // and it emits
+  struct Side {  // a byte, because every ray looks at one
+    bool reflects : 1;
+    bool emits : 1;
+    bool reflectance_varies : 1;  // and it reflects
+    bool emission_varies : 1;     // and it emits
+    bool specular : 1;            // and it reflects
+    bool absorbs_before : 1;      // it is the inside of a body of glass that absorbs light
   };
   /// Where the reflectance of a side of a surface stands: all zones have row `first`, or each its own.
   struct Rows {

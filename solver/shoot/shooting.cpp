@@ -130,7 +130,7 @@ class SweepTracer {
                   books_, accounts_);
     // The compiler cannot know that booking leaves the members of this object alone.
     const std::size_t channels = channels_.count();
-    const bool any_specular = specular_.any();
+    const std::uint32_t specular = specular_.any() ? specular_.lanes(block, hits_) : 0;
     const std::size_t carried_before = carried_.count();
     std::int64_t* quanta = block.power.data();
     for (int lane = 0; lane < block.count; ++lane, quanta += channels) {
@@ -140,7 +140,7 @@ class SweepTracer {
         local_.count_second_look();
         continue;
       }
-      if (any_specular) specular_.attenuate(block.way[lane], hits_, lane, quanta);
+      if ((specular >> lane & 1U) != 0) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       if (account.place != nullptr) {
         if (account.member == Account::kNoMember)
           arrivals_->add(account.place, bits_.word[0][lane], hits_.u[lane], hits_.v[lane]);
@@ -157,7 +157,7 @@ class SweepTracer {
         for (std::size_t c = 0; c < channels; ++c) book(account.quanta[c], quanta[c]);
       else
         for (std::size_t c = 0; c < channels; ++c) account.quanta[c] += quanta[c];
-      if (any_specular) specular_.carry_on(block, hits_, lane, number_, carried_);
+      if ((specular >> lane & 1U) != 0) specular_.carry_on(block, hits_, lane, number_, carried_);
     }
     if (holds_beyond_) carried_.move_beyond(*holds_beyond_, held_, carried_before);
   }

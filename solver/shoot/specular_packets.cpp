@@ -37,9 +37,19 @@ void SpecularPackets::draw_bits(const CounterRng& rng, const PacketBlock& block,
   }
 }
 
+std::uint32_t SpecularPackets::lanes(const PacketBlock& block, const Hit16& hits) const {
+  std::uint32_t lanes = 0;
+  for (int lane = 0; lane < block.count; ++lane) {
+    if (hits.triangle[lane] == RayTracer::kMiss) continue;
+    const bool any = surfaces_.is_specular_or_inside(TriangleId(hits.triangle[lane]), hits.front[lane]) ||
+                     block.way[lane].body.valid();
+    lanes |= (any ? 1U : 0U) << lane;
+  }
+  return lanes;
+}
+
 void SpecularPackets::attenuate(const SpecularWay& way, const Hit16& hits, int lane,
                                 std::int64_t* power) const {
-  if (hits.triangle[lane] == RayTracer::kMiss) return;
   const TriangleId body = surfaces_.body_around(TriangleId(hits.triangle[lane]), hits.front[lane], way.body);
   if (!body.valid()) return;
   const std::size_t account = mesh_.triangle(body).surface.index() * channels_.count();
@@ -81,7 +91,10 @@ void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
   const TriangleId t(hits.triangle[lane]);
   SurfacePoint x = surface_point(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]);
   x.towards = -block.rays.direction(lane);
-  if (!surfaces_.specular(t).choose(x, u, spread, Survival::kRoulette, way_, most)) return;
+  const SpecularSurface& specular = surfaces_.specular(t);
+  const float most_shares = specular.most_shares(x.normal.dot(x.towards));
+  if (most_shares <= most && u >= most_shares) return;  // as most packets end
+  if (!specular.choose(x, u, spread, Survival::kRoulette, way_, most)) return;
   const std::size_t values = channels_.count();
   const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * values];
   const std::size_t surface = mesh_.triangle(t).surface.index();

@@ -24,8 +24,9 @@ class SpecularPackets {
   /// Random bits of the packets of a block; those of packets that were sent on differ from surface to
   /// surface.
   void draw_bits(const CounterRng& rng, const PacketBlock& block, std::uint32_t step, BitLanes& bits) const;
-  /// Takes from a packet's power, per channel, what a body of glass absorbed on the way to where it met the
-  /// room.
+  /// Lanes, as bits, of packets that attenuate or carry_on may do something to: all others they may pass by.
+  std::uint32_t lanes(const PacketBlock& block, const Hit16& hits) const;
+  /// Takes from a packet's power, per channel, what a body of glass absorbed on the way to what it met.
   void attenuate(const SpecularWay& way, const Hit16& hits, int lane, std::int64_t* power) const;
   /// Sends the packet of a lane on from what it met, into `next`, if it met such a surface and is chosen.
   /// `step` tells the flights of a batch apart. It ends after kMostSteps as unshot.

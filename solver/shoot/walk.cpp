@@ -187,6 +187,7 @@ class WalkTask {
       if (zones[lane] != ZoneMesh::kNone) __builtin_prefetch(&incident[zones[lane] * values_], 1);
     BitLanes bits;
     specular_.draw_bits(rng_, block, bounce, bits);
+    const std::uint32_t specular = specular_.any() ? specular_.lanes(block, hits_) : 0;
     // The compiler cannot know that booking leaves the members of this object alone.
     const std::size_t values = values_;
     for (int lane = 0; lane < block.count; ++lane) {
@@ -211,15 +212,16 @@ class WalkTask {
           book(books_.absorbed_on_backs[surface.index() * values + c], quanta[c]);
         continue;
       }
-      if (specular_.any()) specular_.attenuate(block.way[lane], hits_, lane, quanta);
+      const bool is_specular = (specular >> lane & 1U) != 0;
+      if (is_specular) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       std::vector<std::int64_t>& part = account_of(block.way[lane].part, bounce);
       for (std::size_t c = 0; c < values; ++c) book(part[zone.index() * values + c], quanta[c], shared_);
-      reflect(zone, surface, block, lane, bounce, bits);
+      reflect(zone, surface, block, lane, bounce, is_specular, bits);
     }
   }
 
   /// Absorbs a packet, scatters it, or sends it on as a ray.
-  void reflect(ZoneId zone, SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce,
+  void reflect(ZoneId zone, SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce, bool is_specular,
                const BitLanes& bits) {
     const auto k = static_cast<std::size_t>(lane);
     const std::int64_t* quanta = &block.power[k * values_];
@@ -229,7 +231,7 @@ class WalkTask {
     double survival = surfaces.largest_reflectance(zone, met, hits_.front[lane]);
     std::int64_t* absorbed = &absorbed_[surface.index() * values_];
     const float u = low_bytes_to_unit(bits, k);
-    const double on = specular_.any() ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;
+    const double on = is_specular ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;
     if (survival + on > 1) {
       // Powers that survive grow by as much as the odds of all ways are too large.
       if (survival + on > kUsualRoulette) count_event(books_.events.roulette_jumps);
