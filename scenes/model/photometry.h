@@ -59,13 +59,8 @@ class IntensityTable {
   void angles(const Vec3& direction, double& polar, double& azimuth) const;
   /// Unit direction in luminaire coordinates, of angles [rad].
   Vec3 direction(double polar, double azimuth) const {
-    return direction(std::sin(polar), std::cos(polar), azimuth);
-  }
-  /// The same, of a polar angle by its sine and cosine and of an azimuth
-  /// [rad].
-  Vec3 direction(double polar_sine, double polar_cosine, double azimuth) const {
-    return polar_cosine * axes_.pole +
-           polar_sine * (std::cos(azimuth) * axes_.zero + std::sin(azimuth) * axes_.ninety);
+    return std::cos(polar) * axes_.pole +
+           std::sin(polar) * (std::cos(azimuth) * axes_.zero + std::sin(azimuth) * axes_.ninety);
   }
 
   /// Integral of the bilinear interpolant over all directions [lm], in closed form.
@@ -74,8 +69,12 @@ class IntensityTable {
 
   // For sampling.
 
-  double polar_sine(std::size_t polar) const { return polar_sine_[polar]; }      ///< At a grid line.
-  double polar_cosine(std::size_t polar) const { return polar_cosine_[polar]; }  ///< At a grid line.
+  const std::vector<double>& polar_sines() const { return polar_sine_; }      ///< At grid lines.
+  const std::vector<double>& polar_cosines() const { return polar_cosine_; }  ///< At grid lines.
+  /// Flux [lm] at polar angles below each grid line.
+  const std::vector<double>& flux_below() const { return flux_below_; }
+  /// azimuth_integral of all, [azimuth * polar().size() + polar].
+  const std::vector<double>& azimuth_integrals() const { return azimuth_integral_; }
   /// Flux [lm] at polar angles below grid line `polar`.
   double flux_below(std::size_t polar) const { return flux_below_[polar]; }
   /// Integral over the azimuths up to grid line `azimuth` at the grid line `polar` [cd rad].

@@ -109,11 +109,27 @@ Vec3f PhotometricEmitter::mouth() const {
   return (data_->centre + data_->to_room * (reach * aim)).cast<float>();
 }
 
-LightRay PhotometricEmitter::start_ray(float u0, float u1, float u2, float u3) const {
-  const Vec3 away =
-      data_->to_room * sample_intensity(*data_->table, static_cast<double>(u2), static_cast<double>(u3));
-  const Vec3 from = point(static_cast<double>(u0), static_cast<double>(u1));
+LightRay PhotometricEmitter::ray(const Vec3& from, const Vec3& direction_in_luminaire) const {
+  const Vec3 away = data_->to_room * direction_in_luminaire;
   return {(from + kClear * away).cast<float>(), away.cast<float>().normalized()};
+}
+
+LightRay PhotometricEmitter::start_ray(float u0, float u1, float u2, float u3) const {
+  return ray(point(static_cast<double>(u0), static_cast<double>(u1)),
+             sample_intensity(*data_->table, static_cast<double>(u2), static_cast<double>(u3)));
+}
+
+void PhotometricEmitter::start_rays(const LightNumbers& u, std::span<LightRay> rays) const {
+  SquarePoints16 at{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    at.u0[i] = static_cast<double>(u[2][i]);
+    at.u1[i] = static_cast<double>(u[3][i]);
+  }
+  Directions16 to;
+  sample_intensity16(*data_->table, at, to);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    rays[i] = ray(point(static_cast<double>(u[0][i]), static_cast<double>(u[1][i])),
+                  to.direction(static_cast<int>(i)));
 }
 
 }  // namespace reemit

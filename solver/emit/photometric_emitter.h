@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 
 #include "scenes/model/luminaire.h"
 #include "solver/emit/light_ray.h"
@@ -38,6 +39,8 @@ class PhotometricEmitter {
   /// Just outside the opening, in the mean direction of the light.
   Vec3f mouth() const;
   LightRay start_ray(float u0, float u1, float u2, float u3) const;
+  /// As many of them as there are, 16 at most, for much less each.
+  void start_rays(const LightNumbers& u, std::span<LightRay> rays) const;
 
   /// Distance, in sizes of the opening, below which irradiance grows no more. A homogeneous opening says
   /// nothing about what is that close, and without a bound the irradiance of a surface that touches it at a
@@ -49,6 +52,7 @@ class PhotometricEmitter {
 
  private:
   Vec3 point(double u0, double u1) const;  // normalised
+  LightRay ray(const Vec3& from, const Vec3& direction_in_luminaire) const;
   /// cos / r^2 for a point of the opening, 0 below the horizon [1/m2].
   double geometry(const Vec3& to_light, const Vec3& n) const;
   Vec3 in_luminaire(const Vec3& direction) const { return data_->to_room.transpose() * direction; }

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <variant>
 
 #include "scenes/model/luminaire.h"
@@ -48,6 +49,21 @@ Vec3f mouth_of_light(const PunctualEmitter& emitter);
 /// Start of a packet, all of which carry the same power. u0, u1 place it, u2, u3 turn it.
 inline LightRay start_light_ray(const PunctualEmitter& emitter, float u0, float u1, float u2, float u3) {
   return std::visit([&](const auto& e) { return e.start_ray(u0, u1, u2, u3); }, emitter);
+}
+
+/// The same for 16 packets at most.
+inline void start_light_rays(const PunctualEmitter& emitter, const LightNumbers& u,
+                             std::span<LightRay> rays) {
+  std::visit(
+      [&](const auto& e) {
+        if constexpr (requires { e.start_rays(u, rays); }) {
+          e.start_rays(u, rays);
+        } else {
+          for (std::size_t i = 0; i < rays.size(); ++i)
+            rays[i] = e.start_ray(u[0][i], u[1][i], u[2][i], u[3][i]);
+        }
+      },
+      emitter);
 }
 
 }  // namespace reemit

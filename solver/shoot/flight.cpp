@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "solver/emit/punctual_emitter.h"
 
@@ -172,21 +173,33 @@ int FlightCursor::start16(std::uint32_t first, int count, const FlightNumbers& n
   else
     numbers.get_directions16(first, x);
   std::uint32_t behind = transport_.start(lanes_, x, rays) & ((1U << count) - 1);
-  if (!any_special) return std::popcount(behind);
-  for (int lane = 0; lane < count; ++lane) {
+  for (int lane = 0; any_special && lane < count;) {
     const PacketSource* s = special[static_cast<std::size_t>(lane)];
-    if (s == nullptr) continue;
-    behind &= ~(1U << lane);
-    if (s->zone.valid()) {
-      const Vec3f local = sample_cosine_power(x.u[2][lane], x.u[3][lane], s->exponent + 1);
-      if (transport_.start_from(s->zone, x.u[0][lane], x.u[1][lane], local, rays, lane)) behind |= 1U << lane;
-      continue;
-    }
-    const LightRay start =
-        transport_.start_light(s->light, x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane]);
-    rays.set(lane, start.origin, start.direction);
+    int until = lane + 1;
+    while (until < count && special[static_cast<std::size_t>(until)] == s) ++until;
+    if (s != nullptr) behind = start_special(*s, x, lane, until, rays) | (behind & ~lane_bits(lane, until));
+    lane = until;
   }
   return std::popcount(behind);
+}
+
+std::uint32_t FlightCursor::start_special(const PacketSource& source, const UniformLanes& x, int first,
+                                          int last, Ray16& rays) const {
+  std::uint32_t behind = 0;
+  if (source.zone.valid()) {
+    for (int lane = first; lane < last; ++lane) {
+      const Vec3f local = sample_cosine_power(x.u[2][lane], x.u[3][lane], source.exponent + 1);
+      if (transport_.start_from(source.zone, x.u[0][lane], x.u[1][lane], local, rays, lane))
+        behind |= 1U << lane;
+    }
+    return behind;
+  }
+  std::array<LightRay, 16> starts;
+  const std::span some = std::span(starts).first(static_cast<std::size_t>(last - first));
+  transport_.start_light(source.light, {x.u[0] + first, x.u[1] + first, x.u[2] + first, x.u[3] + first},
+                         some);
+  for (const LightRay& start : some) rays.set(first++, start.origin, start.direction);
+  return behind;
 }
 
 }  // namespace reemit

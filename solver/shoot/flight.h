@@ -77,6 +77,10 @@ class FlightCursor {
   /// nothing arrived in the zone.
   bool put_arrivals(ZoneId zone, std::uint32_t packet, int first, int last);
   bool put_arrivals_in_group(ZoneId group, std::uint32_t packet, int first, int last);
+  /// Starts the packets of lanes first .. last-1 from a source that does not send them as zones reflect them.
+  /// Returns which start behind the face that they leave, as bits.
+  std::uint32_t start_special(const PacketSource& source, const UniformLanes& x, int first, int last,
+                              Ray16& rays) const;
 
   const PacketRoom& transport_;
   const Flight& flight_;

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -27,11 +28,16 @@ class PacketRoom {
   const Scene& scene() const { return room_->scene(); }
   /// The lights of the scene as packets start at them (lights_before_faces).
   const std::vector<PunctualEmitter>& emitters() const { return emitters_; }
-  /// Start of a packet of a source that is not a surface (PacketSource::light).
-  LightRay start_light(std::uint32_t light, float u0, float u1, float u2, float u3) const {
-    if (light < emitters_.size()) return start_light_ray(emitters_[light], u0, u1, u2, u3);
-    const SkyRay ray = room_->sky()->start(light - emitters_.size(), u0, u1, u2, u3);
-    return {ray.origin, ray.direction};
+  /// Starts of packets, 16 at most, of a source that is not a surface (PacketSource::light).
+  void start_light(std::uint32_t light, const LightNumbers& u, std::span<LightRay> rays) const {
+    if (light < emitters_.size()) {
+      start_light_rays(emitters_[light], u, rays);
+      return;
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const SkyRay ray = room_->sky()->start(light - emitters_.size(), u[0][i], u[1][i], u[2][i], u[3][i]);
+      rays[i] = {ray.origin, ray.direction};
+    }
   }
   /// Whether the light of such a source comes from outside the room.
   bool is_from_outside(std::uint32_t light) const {
@@ -140,8 +146,6 @@ class PacketRoom {
   void zones_of(const Hit16& hits, std::uint32_t* zone) const { mesh_->zones_at16(hits.points(), zone); }
 
  private:
-  static std::uint32_t lane_bits(int first, int last) { return ((1U << last) - 1) & ~((1U << first) - 1); }
-
   /// What the zones on a side of a flat triangle have in common.
   void put_flat_side(std::uint32_t triangle, bool front, ZoneLanes& lanes, int first, int last) const {
     const std::uint32_t bits = lane_bits(first, last);

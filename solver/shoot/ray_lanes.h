@@ -24,6 +24,11 @@ struct alignas(64) UniformLanes {
   float u[4][16];
 };
 
+/// Lanes first .. last-1 as bits.
+inline std::uint32_t lane_bits(int first, int last) {
+  return ((1U << last) - 1) & ~((1U << first) - 1);
+}
+
 /// Makes 16 rays from uniform points of the zones (u[0], u[1]) in cosine-distributed directions (u[2], u[3]).
 /// Returns, as bits, the lanes whose rays start on the other side of the triangle than that which they leave,
 /// because rounding took more than the lift. Lane by lane the same as sample_triangle, RayTracer::lifted and

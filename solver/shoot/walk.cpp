@@ -221,8 +221,8 @@ class WalkTask {
   }
 
   /// Absorbs a packet, scatters it, or sends it on as a ray.
-  void reflect(ZoneId zone, SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce, bool is_specular,
-               const BitLanes& bits) {
+  void reflect(ZoneId zone, SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce,
+               bool is_specular, const BitLanes& bits) {
     const auto k = static_cast<std::size_t>(lane);
     const std::int64_t* quanta = &block.power[k * values_];
     const SurfaceModel& surfaces = transport_.surface_model();

@@ -98,7 +98,7 @@ std::array<double, 2> invert_intensity(const IntensityTable& table, const Vec3& 
   const auto candela = [&](std::size_t k) {
     return (1 - share) * table.candela(k, i) + share * table.candela(k, i + 1);
   };
-  const double flux = table.flux_below(i) + integral_of_linear_times_sine(polar[i], theta, fa, upto(last));
+  const double flux = table.flux_below()[i] + integral_of_linear_times_sine(polar[i], theta, fa, upto(last));
   const std::size_t j = cell_of(azimuth, phi);
   const double t = std::clamp((phi - azimuth[j]) / (azimuth[j + 1] - azimuth[j]), 0.0, 1.0);
   const double f0 = candela(j);
@@ -119,6 +119,23 @@ TEST(IntensitySampler, inverse_gives_the_numbers_back) {
         EXPECT_NEAR(v0, u0, 1e-9);
         EXPECT_NEAR(v1, u1, 1e-9);
       }
+  }
+}
+
+TEST(IntensitySampler, lanes_do_not_know_of_each_other) {
+  const auto table = test::lobed_table();
+  const CounterRng rng(5, RngPurpose::kEmission);
+  for (std::uint32_t block = 0; block < 100; ++block) {
+    SquarePoints16 at;
+    for (std::uint32_t lane = 0; lane < 16; ++lane) {
+      const auto u = rng.uniform4(16 * block + lane, 0, 0);
+      at.u0[lane] = static_cast<double>(u[0]);
+      at.u1[lane] = static_cast<double>(u[1]);
+    }
+    Directions16 to;
+    sample_intensity16(*table, at, to);
+    for (int lane = 0; lane < 16; ++lane)
+      EXPECT_EQ(to.direction(lane), sample_intensity(*table, at.u0[lane], at.u1[lane])) << lane;
   }
 }
 
