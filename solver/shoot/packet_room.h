@@ -74,6 +74,7 @@ class PacketRoom {
     const TrianglePatch& p = patches_[t.index()];
     const SideCell zone = mesh_->zone_cell(z);
     put_flat_side(static_cast<std::uint32_t>(t.index()), zone.front, lanes, first, last);
+    lanes.without_edges &= ~lane_bits(first, last);
     const auto& [from, a, b] = zone.corners.at;
     // Of the grid of its corners, in edges of the cells that the triangle is divided into.
     const float size = static_cast<float>(p.divisions) / static_cast<float>(zone.corners.divisions);
@@ -103,6 +104,9 @@ class PacketRoom {
       return;
     }
     put_flat_side(triangle, front, lanes, first, last);
+    const std::uint32_t bits = lane_bits(first, last);
+    if ((lanes.without_edges & bits) == bits) return;
+    lanes.without_edges |= bits;
     for (int k = 0; k < 3; ++k) {
       std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, 0.0F);
       std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, 0.0F);
@@ -156,6 +160,9 @@ class PacketRoom {
       lanes.feet |= bits;
       std::fill(lanes.zone + first, lanes.zone + last, triangle);
     }
+    const auto number = static_cast<std::uint32_t>(side_of(TriangleId(triangle), front).index());
+    if (lanes.of_all == number) return;
+    lanes.of_all = first == 0 && last == 16 ? number : ZoneMesh::kNone;
     const float side = front ? 1.0F : -1.0F;
     for (int k = 0; k < 3; ++k) {
       std::fill(lanes.middle[k] + first, lanes.middle[k] + last, p.middle[k]);

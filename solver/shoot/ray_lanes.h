@@ -17,6 +17,9 @@ struct alignas(64) ZoneLanes {
       0;                     ///< Lanes of curved zones and groups as bits; the geometry above is not theirs.
   std::uint32_t points = 0;  ///< Of these, lanes of given points: zone is the triangle, corner u, v and side.
   std::uint32_t feet = 0;    ///< Lanes of flat zones that rays leave clear of shapes (RayTracer::is_foot).
+  // What need not be written again:
+  std::uint32_t of_all = ZoneMesh::kNone;  ///< Flat side whose middle, tangents and normal are in all lanes.
+  std::uint32_t without_edges = 0;         ///< Lanes whose edges are 0.
 };
 
 /// Four uniform numbers of each of 16 packets: u[dimension][lane].

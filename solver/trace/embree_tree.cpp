@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenes/model/error.h"
+#include "solver/sampling/mixed_bits.h"
 
 namespace reemit {
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mesh/zones/hairlines.h"
+#include "solver/sampling/mixed_bits.h"
 #include "solver/trace/embree_tree.h"
 
 namespace reemit {
