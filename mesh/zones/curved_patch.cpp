@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scenes/model/sine_cosine.h"
+
 namespace reemit {
 namespace {
 
@@ -36,7 +38,8 @@ Vec3 octant_direction(double u, double v) {
   const double z = v * (2 - v);
   const double r = std::sqrt(std::max(0.0, 1 - z * z));
   const double azimuth = v < 1 ? kQuarter * std::clamp(u / (1 - v), 0.0, 1.0) : 0.0;
-  return {r * std::cos(azimuth), r * std::sin(azimuth), z};
+  const SineCosine of = sine_and_cosine(azimuth);
+  return {r * of.cosine, r * of.sine, z};
 }
 
 }  // namespace
@@ -44,12 +47,14 @@ Vec3 octant_direction(double u, double v) {
 CurvedPatches::CurvedPatches(const CurvedShape& shape) : shape_(shape), area_(shape_area(shape)) {
   if (std::holds_alternative<Sphere>(shape)) return;
   frustum_ = frustum_of(shape);
+  const double slant = std::hypot(frustum_.height, frustum_.r0 - frustum_.r1);
+  outwards_ = (frustum_.inward ? -frustum_.height : frustum_.height) / slant;
+  upwards_ = (frustum_.inward ? frustum_.r1 - frustum_.r0 : frustum_.r0 - frustum_.r1) / slant;
   pointed_ = frustum_.r1 <= 0;
   if (pointed_) {
     count_ = 4;
     return;
   }
-  const double slant = std::hypot(frustum_.height, frustum_.r0 - frustum_.r1);
   const double width = kQuarter * 0.5 * (frustum_.r0 + frustum_.r1);
   slabs_ = static_cast<std::uint32_t>(std::clamp(std::round(slant / width), 1.0, kMostSlabs));
   count_ = 8 * slabs_;
@@ -70,25 +75,28 @@ double CurvedPatches::share_at(double radius, double height) const {
   return inside * (2 * r0 - inside * (r0 - r1)) / (r0 + r1);
 }
 
-Vec3 CurvedPatches::frustum_point(double quarter, double a, double b) const {
+CurvedPatches::Point CurvedPatches::frustum_point(double quarter, double a, double b) const {
   const double r0 = frustum_.r0;
   const double r1 = frustum_.r1;
   const double r = radius_at(b);
   const double along = b * (r0 + r1) / (r + r0);  // (r0 - r) / (r0 - r1), also for r0 = r1
-  const double azimuth = kQuarter * (quarter + a);
-  return frustum_.base + along * frustum_.height * frustum_.axis +
-         r * (std::cos(azimuth) * frustum_.u + std::sin(azimuth) * frustum_.v);
+  const SineCosine of = sine_and_cosine(kQuarter * (quarter + a));
+  const Vec3 out = of.cosine * frustum_.u + of.sine * frustum_.v;
+  return {frustum_.base + along * frustum_.height * frustum_.axis + r * out,
+          outwards_ * out + upwards_ * frustum_.axis};
 }
 
-Vec3 CurvedPatches::point(std::uint32_t patch, double u, double v) const {
+CurvedPatches::Point CurvedPatches::at(std::uint32_t patch, double u, double v) const {
   if (const auto* sphere = std::get_if<Sphere>(&shape_)) {
     const Barycentric at = swapped_if(octant_swaps(patch, sphere->inward), {u, v});
-    return sphere->centre + sphere->radius * octant_signs(patch).cwiseProduct(octant_direction(at.u, at.v));
+    const Vec3 out = octant_signs(patch).cwiseProduct(octant_direction(at.u, at.v));
+    return {sphere->centre + sphere->radius * out, sphere->inward ? Vec3(-out) : out};
   }
   const Barycentric at = swapped_if(frustum_.inward, {u, v});
   if (pointed_) {
     const double s = at.u + at.v;
-    return frustum_point(patch, s > 0 ? at.v / s : 0.0, 1 - s * s);
+    // The tip has no normal: that of the middle of the patch.
+    return frustum_point(patch, s > 0 ? at.v / s : 0.5, 1 - s * s);
   }
   const std::uint32_t cell = patch / 2;
   const bool upper = patch % 2 == 1;
@@ -108,18 +116,15 @@ Vec3 CurvedPatches::normal_at(const Vec3& point) const {
   const Vec3 radial = from_base - frustum_.axis.dot(from_base) * frustum_.axis;
   const double length = radial.norm();
   const Vec3 out = length > 0 ? Vec3(radial / length) : frustum_.u;
-  const Vec3 outward = (frustum_.height * out + (frustum_.r0 - frustum_.r1) * frustum_.axis).normalized();
-  return frustum_.inward ? Vec3(-outward) : outward;
+  return outwards_ * out + upwards_ * frustum_.axis;
 }
 
-Vec3 CurvedPatches::normal(std::uint32_t patch, double u, double v) const {
-  return normal(patch, u, v, point(patch, u, v));
-}
-
-Vec3 CurvedPatches::normal(std::uint32_t patch, double u, double v, const Vec3& at) const {
-  // The tip has no normal: that of the middle of the patch.
-  if (pointed_ && u + v <= 0) return normal_at(point(patch, 1.0 / 3, 1.0 / 3));
-  return normal_at(at);
+bool CurvedPatches::meets_front(const Vec3& point, const Vec3& direction) const {
+  if (const auto* sphere = std::get_if<Sphere>(&shape_)) {
+    const double outwards = direction.dot(point - sphere->centre);
+    return sphere->inward ? outwards > 0 : outwards < 0;
+  }
+  return normal_at(point).dot(direction) < 0;
 }
 
 Barycentric CurvedPatches::octant_place(std::uint32_t patch, const Vec3& direction) const {
@@ -147,7 +152,7 @@ CurvedPatches::Place CurvedPatches::place_of(const Vec3& point) const {
   if (turn < 0) turn += 4;
   const double quarter = std::clamp(std::floor(turn), 0.0, 3.0);
   const double a = std::clamp(turn - quarter, 0.0, 1.0);
-  const double share = share_at(std::hypot(x, y), frustum_.axis.dot(d));
+  const double share = share_at(std::sqrt(x * x + y * y), frustum_.axis.dot(d));
   const auto q = static_cast<std::uint32_t>(quarter);
   if (pointed_) {
     const double s = std::sqrt(std::max(0.0, 1 - share));
@@ -169,7 +174,7 @@ Barycentric CurvedPatches::in_patch(std::uint32_t patch, const Vec3& point) cons
   double turn = std::atan2(y, x) / kQuarter - (cell % 4 + 0.5);
   turn -= 4 * std::round(turn / 4);  // from the middle of the quarter, the short way round
   const double a = std::clamp(turn + 0.5, 0.0, 1.0);
-  const double share = share_at(std::hypot(x, y), frustum_.axis.dot(d));
+  const double share = share_at(std::sqrt(x * x + y * y), frustum_.axis.dot(d));
   if (pointed_) {
     const double s = std::sqrt(std::max(0.0, 1 - share));
     return swapped_if(frustum_.inward, into_triangle(s * (1 - a), s * a));

@@ -19,12 +19,14 @@ class CurvedPatches {
   double patch_area() const { return area_ / count_; }  ///< [m2], all are equal.
   const CurvedShape& shape() const { return shape_; }
 
-  /// Point at (u,v), 0 <= u, v and u + v <= 1. Corners are counter-clockwise seen from the front.
-  Vec3 point(std::uint32_t patch, double u, double v) const;
-  /// Unit normal of the front at (u,v).
-  Vec3 normal(std::uint32_t patch, double u, double v) const;
-  /// The same where point(patch, u, v) is known.
-  Vec3 normal(std::uint32_t patch, double u, double v, const Vec3& point) const;
+  struct Point {
+    Vec3 position;
+    Vec3 normal;  ///< Unit, of the front.
+  };
+  /// At (u,v), 0 <= u, v and u + v <= 1. Corners are counter-clockwise seen from the front.
+  Point at(std::uint32_t patch, double u, double v) const;
+  Vec3 point(std::uint32_t patch, double u, double v) const { return at(patch, u, v).position; }
+  Vec3 normal(std::uint32_t patch, double u, double v) const { return at(patch, u, v).normal; }
 
   struct Place {
     std::uint32_t patch;
@@ -36,17 +38,20 @@ class CurvedPatches {
   Barycentric in_patch(std::uint32_t patch, const Vec3& point) const;
   /// Unit normal of the front at a point on the shape.
   Vec3 normal_at(const Vec3& point) const;
+  /// Whether a ray of that direction that ends there comes from the front.
+  bool meets_front(const Vec3& point, const Vec3& direction) const;
 
  private:
   // A frustum in surface coordinates: a in [0,1] within a quarter turn, b in [0,1] by area from the larger
   // circle to the smaller.
   double radius_at(double b) const;
   double share_at(double radius, double height) const;
-  Vec3 frustum_point(double quarter, double a, double b) const;
+  Point frustum_point(double quarter, double a, double b) const;
   Barycentric octant_place(std::uint32_t patch, const Vec3& direction) const;
 
   CurvedShape shape_;
   Frustum frustum_;
+  double outwards_ = 0, upwards_ = 0;  // normal of a mantle, away from the axis and along it
   bool pointed_ = false;
   std::uint32_t slabs_ = 1;
   std::uint32_t count_ = 8;

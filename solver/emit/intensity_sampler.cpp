@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "scenes/model/instruction_sets.h"
-#include "solver/sampling/sine_cosine.h"
+#include "scenes/model/sine_cosine.h"
 
 namespace reemit {
 namespace {

@@ -31,17 +31,10 @@ std::size_t pick(const std::array<double, N>& weights, double& u) {
 Vec3 sample_box(const Vec3& size, double u0, double u1) {
   // Areas of the faces across each axis.
   const std::array<double, 3> area{size.y() * size.z(), size.x() * size.z(), size.x() * size.y()};
-  const int flat_sides = static_cast<int>((size.array() <= 0).count());
-  if (flat_sides >= 2) return (u0 - 0.5) * size;
   Vec3 p = Vec3::Zero();
-  int across = 0;
-  if (flat_sides == 1) {
-    size.minCoeff(&across);
-  } else {
-    const std::size_t face = pick<6>({area[0], area[0], area[1], area[1], area[2], area[2]}, u0);
-    across = static_cast<int>(face / 2);
-    p[across] = face % 2 == 0 ? -0.5 * size[across] : 0.5 * size[across];
-  }
+  const std::size_t face = pick<6>({area[0], area[0], area[1], area[1], area[2], area[2]}, u0);
+  const int across = static_cast<int>(face / 2);
+  p[across] = face % 2 == 0 ? -0.5 * size[across] : 0.5 * size[across];
   const int a = (across + 1) % 3;
   const int b = (across + 2) % 3;
   p[a] = (u0 - 0.5) * size[a];
@@ -77,7 +70,22 @@ Vec3 sample_cylinder(const Vec3& size, int axis, double u0, double u1) {
 
 }  // namespace
 
+std::optional<FlatOpening> flat_opening(const LuminousOpening& opening) {
+  if (opening.shape == LuminousOpening::Shape::kPoint) return FlatOpening{Vec3::Zero(), Vec3::Zero()};
+  if (opening.shape != LuminousOpening::Shape::kBox) return std::nullopt;
+  const Vec3 size = opening.size();
+  const auto flat_sides = (size.array() <= 0).count();
+  if (flat_sides >= 2) return FlatOpening{size, Vec3::Zero()};
+  if (flat_sides == 0) return std::nullopt;
+  int across = 0;
+  size.minCoeff(&across);
+  const int a = (across + 1) % 3;
+  const int b = (across + 2) % 3;
+  return FlatOpening{size[a] * Vec3::Unit(a), size[b] * Vec3::Unit(b)};
+}
+
 Vec3 sample_opening(const LuminousOpening& opening, double u0, double u1) {
+  if (const auto flat = flat_opening(opening)) return flat->point(u0, u1);
   const Vec3 size = opening.size();
   switch (opening.shape) {
     case LuminousOpening::Shape::kPoint:

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "scenes/model/photometry.h"
 
 namespace reemit {
@@ -8,6 +10,14 @@ namespace reemit {
 /// surface. Ellipsoids and elliptic cylinders take the image of a uniform sphere or circle, which is uniform
 /// where they are round.
 Vec3 sample_opening(const LuminousOpening& opening, double u0, double u1);
+
+/// The openings that sample_opening puts points on by (u0 - 1/2) along0 + (u1 - 1/2) along1: flat rectangles,
+/// lines and points.
+struct FlatOpening {
+  Vec3 along0, along1;
+  Vec3 point(double u0, double u1) const { return (u0 - 0.5) * along0 + (u1 - 0.5) * along1; }
+};
+std::optional<FlatOpening> flat_opening(const LuminousOpening& opening);
 
 /// Greatest of length, width and height [m]; 0 for a point.
 double opening_extent(const LuminousOpening& opening);

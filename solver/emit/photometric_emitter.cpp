@@ -7,7 +7,6 @@
 
 #include "scenes/model/opening_reach.h"
 #include "solver/emit/intensity_sampler.h"
-#include "solver/emit/opening_sampler.h"
 
 namespace reemit {
 namespace {
@@ -37,12 +36,15 @@ PhotometricEmitter::PhotometricEmitter(const Light& light, const RayTracer& rays
   const double metres = rays.metres_per_unit();
   const double extent = opening_extent(light.opening) / metres;
   const double extent2 = extent * extent;
-  data_ =
-      std::make_shared<const Data>(Data{light.table, light.opening, rays.normalised_double(light.position),
-                                        light.orientation, metres, kNearest * kNearest * extent2, extent2});
+  std::optional<FlatOpening> flat = flat_opening(light.opening);
+  if (flat) flat = {light.orientation * flat->along0 / metres, light.orientation * flat->along1 / metres};
+  data_ = std::make_shared<const Data>(Data{light.table, light.opening,
+                                            rays.normalised_double(light.position), light.orientation, metres,
+                                            kNearest * kNearest * extent2, extent2, flat});
 }
 
 Vec3 PhotometricEmitter::point(double u0, double u1) const {
+  if (data_->flat) return data_->centre + data_->flat->point(u0, u1);
   return data_->centre + data_->to_room * sample_opening(data_->opening, u0, u1) / data_->metres;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "scenes/model/luminaire.h"
 #include "solver/emit/light_ray.h"
 #include "solver/emit/luminaire_bounds.h"
 #include "solver/emit/luminaire_sample.h"
+#include "solver/emit/opening_sampler.h"
 #include "solver/trace/ray_tracer.h"
 
 namespace reemit {
@@ -60,11 +62,12 @@ class PhotometricEmitter {
   struct Data {
     std::shared_ptr<const IntensityTable> table;
     LuminousOpening opening;
-    Vec3 centre;              // normalised
-    Eigen::Matrix3d to_room;  // luminaire coordinates to the room
-    double metres;            // per normalised unit
-    double nearest2;          // [normalised units^2]
-    double extent2;           // [normalised units^2]
+    Vec3 centre;                      // normalised
+    Eigen::Matrix3d to_room;          // luminaire coordinates to the room
+    double metres;                    // per normalised unit
+    double nearest2;                  // [normalised units^2]
+    double extent2;                   // [normalised units^2]
+    std::optional<FlatOpening> flat;  // the opening, normalised, if it is flat
   };
   std::shared_ptr<const Data> data_;  // aside: it is large, and tables of luminaires should stay in cache
 };

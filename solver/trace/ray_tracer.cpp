@@ -178,7 +178,7 @@ void RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float 
   hit.triangle = TriangleId(mesh_->first_patch(primitive).index() + place.patch);
   hit.u = static_cast<float>(place.at.u);
   hit.v = static_cast<float>(place.at.v);
-  hit.front = patches.normal_at(point).dot(d) < 0;
+  hit.front = patches.meets_front(point, d);
 }
 
 std::uint32_t RayTracer::key_of(const Vec3f& origin, const Vec3f& direction) {
@@ -222,8 +222,9 @@ Vec3f RayTracer::curved_ray_origin(TriangleId t, float u, float v, bool front, V
   const float s = u + inset * (kMiddle - u);
   const float r = v + inset * (kMiddle - v);
   const CurvedPatches& shape = shapes_[shape_of(t)];
-  Vec3 p = curved_point(t, s, r);
-  Vec3 n = shape.normal(mesh_->triangle(t).patch, s, r, p).cast<float>().cast<double>();
+  const CurvedPatches::Point at = shape.at(mesh_->triangle(t).patch, s, r);
+  Vec3 p = at.position;
+  Vec3 n = at.normal.cast<float>().cast<double>();
   normal = n.cast<float>();
   if (feet_.touches_others(shape_of(t))) {
     p = feet_.clear_of_others(shape_of(t), p);

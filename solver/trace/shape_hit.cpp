@@ -44,8 +44,9 @@ double ShapeTarget::nearest(const Vec3& origin, const Vec3& d, double near, doub
 }
 
 double ShapeTarget::first(const Vec3& origin, const Vec3& d, double near, double far) const {
-  if (!encloses(origin)) return nearest(origin, d, near, far);
   const double exact = nearest(origin, d, near, far + kEncloses);
+  if (exact == kNone) return kNone;  // as of most shapes that are asked
+  if (!encloses(origin)) return exact < far ? exact : kNone;
   const double sooner = exact - kEncloses;
   const double hit = sooner > near ? sooner : exact;
   return hit < far ? hit : kNone;
@@ -120,16 +121,19 @@ double ShapeTarget::on_disk(const Vec3& p, const Vec3& d, double near, double fa
   const double hd = f.axis.dot(d);
   if (hd == 0) return kNone;
   const double plane = -f.axis.dot(p) / hd;
+  if (!(plane * (1 + kProud) > near && plane * (1 - kProud) < far)) return kNone;
   const Vec3 at = p + plane * d;
   const Vec3 radial = at - f.axis.dot(at) * f.axis;
   const double r2 = radial.squaredNorm();
   const bool front = hd < 0;
-  // Beyond the rims a back is met from within the body that the disk closes, not by rays that pass outside.
   const double way = d.dot(radial);
-  const bool from_within = way > 0 && r2 - way * way / (d - hd * f.axis).squaredNorm() <= f.r0 * f.r0;
-  const double outer = f.r0 + (front || from_within ? kRim : 0);
+  if (r2 > f.r0 * f.r0) {
+    // Beyond the rims a back is met from within the body that the disk closes, not by rays that pass outside.
+    const bool from_within = way > 0 && r2 - way * way / (d - hd * f.axis).squaredNorm() <= f.r0 * f.r0;
+    if (!(front || from_within) || r2 > (f.r0 + kRim) * (f.r0 + kRim)) return kNone;
+  }
   const double inner = f.r1 > 0 ? f.r1 - (front || way < 0 ? kRim : 0) : 0;
-  if (r2 > outer * outer || r2 < inner * inner) return kNone;
+  if (r2 < inner * inner) return kNone;
   // Close to the rims a back lies behind the mantle that hides it from outside.
   const bool at_rim = r2 > std::pow(f.r0 - kRimBand, 2) || (f.r1 > 0 && r2 < std::pow(f.r1 + kRimBand, 2));
   const double t = plane * (front || !at_rim ? 1 - kProud : 1 + kProud);

@@ -1,4 +1,4 @@
-#include "solver/sampling/sine_cosine.h"
+#include "scenes/model/sine_cosine.h"
 
 #include <cmath>
 #include <limits>
