@@ -99,6 +99,11 @@ class ZoneMesh {
     return ZoneId(s.first_zone.index() + zone_in_triangle(s.divisions, u, v));
   }
   static constexpr std::uint32_t kNone = 0xffffffff;  ///< Number of no triangle, or of no zone.
+  /// Asks for the memory that zones_at16 and `member` will look at, before it is needed.
+  void prefetch(TriangleId t) const {
+    __builtin_prefetch(&sides_[2 * t.index()]);
+    if (!member_.empty()) __builtin_prefetch(&member_[2 * t.index()]);
+  }
   /// zone_at for 16 points, in less than half of the time: numbers of zones, kNone where there is none.
   void zones_at16(const TrianglePoints16& points, std::uint32_t* zone) const;
   /// The cell that a zone is. Pre: not a group.

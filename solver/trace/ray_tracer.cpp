@@ -325,6 +325,8 @@ void RayTracer::closest16(const Ray16& rays, int count, Hit16& hits) const {
     hits.distance[i] = query.ray.tfar[i];
     others |= is_hit ? query.hit.geomID[i] ^ EmbreeTree::kTriangles : 0;
   }
+  for (int i = 0; i < count; ++i)
+    if (query.hit.primID[i] < flat_count_) mesh_->prefetch(TriangleId(query.hit.primID[i]));
   read_flat_hits(faces_.data(), rays, hits);
   for (int i = 0; others != 0 && i < count; ++i) {
     const std::uint32_t t = query.hit.primID[i];
