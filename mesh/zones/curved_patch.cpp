@@ -119,14 +119,6 @@ Vec3 CurvedPatches::normal_at(const Vec3& point) const {
   return outwards_ * out + upwards_ * frustum_.axis;
 }
 
-bool CurvedPatches::meets_front(const Vec3& point, const Vec3& direction) const {
-  if (const auto* sphere = std::get_if<Sphere>(&shape_)) {
-    const double outwards = direction.dot(point - sphere->centre);
-    return sphere->inward ? outwards > 0 : outwards < 0;
-  }
-  return normal_at(point).dot(direction) < 0;
-}
-
 Barycentric CurvedPatches::octant_place(std::uint32_t patch, const Vec3& direction) const {
   const Vec3 d = octant_signs(patch).cwiseProduct(direction).cwiseMax(0);
   const double length = d.norm();

@@ -38,8 +38,6 @@ class CurvedPatches {
   Barycentric in_patch(std::uint32_t patch, const Vec3& point) const;
   /// Unit normal of the front at a point on the shape.
   Vec3 normal_at(const Vec3& point) const;
-  /// Whether a ray of that direction that ends there comes from the front.
-  bool meets_front(const Vec3& point, const Vec3& direction) const;
 
  private:
   // A frustum in surface coordinates: a in [0,1] within a quarter turn, b in [0,1] by area from the larger

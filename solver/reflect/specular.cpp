@@ -55,7 +55,7 @@ SpecularSurface::SpecularSurface(const Material& material, double metres_per_uni
     absorption_ = by_band(part.absorption_per_m, true, bands);
     for (float& a : absorption_) a *= static_cast<float>(metres_per_unit);
   }
-  constexpr float kRounding = 1e-5F;
+  constexpr float kRounding = 3e-5F;  // also of the cosine
   if (bands > 0)
     most_shares_ = kRounding + largest(reflectance_) + largest(transmittance_) + largest(diffuse_);
 }

@@ -155,8 +155,7 @@ class SweepTracer {
         if (account.member == Account::kNoMember)
           arrivals_->add(account.place, bits_[lane], hits_.u[lane], hits_.v[lane]);
         else
-          arrivals_->add_in_group(account.place, bits_[lane], account.member, hits_.u[lane],
-                                  hits_.v[lane]);
+          arrivals_->add_in_group(account.place, bits_[lane], account.member, hits_.u[lane], hits_.v[lane]);
       }
       if (account.quanta == nullptr) {
         for (std::size_t c = 0; c < channels; ++c)

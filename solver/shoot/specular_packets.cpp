@@ -61,11 +61,10 @@ void SpecularPackets::attenuate(const SpecularWay& way, const Hit16& hits, int l
   });
 }
 
-float SpecularPackets::chances(const PacketBlock& block, const Hit16& hits, int lane) {
+float SpecularPackets::chances(const Hit16& hits, int lane) {
   const TriangleId t(hits.triangle[lane]);
   if (!surfaces_.is_specular(t, hits.front[lane])) return 0;
-  const float cosine =
-      -side_normal(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]).dot(block.rays.direction(lane));
+  const float cosine = hits.cosine[lane];
   return cosine > 0 ? surfaces_.specular(t).shares(cosine, hits.front[lane], way_) : 0;
 }
 
@@ -89,11 +88,11 @@ void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
 void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u,
                                const std::array<float, 2>& spread, float most, WaitingPackets& next) {
   const TriangleId t(hits.triangle[lane]);
+  const SpecularSurface& specular = surfaces_.specular(t);
+  const float most_shares = specular.most_shares(hits.cosine[lane]);
+  if (most_shares <= most && u >= most_shares) return;  // as most packets end
   SurfacePoint x = surface_point(rays_, t, hits.u[lane], hits.v[lane], hits.front[lane]);
   x.towards = -block.rays.direction(lane);
-  const SpecularSurface& specular = surfaces_.specular(t);
-  const float most_shares = specular.most_shares(x.normal.dot(x.towards));
-  if (most_shares <= most && u >= most_shares) return;  // as most packets end
   if (!specular.choose(x, u, spread, Survival::kRoulette, way_, most)) return;
   const std::size_t values = channels_.count();
   const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * values];

@@ -36,7 +36,7 @@ class SpecularPackets {
   void carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step, float u,
                 float most, WaitingPackets& next);
   /// Chances of the ways on from what a lane met, in all; 0 where there are none.
-  float chances(const PacketBlock& block, const Hit16& hits, int lane);
+  float chances(const Hit16& hits, int lane);
 
  private:
   void carry_on(const PacketBlock& block, const Hit16& hits, int lane, float u,

@@ -231,7 +231,7 @@ class WalkTask {
     double survival = surfaces.largest_reflectance(zone, met, hits_.front[lane]);
     std::int64_t* absorbed = &absorbed_[surface.index() * values_];
     const float u = low_bytes_to_unit(bits, k);
-    const double on = is_specular ? static_cast<double>(specular_.chances(block, hits_, lane)) : 0;
+    const double on = is_specular ? static_cast<double>(specular_.chances(hits_, lane)) : 0;
     if (survival + on > 1) {
       // Powers that survive grow by as much as the odds of all ways are too large.
       if (survival + on > kUsualRoulette) count_event(books_.events.roulette_jumps);

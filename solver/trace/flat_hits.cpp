@@ -23,6 +23,7 @@ void read_flat_hits(const FacePlane* __restrict faces, const Ray16& __restrict r
     const float w = 1 - hits.u[i] - hits.v[i];
     const float least = hits.u[i] < hits.v[i] ? hits.u[i] : hits.v[i];
     const float nearest = least < w ? least : w;
+    hits.cosine[i] = height < 0 ? -height : height;
     front[i] = (height < 0 ? 1U : 0U) & is_hit;
     near_edge[i] = (nearest < numbers[4 * std::size_t{face} + 3] ? 1U : 0U) & is_hit;
   }

@@ -31,6 +31,7 @@ struct alignas(64) Hit16 {
   std::uint32_t triangle[16];  ///< RayTracer::kMiss where the ray left the room.
   float u[16], v[16];          ///< 0 where the ray left the room.
   float distance[16];
+  float cosine[16];    ///< Between the ray and the normal of the side that it met; anything where it left.
   bool front[16];      ///< False where the ray left the room.
   bool near_edge[16];  ///< Below edge_share: the hit may be RayTracer::is_at_edge.
   TrianglePoints16 points() const { return {triangle, u, v, front}; }

@@ -145,40 +145,32 @@ Vec3f RayTracer::curved_normal(TriangleId t, float u, float v) const {
   return shapes_[patch.shape].normal(patch.patch, u, v).cast<float>();
 }
 
-void RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
-                         const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
+float RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
+                          const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
   hit.distance = distance;
-  if (geometry == EmbreeTree::kTriangles) {
-    hit.triangle = TriangleId(primitive);
-    hit.u = u;
-    hit.v = v;
-    hit.front = faces_[primitive].normal.dot(direction) < 0;
-    return;
-  }
-  if (geometry == EmbreeTree::kCutOuts) {
-    hit.triangle = TriangleId(cut_outs_->cut_outs()[primitive]);
-    hit.u = u;
-    hit.v = v;
-    hit.front = faces_[hit.triangle.index()].normal.dot(direction) < 0;
-    return;
-  }
-  const Vec3 d = direction.cast<double>();
-  if (geometry == EmbreeTree::kFeet) {
-    const ShapeFeet::Place place = feet_.place_of({feet_.triangles()[primitive], u, v}, origin.cast<double>(),
-                                                  d, static_cast<double>(distance));
+  float height = 0;
+  if (geometry == EmbreeTree::kShapes) {
+    const Vec3 d = direction.cast<double>();
+    const Vec3 point = origin.cast<double>() + static_cast<double>(distance) * d;
+    const CurvedPatches& patches = shapes_[primitive];
+    const CurvedPatches::Place place = patches.place_of(point);
+    hit.triangle = TriangleId(mesh_->first_patch(primitive).index() + place.patch);
+    hit.u = static_cast<float>(place.at.u);
+    hit.v = static_cast<float>(place.at.v);
+    height = static_cast<float>(patches.normal_at(point).dot(d));
+  } else {
+    ShapeFeet::Place place{primitive, u, v};
+    if (geometry == EmbreeTree::kCutOuts) place.triangle = cut_outs_->cut_outs()[primitive];
+    if (geometry == EmbreeTree::kFeet)
+      place = feet_.place_of({feet_.triangles()[primitive], u, v}, origin.cast<double>(),
+                             direction.cast<double>(), static_cast<double>(distance));
     hit.triangle = TriangleId(place.triangle);
     hit.u = place.u;
     hit.v = place.v;
-    hit.front = faces_[place.triangle].normal.dot(direction) < 0;
-    return;
+    height = faces_[place.triangle].normal.dot(direction);
   }
-  const Vec3 point = origin.cast<double>() + static_cast<double>(distance) * d;
-  const CurvedPatches& patches = shapes_[primitive];
-  const CurvedPatches::Place place = patches.place_of(point);
-  hit.triangle = TriangleId(mesh_->first_patch(primitive).index() + place.patch);
-  hit.u = static_cast<float>(place.at.u);
-  hit.v = static_cast<float>(place.at.v);
-  hit.front = patches.meets_front(point, d);
+  hit.front = height < 0;
+  return height;
 }
 
 std::uint32_t RayTracer::key_of(const Vec3f& origin, const Vec3f& direction) {
@@ -332,8 +324,9 @@ void RayTracer::closest16(const Ray16& rays, int count, Hit16& hits) const {
     const std::uint32_t t = query.hit.primID[i];
     if (t == kMiss || query.hit.geomID[i] == EmbreeTree::kTriangles) continue;
     Hit hit;
-    read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i], rays.origin(i),
-             rays.direction(i), hit);
+    const float height = read_hit(query.hit.geomID[i], t, query.hit.u[i], query.hit.v[i], query.ray.tfar[i],
+                                  rays.origin(i), rays.direction(i), hit);
+    hits.cosine[i] = std::fabs(height);
     hits.triangle[i] = static_cast<std::uint32_t>(hit.triangle.index());
     hits.u[i] = hit.u;
     hits.v[i] = hit.v;
@@ -405,6 +398,7 @@ void RayTracer::look_again16(const Ray16& rays, int count, Hit16& hits) const {
     hits.u[i] = again.u[k];
     hits.v[i] = again.v[k];
     hits.distance[i] = again.distance[k];
+    hits.cosine[i] = again.cosine[k];
     hits.front[i] = again.front[k];
     hits.near_edge[i] = again.near_edge[k];
   }

@@ -169,8 +169,9 @@ class RayTracer {
   Vec3f into_triangle(TriangleId t, int corner, float& height) const;
   /// Nearest hit before `far`, without a second look.
   bool nearest(const Vec3f& origin, const Vec3f& direction, float far, std::uint32_t key, Hit& hit) const;
-  void read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
-                const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
+  /// Returns the cosine between the direction and the normal of the front.
+  float read_hit(std::uint32_t geometry, std::uint32_t primitive, float u, float v, float distance,
+                 const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
 
   const ZoneMesh* mesh_;
   const RoomTextures* cut_outs_ = nullptr;  // null where the room has none
