@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "scenes/model/instruction_sets.h"
 #include "scenes/model/sine_cosine.h"
 
 namespace reemit {
@@ -33,13 +35,31 @@ bool octant_swaps(std::uint32_t patch, bool inward) {
   return (negatives % 2 == 1) != inward;
 }
 
-// Rows of constant v of a triangle hold its share (1-v)^2 above them, as heights z of an octant hold 1-z.
-Vec3 octant_direction(double u, double v) {
+double at_least_0(double x) {
+  return x > 0 ? x : 0;
+}
+
+/// Where a point lies on a round shape: its height, the distance from the axis, and which way from it. To be
+/// inlined, without branches, so that loops over lanes become vectors.
+struct RoundPoint {
+  double height, radius, cosine, sine;
+};
+
+// On the unit octant. Rows of constant v of a triangle hold its share (1-v)^2 above them, as heights z of an
+// octant hold 1-z.
+inline RoundPoint on_octant(double u, double v) {
   const double z = v * (2 - v);
-  const double r = std::sqrt(std::max(0.0, 1 - z * z));
-  const double azimuth = v < 1 ? kQuarter * std::clamp(u / (1 - v), 0.0, 1.0) : 0.0;
-  const SineCosine of = sine_and_cosine(azimuth);
-  return {r * of.cosine, r * of.sine, z};
+  const double share = u / (1 - v);
+  const double below = share < 1 ? share : 1;  // also where it is no number, at the pole
+  const SineCosine of = sine_and_cosine(kQuarter * at_least_0(below));
+  return {z, std::sqrt(at_least_0(1 - z * z)), of.cosine, of.sine};
+}
+
+/// On a frustum, in its surface coordinates; the height is a share.
+inline RoundPoint on_frustum(double r0, double r1, double quarter, double a, double b) {
+  const double r = std::sqrt(at_least_0(r0 * r0 + b * (r1 * r1 - r0 * r0)));
+  const SineCosine of = sine_and_cosine(kQuarter * (quarter + a));
+  return {b * (r0 + r1) / (r + r0), r, of.cosine, of.sine};  // (r0 - r) / (r0 - r1), also for r0 = r1
 }
 
 }  // namespace
@@ -60,12 +80,6 @@ CurvedPatches::CurvedPatches(const CurvedShape& shape) : shape_(shape), area_(sh
   count_ = 8 * slabs_;
 }
 
-double CurvedPatches::radius_at(double b) const {
-  const double r0 = frustum_.r0;
-  const double r1 = frustum_.r1;
-  return std::sqrt(std::max(0.0, r0 * r0 + b * (r1 * r1 - r0 * r0)));
-}
-
 double CurvedPatches::share_at(double radius, double height) const {
   const double r0 = frustum_.r0;
   const double r1 = frustum_.r1;
@@ -76,20 +90,17 @@ double CurvedPatches::share_at(double radius, double height) const {
 }
 
 CurvedPatches::Point CurvedPatches::frustum_point(double quarter, double a, double b) const {
-  const double r0 = frustum_.r0;
-  const double r1 = frustum_.r1;
-  const double r = radius_at(b);
-  const double along = b * (r0 + r1) / (r + r0);  // (r0 - r) / (r0 - r1), also for r0 = r1
-  const SineCosine of = sine_and_cosine(kQuarter * (quarter + a));
-  const Vec3 out = of.cosine * frustum_.u + of.sine * frustum_.v;
-  return {frustum_.base + along * frustum_.height * frustum_.axis + r * out,
+  const RoundPoint p = on_frustum(frustum_.r0, frustum_.r1, quarter, a, b);
+  const Vec3 out = p.cosine * frustum_.u + p.sine * frustum_.v;
+  return {frustum_.base + p.height * frustum_.height * frustum_.axis + p.radius * out,
           outwards_ * out + upwards_ * frustum_.axis};
 }
 
 CurvedPatches::Point CurvedPatches::at(std::uint32_t patch, double u, double v) const {
   if (const auto* sphere = std::get_if<Sphere>(&shape_)) {
     const Barycentric at = swapped_if(octant_swaps(patch, sphere->inward), {u, v});
-    const Vec3 out = octant_signs(patch).cwiseProduct(octant_direction(at.u, at.v));
+    const RoundPoint p = on_octant(at.u, at.v);
+    const Vec3 out = octant_signs(patch).cwiseProduct(Vec3(p.radius * p.cosine, p.radius * p.sine, p.height));
     return {sphere->centre + sphere->radius * out, sphere->inward ? Vec3(-out) : out};
   }
   const Barycentric at = swapped_if(frustum_.inward, {u, v});
@@ -104,6 +115,58 @@ CurvedPatches::Point CurvedPatches::at(std::uint32_t patch, double u, double v) 
   const double b = upper ? 1 - at.v : at.v;
   const std::uint32_t slab = cell / 4;
   return frustum_point(cell % 4, a, (slab + b) / slabs_);
+}
+
+REEMIT_FOR_INSTRUCTION_SETS
+void CurvedPatches::at16(std::uint32_t patch, const double* __restrict u, const double* __restrict v,
+                         Points16& __restrict to) const {
+  if (const auto* sphere = std::get_if<Sphere>(&shape_)) {
+    if (octant_swaps(patch, sphere->inward)) std::swap(u, v);
+    const Vec3 signs = octant_signs(patch);
+    const Vec3 from = sphere->centre;
+    const double radius = sphere->radius;
+    const double side = sphere->inward ? -1 : 1;
+    for (int i = 0; i < 16; ++i) {
+      const RoundPoint p = on_octant(u[i], v[i]);
+      const double x = signs.x() * (p.radius * p.cosine);
+      const double y = signs.y() * (p.radius * p.sine);
+      const double z = signs.z() * p.height;
+      to.position[0][i] = from.x() + radius * x;
+      to.position[1][i] = from.y() + radius * y;
+      to.position[2][i] = from.z() + radius * z;
+      to.normal[0][i] = side * x;
+      to.normal[1][i] = side * y;
+      to.normal[2][i] = side * z;
+    }
+    return;
+  }
+  if (frustum_.inward) std::swap(u, v);
+  const std::uint32_t cell = pointed_ ? patch : patch / 2;
+  const double flip = !pointed_ && patch % 2 == 1 ? 1 : 0;
+  const double slab = cell / 4;
+  alignas(64) double a[16];
+  alignas(64) double b[16];
+  for (int i = 0; i < 16; ++i) {
+    const double s = u[i] + v[i];
+    const double turn = s > 0 ? v[i] / s : 0.5;
+    const double in_u = flip > 0 ? 1 - u[i] : u[i];
+    const double in_v = flip > 0 ? 1 - v[i] : v[i];
+    a[i] = pointed_ ? turn : in_u;
+    b[i] = pointed_ ? 1 - s * s : (slab + in_v) / slabs_;
+  }
+  const Frustum f = frustum_;
+  const double outwards = outwards_;
+  const double upwards = upwards_;
+  const double quarter = cell % 4;
+  for (int i = 0; i < 16; ++i) {
+    const RoundPoint p = on_frustum(f.r0, f.r1, quarter, a[i], b[i]);
+    const double along = p.height * f.height;
+    for (int k = 0; k < 3; ++k) {
+      const double out = p.cosine * f.u[k] + p.sine * f.v[k];
+      to.position[k][i] = f.base[k] + along * f.axis[k] + p.radius * out;
+      to.normal[k][i] = outwards * out + upwards * f.axis[k];
+    }
+  }
 }
 
 Vec3 CurvedPatches::normal_at(const Vec3& point) const {

@@ -1,6 +1,7 @@
 #include "solver/shoot/packet_room.h"
 
 #include "solver/emit/light_places.h"
+#include "solver/shoot/curved_lanes.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
@@ -57,11 +58,43 @@ bool PacketRoom::start_at(TriangleId t, float u, float v, bool front, const Vec3
   return rays_->starts_behind(t, front, origin);
 }
 
-std::uint32_t PacketRoom::start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers,
-                                           Ray16& rays) const {
+bool PacketRoom::starts_together(const ZoneLanes& lanes, int lane) const {
+  if ((lanes.one_by_one & ~lanes.points & 1U << lane) == 0) return false;
+  const ZoneId zone(lanes.zone[lane]);
+  return !mesh_->is_group(zone) && !rays_->touches_others(mesh_->zone_triangle(zone));
+}
+
+std::uint32_t PacketRoom::start_with_others(ZoneLanes& lanes, const UniformLanes& numbers,
+                                            Ray16& rays) const {
+  constexpr int kEnough = 4;  // lanes of one zone to start together
+  CurvedStarts starts;
+  std::uint32_t together = 0;
+  float origin[3][16];
+  for (int lane = 0; lane < 16;) {
+    const int first = lane++;
+    if (!starts_together(lanes, first)) continue;
+    while (lane < 16 && lanes.zone[lane] == lanes.zone[first] && starts_together(lanes, lane)) ++lane;
+    if (lane - first < kEnough) continue;
+    curved_starts(*rays_, mesh_->zone_cell(ZoneId(lanes.zone[first])), numbers, starts);
+    put_normals(starts, first, lane, lanes);
+    for (int k = 0; k < 3; ++k)
+      std::copy(starts.origin[k] + first, starts.origin[k] + lane, origin[k] + first);
+    together |= lane_bits(first, lane);
+  }
+  std::uint32_t behind = start_rays(lanes, numbers, rays) & ~lanes.one_by_one;
+  for (int lane = 0; lane < 16; ++lane)
+    if ((together >> lane & 1U) != 0)
+      rays.set(lane, {origin[0][lane], origin[1][lane], origin[2][lane]}, rays.direction(lane));
+  behind |= start_one_by_one(lanes, lanes.one_by_one & ~together, numbers, rays);
+  if (lanes.feet != 0) start_at_feet(lanes, rays);
+  return behind;
+}
+
+std::uint32_t PacketRoom::start_one_by_one(const ZoneLanes& lanes, std::uint32_t which,
+                                           const UniformLanes& numbers, Ray16& rays) const {
   std::uint32_t behind = 0;
   for (int lane = 0; lane < 16; ++lane) {
-    if ((lanes.one_by_one >> lane & 1U) == 0) continue;
+    if ((which >> lane & 1U) == 0) continue;
     const Vec3f local = sample_cosine_hemisphere(numbers.u[2][lane], numbers.u[3][lane]);
     const bool is_behind =
         (lanes.points >> lane & 1U) != 0

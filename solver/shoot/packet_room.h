@@ -132,9 +132,9 @@ class PacketRoom {
   }
 
   /// start_rays for zones that may be curved or groups; also returns the lanes that start behind.
-  std::uint32_t start(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
-    std::uint32_t behind = start_rays(lanes, numbers, rays);
-    if (lanes.one_by_one != 0) behind = (behind & ~lanes.one_by_one) | start_one_by_one(lanes, numbers, rays);
+  std::uint32_t start(ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const {
+    if (lanes.one_by_one != 0) return start_with_others(lanes, numbers, rays);
+    const std::uint32_t behind = start_rays(lanes, numbers, rays);
     if (lanes.feet != 0) start_at_feet(lanes, rays);
     return behind;
   }
@@ -174,7 +174,11 @@ class PacketRoom {
 
   std::vector<std::uint8_t> needs_of_zones() const;
   bool start_at(TriangleId t, float u, float v, bool front, const Vec3f& local, Ray16& rays, int lane) const;
-  std::uint32_t start_one_by_one(const ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
+  std::uint32_t start_with_others(ZoneLanes& lanes, const UniformLanes& numbers, Ray16& rays) const;
+  /// Whether curved_starts may be asked for starts on the zone of a lane that goes one by one.
+  bool starts_together(const ZoneLanes& lanes, int lane) const;
+  std::uint32_t start_one_by_one(const ZoneLanes& lanes, std::uint32_t which, const UniformLanes& numbers,
+                                 Ray16& rays) const;
   void start_at_feet(const ZoneLanes& lanes, Ray16& rays) const;
 
   /// A base triangle with the edges of one of its cells (normalised space).

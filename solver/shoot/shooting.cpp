@@ -9,7 +9,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "solver/sampling/mixed_bits.h"
 #include "solver/shoot/allocation.h"
 #include "solver/shoot/arrival_points.h"
 #include "solver/shoot/flight.h"
@@ -78,7 +77,7 @@ class SweepTracer {
         number_(number),
         observer_(batch.ray_observer),
         shared_(accounts_are_shared(sweep.incident.size())),
-        arrival_key_(CounterRng(batch.settings.seed, RngPurpose::kArrival).bits4(0, batch.batch, number)[0]),
+        choice_(batch.settings.seed, RngPurpose::kArrival),
         arrivals_(arrivals),
         books_(books),
         incident_(sweep.mine()),
@@ -124,20 +123,11 @@ class SweepTracer {
     trace_on(waiting_);
   }
 
-  /// Random bits by which packets compete for the places of zones (ArrivalPoints::place): a number of the
-  /// sweep mixed with that of the packet, and with that of its steps where it was sent on.
-  void draw_bits(const PacketBlock& block) {
-    for (int lane = 0; lane < 16; ++lane) bits_[lane] = mixed_bits(arrival_key_ ^ block.id[lane]);
-    if (!specular_.any()) return;
-    for (int lane = 0; lane < block.count; ++lane)
-      if (block.way[lane].steps > 0) bits_[lane] = mixed_bits(bits_[lane] + block.way[lane].steps);
-  }
-
   void trace_and_book(PacketBlock& block, bool second_look) {
     transport_.rays().closest16(block.rays, block.count, hits_);
-    if (arrivals_ != nullptr) draw_bits(block);
-    find_accounts(transport_, hits_, block.count, incident_, shared_, second_look, arrivals_, bits_, books_,
-                  accounts_);
+    if (arrivals_ != nullptr) specular_.draw_bits(choice_, block, number_, bits_);
+    find_accounts(transport_, hits_, block.count, incident_, shared_, second_look, arrivals_, bits_.word[0],
+                  books_, accounts_);
     // The compiler cannot know that booking leaves the members of this object alone.
     const std::size_t channels = channels_.count();
     const std::uint32_t specular = specular_.any() ? specular_.lanes(block, hits_) : 0;
@@ -153,9 +143,10 @@ class SweepTracer {
       if ((specular >> lane & 1U) != 0) specular_.attenuate(block.way[lane], hits_, lane, quanta);
       if (account.place != nullptr) {
         if (account.member == Account::kNoMember)
-          arrivals_->add(account.place, bits_[lane], hits_.u[lane], hits_.v[lane]);
+          arrivals_->add(account.place, bits_.word[0][lane], hits_.u[lane], hits_.v[lane]);
         else
-          arrivals_->add_in_group(account.place, bits_[lane], account.member, hits_.u[lane], hits_.v[lane]);
+          arrivals_->add_in_group(account.place, bits_.word[0][lane], account.member, hits_.u[lane],
+                                  hits_.v[lane]);
       }
       if (account.quanta == nullptr) {
         for (std::size_t c = 0; c < channels; ++c)
@@ -176,7 +167,7 @@ class SweepTracer {
   std::uint32_t number_;
   const RayObserver* observer_;
   bool shared_;
-  std::uint32_t arrival_key_;
+  CounterRng choice_;
   ArrivalPoints* arrivals_;
   BatchBooks& books_;
   SweepAccounts::Incident& incident_;
@@ -190,7 +181,7 @@ class SweepTracer {
   std::uint64_t carried_rays_ = 0;
   Hit16 hits_;
   Account accounts_[16];
-  std::uint32_t bits_[16];
+  BitLanes bits_;
 };
 
 /// Traces the flight of sweep `number` and books every packet where it ends. In the first sweep, packets that

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "scenes/model/error.h"
-#include "solver/sampling/mixed_bits.h"
 
 namespace reemit {
 namespace {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "mesh/zones/hairlines.h"
-#include "solver/sampling/mixed_bits.h"
 #include "solver/trace/embree_tree.h"
 
 namespace reemit {
@@ -17,8 +16,6 @@ namespace {
 constexpr float kEdgeWidth = 2e-6F;
 /// By how much rays are turned for the second look.
 constexpr float kTurn = 3e-6F;
-/// Barycentric coordinates of the middle of a patch.
-constexpr float kMiddle = 1.0F / 3;
 
 void intersect1(RTCScene scene, RTCRayHit& ray) {
 #if RTC_VERSION_MAJOR >= 4
@@ -209,8 +206,7 @@ Vec3f RayTracer::curved_ray_origin(TriangleId t, float u, float v, bool front, V
   // Drawn inwards along the shape, so that the start stays on its side of faces that the shape stands on. How
   // far the middle is, is asked of the triangle that stands for the patch: where it matters, near its edges,
   // the two differ by a few per cent.
-  const Vec3f on_chord = (1 - u - v) * corner(t, 0) + u * corner(t, 1) + v * corner(t, 2);
-  const float inset = inset_share((patch_middles_[t.index() - flat_count_] - on_chord).norm());
+  const float inset = inset_share(patch_chord(t).distance(u, v));
   const float s = u + inset * (kMiddle - u);
   const float r = v + inset * (kMiddle - v);
   const CurvedPatches& shape = shapes_[shape_of(t)];
@@ -218,7 +214,7 @@ Vec3f RayTracer::curved_ray_origin(TriangleId t, float u, float v, bool front, V
   Vec3 p = at.position;
   Vec3 n = at.normal.cast<float>().cast<double>();
   normal = n.cast<float>();
-  if (feet_.touches_others(shape_of(t))) {
+  if (touches_others(t)) {
     p = feet_.clear_of_others(shape_of(t), p);
     n = shape.normal_at(p);
   }

@@ -7,6 +7,7 @@
 #include "mesh/zones/zone_mesh.h"
 #include "solver/texture/room_textures.h"
 #include "solver/trace/flat_hits.h"
+#include "solver/trace/patch_chord.h"
 #include "solver/trace/ray16.h"
 #include "solver/trace/shape_feet.h"
 
@@ -64,6 +65,13 @@ class RayTracer {
     if (is_curved(t)) return curved_point(t, u, v).cast<float>();
     return (1 - u - v) * corner(t, 0) + u * corner(t, 1) + v * corner(t, 2);
   }
+  PatchChord patch_chord(TriangleId t) const {
+    return {{corner(t, 0), corner(t, 1), corner(t, 2)}, patch_middles_[t.index() - flat_count_]};
+  }
+  /// Barycentric coordinates of the middle of a patch.
+  static constexpr float kMiddle = 1.0F / 3;
+  /// Whether other faces touch the shape of a patch, so that rays start clear of them.
+  bool touches_others(TriangleId t) const { return feet_.touches_others(shape_of(t)); }
   /// The curved shape that a patch belongs to, in the normalised space.
   const CurvedPatches& patches(TriangleId t) const { return shapes_[shape_of(t)]; }
   /// The one self-intersection rule of the program: start of a ray that leaves a triangle with centroid

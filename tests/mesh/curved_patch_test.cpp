@@ -45,6 +45,29 @@ TEST(CurvedPatches, EqualAreasInBarycentricsMakeEqualAreasOnTheShape) {
   }
 }
 
+TEST(CurvedPatches, SixteenPointsAtOnceAreTheSame) {
+  for (const CurvedShape& shape : some_shapes()) {
+    const CurvedPatches patches(shape);
+    for (std::uint32_t p = 0; p < patches.count(); ++p) {
+      double u[16];
+      double v[16];
+      for (int i = 0; i < 16; ++i) {  // with the corners
+        u[i] = i < 3 ? static_cast<double>(i == 1) : 0.06 * i;
+        v[i] = i < 3 ? static_cast<double>(i == 2) : (1 - u[i]) * std::fmod(0.37 * i, 1);
+      }
+      CurvedPatches::Points16 points;
+      patches.at16(p, u, v, points);
+      for (int i = 0; i < 16; ++i) {
+        const CurvedPatches::Point one = patches.at(p, u[i], v[i]);
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_NEAR(points.position[k][i], one.position[k], 1e-15) << shape.index() << " " << p;
+          EXPECT_NEAR(points.normal[k][i], one.normal[k], 1e-15) << shape.index() << " " << p;
+        }
+      }
+    }
+  }
+}
+
 TEST(CurvedPatches, PlaceOfFindsEveryPointAgain) {
   for (const CurvedShape& shape : some_shapes()) {
     const CurvedPatches patches(shape);
