@@ -2,6 +2,7 @@
 
 #include "solver/reflect/specular.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -54,6 +55,40 @@ SpecularStep shares_at(const SpecularSurface& surface, double angle, bool front 
   SpecularStep step(1);
   surface.shares(static_cast<float>(std::cos(angle * kDegree)), front, step);
   return step;
+}
+
+TEST(SpecularSurface, MostSharesAreNeverLessThanTheShares) {
+  std::vector<SpecularSurface> surfaces;
+  for (const double share : {0.01, 0.3, 0.9})
+    for (const AngleLaw law : {AngleLaw::kConstant, AngleLaw::kSchlick}) {
+      surfaces.emplace_back(material_of(0.1, mirror(share, law)), 1);
+      NonDiffusePart pane = mirror(0.5 * share, law);
+      pane.specular_transmittance = Spectrum::Constant(1, 0.8 * (1 - share));
+      surfaces.emplace_back(material_of(0, pane), 1);
+      pane.is_solid = true;
+      surfaces.emplace_back(material_of(0, pane), 1);
+      NonDiffusePart opal = mirror(share, law);
+      opal.diffuse_transmittance = Spectrum::Constant(1, 0.5 * (1 - share));
+      surfaces.emplace_back(material_of(0.1 * (1 - share), opal), 1);
+    }
+  surfaces.emplace_back(material_of(0, glass(1.5, false)), 1);
+  surfaces.emplace_back(material_of(0, glass(1.5, true)), 1);
+  NonDiffusePart metal = mirror(1, AngleLaw::kConductor);
+  metal.metal_eta = Spectrum::Constant(1, 0.2);
+  metal.metal_k = Spectrum::Constant(1, 3);
+  surfaces.emplace_back(material_of(0, metal), 1);
+  SpecularStep step(1);
+  int told = 0;
+  for (const SpecularSurface& surface : surfaces)
+    for (const bool front : {true, false})
+      for (float cosine = 1e-4F; cosine <= 1; cosine += 1e-3F) {
+        // Roulette compares with a cosine that rounding may have changed.
+        const float most = surface.most_shares(std::min(1.0F, cosine + 1e-6F));
+        const float sum = surface.shares(cosine, front, step);
+        EXPECT_TRUE(most >= sum || most >= 1) << cosine;
+        told += most < 1 && most < sum + 0.05F ? 1 : 0;
+      }
+  EXPECT_GT(told, 10'000) << "the bound says little";
 }
 
 TEST(Fresnel, OfASurfaceOfGlass) {
