@@ -143,7 +143,8 @@ void CurvedPatches::at16(std::uint32_t patch, const double* __restrict u, const 
   if (frustum_.inward) std::swap(u, v);
   const std::uint32_t cell = pointed_ ? patch : patch / 2;
   const double flip = !pointed_ && patch % 2 == 1 ? 1 : 0;
-  const double slab = cell / 4;
+  const std::uint32_t slab_number = cell / 4;
+  const double slab = slab_number;
   alignas(64) double a[16];
   alignas(64) double b[16];
   for (int i = 0; i < 16; ++i) {
