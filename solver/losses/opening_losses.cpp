@@ -1,6 +1,7 @@
 #include "solver/losses/opening_losses.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -164,8 +165,10 @@ OpeningLoss loss_of(const PacketRoom& transport, std::uint32_t light, const Punc
   for (std::uint32_t first = 0; first < packets; first += 16) {
     UniformLanes x;
     for (int d = 0; d < 4; ++d) numbers.sample16(first, d, x.u[d]);
+    std::array<LightRay, 16> starts;
+    start_light_rays(emitter, {x.u[0], x.u[1], x.u[2], x.u[3]}, starts);
     for (int lane = 0; lane < 16; ++lane) {
-      const LightRay start = start_light_ray(emitter, x.u[0][lane], x.u[1][lane], x.u[2][lane], x.u[3][lane]);
+      const LightRay& start = starts[static_cast<std::size_t>(lane)];
       rays.set(lane, start.origin, start.direction);
     }
     trace_probes(transport.rays(), rays, 16, [&](int, const ProbeRay& probe) { books.add(probe); });
