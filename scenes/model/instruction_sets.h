@@ -9,3 +9,9 @@
 #else
 #define REEMIT_FOR_INSTRUCTION_SETS
 #endif
+
+/// Defined where a function may be written for AVX-512 alone (__attribute__((target("avx512f")))), to be
+/// called if __builtin_cpu_supports says so.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define REEMIT_HAS_AVX512_FUNCTIONS
+#endif

@@ -74,6 +74,9 @@ class CounterRng {
 
   /// The same for 16 indices at once: bits.word[k][i] = bits4(index[i], batch, step)[k].
   void bits4x16(const std::uint32_t* index, std::uint32_t batch, std::uint32_t step, BitLanes& bits) const;
+  /// The same with instructions that every processor has.
+  void bits4x16_anywhere(const std::uint32_t* index, std::uint32_t batch, std::uint32_t step,
+                         BitLanes& bits) const;
 
   /// Four independent uniform numbers in [0,1).
   std::array<float, 4> uniform4(std::uint64_t index, std::uint32_t batch, std::uint32_t step) const {
@@ -85,6 +88,10 @@ class CounterRng {
   static float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24F; }
 
  private:
+  /// For processors that have AVX-512.
+  void bits4x16_avx512(const std::uint32_t* index, std::uint32_t batch, std::uint32_t step,
+                       BitLanes& bits) const;
+
   static constexpr std::uint32_t kMultiplier0 = 0xD2511F53U;
   static constexpr std::uint32_t kMultiplier1 = 0xCD9E8D57U;
   static constexpr std::uint32_t kWeyl0 = 0x9E3779B9U;

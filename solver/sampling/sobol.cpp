@@ -44,17 +44,21 @@ constexpr std::array<DirectionNumbers, kSobolDimensions> make_directions() {
 
 constexpr auto kDirections = make_directions();
 
-/// The 16 points of indices 0..15: the sequence is linear over XOR, so they shift to any aligned block.
-constexpr std::array<std::array<std::uint32_t, 16>, kSobolDimensions> make_low_points() {
-  std::array<std::array<std::uint32_t, 16>, kSobolDimensions> all{};
+/// What each value of each four bits of an index contributes to a point, which is linear over XOR: bits
+/// reversed, as owen_scramble needs them first.
+using NibblePoints = std::array<std::array<std::uint32_t, 16>, 8>;
+
+constexpr std::array<NibblePoints, kSobolDimensions> make_nibble_points() {
+  std::array<NibblePoints, kSobolDimensions> all{};
   for (std::size_t d = 0; d < all.size(); ++d)
-    for (std::uint32_t i = 0; i < 16; ++i)
-      for (std::size_t bit = 0; bit < 4; ++bit)
-        if ((i >> bit) & 1U) all[d][i] ^= kDirections[d][bit];
+    for (std::size_t nibble = 0; nibble < 8; ++nibble)
+      for (std::uint32_t i = 0; i < 16; ++i)
+        for (std::size_t bit = 0; bit < 4; ++bit)
+          if ((i >> bit) & 1U) all[d][nibble][i] ^= reversed_bits(kDirections[d][4 * nibble + bit]);
   return all;
 }
 
-constexpr auto kLowPoints = make_low_points();
+alignas(64) constexpr auto kNibblePoints = make_nibble_points();
 
 }  // namespace
 
@@ -80,12 +84,13 @@ SobolSequence::SobolSequence(std::uint64_t seed) {
 REEMIT_FOR_INSTRUCTION_SETS
 void SobolSequence::sample16(std::uint32_t first_index, int dimension, float* out) const {
   const auto d = static_cast<std::size_t>(dimension);
-  // As sobol_bits, but without a branch on random bits.
+  const NibblePoints& points = kNibblePoints[d];
   std::uint32_t high = 0;
-  for (std::uint32_t bit = 0; bit < 32; ++bit)
-    high ^= kDirections[d][bit] & (0U - ((first_index >> bit) & 1U));
+  for (std::uint32_t nibble = 1; nibble < 8; ++nibble)
+    high ^= points[nibble][first_index >> (4 * nibble) & 15U];
   const std::uint32_t seed = seeds_[d];
-  for (std::size_t i = 0; i < 16; ++i) out[i] = unit(owen_scramble(high ^ kLowPoints[d][i], seed));
+  for (std::size_t i = 0; i < 16; ++i)
+    out[i] = unit(reversed_bits(scrambled_reversed(high ^ points[0][i], seed)));
 }
 
 }  // namespace reemit

@@ -91,9 +91,14 @@ TEST(RayLanes, SixteenRandomNumbersEqualSingleOnes) {
   std::uint32_t index[16];
   for (std::uint32_t i = 0; i < 16; ++i) index[i] = 1000 * i + 7;
   BitLanes lanes;
+  BitLanes anywhere;
   rng.bits4x16(index, 12, 34, lanes);
+  rng.bits4x16_anywhere(index, 12, 34, anywhere);
   for (std::uint32_t i = 0; i < 16; ++i)
-    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(lanes.word[k][i], rng.bits4(index[i], 12, 34)[k]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(lanes.word[k][i], rng.bits4(index[i], 12, 34)[k]);
+      EXPECT_EQ(anywhere.word[k][i], lanes.word[k][i]);
+    }
 }
 
 }  // namespace
