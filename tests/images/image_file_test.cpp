@@ -12,8 +12,10 @@
 #include <gtest/gtest.h>
 
 #include "scenes/model/error.h"
+#include "solver/sampling/counter_rng.h"
 #include "tests/support/small_disk.h"
 #include "tests/support/temp_folder.h"
+#include "viewer_export/still/png_encoding.h"
 
 namespace reemit {
 namespace {
@@ -275,6 +277,39 @@ TEST(PngWriter, BlackIsExactlyBlackAndBytesRepeat) {
   write_still_image(other, folder / "a.png");
   write_still_image(other, folder / "b.png");
   EXPECT_EQ(read_bytes(folder / "a.png"), read_bytes(folder / "b.png"));
+}
+
+TEST(PngWriter, MetadataKeepLettersOfAllAlphabets) {
+  const TempFolder folder;
+  StillImage image = sample_image(BandSet::rgb());
+  image.info.room = "B\u00fcro/\u90e8\u5c4b.json";
+  write_still_image(image, folder / "a.png");
+  const std::string bytes = read_bytes(folder / "a.png");
+  // Of a chunk for UTF-8: keyword, not compressed, no language, keyword not translated, text.
+  const std::string chunk = "iTXtreemit:room" + std::string(5, '\0') + image.info.room;
+  EXPECT_NE(bytes.find(chunk), std::string::npos);
+  EXPECT_NE(bytes.find("tEXtSoftware" + std::string(1, '\0') + "reemit 1.2.3"), std::string::npos);
+}
+
+TEST(PngWriter, WhatTheEncoderCannotDoIsAnError) {
+  const TempFolder folder;
+  // More columns than libpng takes.
+  const PngPicture wide{2'000'000, 1, std::vector<std::uint8_t>(6'000'000), {}};
+  const auto write = [&](const PngPicture& picture) {
+    OutputFile file(folder / "a.png");
+    encode_png(picture, file);
+    file.commit();
+  };
+  EXPECT_THAT([&] { write(wide); }, ThrowsMessage<ResourceError>(HasSubstr("libpng cannot write it: ")));
+  // Bytes that do not compress, so that the disk is full while it encodes.
+  constexpr int kSize = 512;
+  PngPicture noise{kSize, kSize, {}, {}};
+  const CounterRng random(5, RngPurpose::kDither);
+  for (std::uint32_t i = 0; i < 3 * kSize * kSize; ++i)
+    noise.rgb.push_back(static_cast<std::uint8_t>(random.bits4(i, 0, 0)[0]));
+  const test::SmallDisk disk(100);
+  EXPECT_THROW(write(noise), ResourceError);
+  EXPECT_TRUE(folder.listing().empty());
 }
 
 TEST(ImageFile, FixedExposureIsUsed) {

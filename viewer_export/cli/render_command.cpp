@@ -230,12 +230,13 @@ void choose_quality(RenderOptions& options) {
 ExitCode run_render(RenderOptions options) {
   check_view(options.camera);
   const bool into_folder = options.into_folder();
-  if (!into_folder) image_format_of(options.output);  // refuses an unknown one before the work
+  // Refuses what is unknown, and what cannot be loaded, before the work.
+  if (image_format_of(into_folder ? fs::path("a" + options.format) : options.output).by_image_library)
+    image_library();
   const auto check_output = [&](const fs::path& output) {
     for (const fs::path& file : options.files) check_output_file(output, file);
   };
   if (!into_folder) check_output(options.output);
-  image_library();  // if it cannot be loaded, that is known before the work
   const auto [scene, solution] = load_source(options);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();

@@ -46,14 +46,20 @@ ImageDescription sized_as(const StillImage& image, std::string_view format, Pixe
   return {std::string(format), image.width, image.height, std::move(channels), type, {}};
 }
 
+std::vector<std::pair<std::string, std::string>> metadata_of(const StillImage& image) {
+  std::vector<std::pair<std::string, std::string>> metadata{
+      {"Software", "reemit " + image.info.program_version}};
+  for (auto [name, value] : describe(image.info, image.bands)) {
+    std::replace(name.begin(), name.end(), ' ', '_');
+    metadata.emplace_back("reemit:" + name, value);
+  }
+  return metadata;
+}
+
 void add_metadata(const StillImage& image, ImageDescription& description) {
   auto& attributes = description.attributes;
   attributes.emplace_back("DateTime", "");  // or the time of writing is added: equal runs give equal files
-  attributes.emplace_back("Software", "reemit " + image.info.program_version);
-  for (auto [name, value] : describe(image.info, image.bands)) {
-    std::replace(name.begin(), name.end(), ' ', '_');
-    attributes.emplace_back("reemit:" + name, value);
-  }
+  for (const auto& [name, value] : metadata_of(image)) attributes.emplace_back(name, value);
 }
 
 void encode_image(const ImageDescription& description, const void* pixels, OutputFile& file) {

@@ -20,6 +20,7 @@ struct ImageFormat {
   std::string_view extension;    ///< Lower case with the dot: ".exr".
   std::string_view description;  ///< For --help.
   bool tone_mapped;              ///< Holds displayable colours, not radiances.
+  bool by_image_library;         ///< Written by image_library(), which takes a quarter of a second to load.
   void (*write)(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
                 OutputFile& file);
 };
