@@ -1,11 +1,23 @@
 #include "viewer_export/still/exr_writer.h"
 
-#include <algorithm>
+#include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "viewer_export/still/image_encoding.h"
+#include <ImfChannelList.h>
+#include <ImfChromaticities.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include "scenes/model/error.h"
+#include "viewer_export/still/picture_metadata.h"
 
 namespace reemit {
 namespace {
@@ -56,28 +68,59 @@ std::vector<Channel> channels_of(const StillImage& image, std::span<const float>
   return channels;
 }
 
+class ExrStream final : public Imf::OStream {
+ public:
+  explicit ExrStream(OutputFile& file) : OStream("picture"), file_(file) {}
+  void write(const char* bytes, int size) override {
+    file_.write_at(at_, bytes, static_cast<std::size_t>(size));
+    at_ += static_cast<std::uint64_t>(size);
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t at) override { at_ = at; }
+
+ private:
+  OutputFile& file_;
+  std::uint64_t at_ = 0;
+};
+
+/// Threads of OpenEXR, which has one pool for the whole program.
+int compression_threads() {
+  static const int threads = [] {
+    Imf::setGlobalThreadCount(tbb::this_task_arena::max_concurrency());
+    return Imf::globalThreadCount();
+  }();
+  return threads;
+}
+
 }  // namespace
 
 void write_exr(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
                OutputFile& file) {
-  const std::vector<Channel> channels = channels_of(image, rgb);
-  std::vector<std::string> names(channels.size());
-  std::transform(channels.begin(), channels.end(), names.begin(), [](const Channel& c) { return c.name; });
-  ImageDescription description = sized_as(image, "openexr", PixelType::kFloat, std::move(names));
-  const std::vector<float> rec709 = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
-  description.attributes = {{"chromaticities", rec709},
-                            {"whiteLuminance", kWhiteLuminance},
-                            {"compression", image.interrupted ? "none" : "zip"},
-                            {"oiio:ColorSpace", "Linear"}};
-  add_metadata(image, description);
-  description.attributes.emplace_back("reemit:suggested_display", tone_map.statement());
+  Imf::Header header(image.width, image.height);
+  header.compression() = image.interrupted ? Imf::NO_COMPRESSION : Imf::ZIP_COMPRESSION;
+  Imf::addChromaticities(header, Imf::Chromaticities());  // those of Rec.709
+  Imf::addWhiteLuminance(header, kWhiteLuminance);
+  for (const auto& [name, value] : metadata_of(image)) header.insert(name, Imf::StringAttribute(value));
+  header.insert("reemit:suggested_display", Imf::StringAttribute(tone_map.statement()));
 
-  std::vector<float> pixels(image.pixel_count() * channels.size());
-  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
-    for (std::size_t c = 0; c < channels.size(); ++c)
-      pixels[pixel * channels.size() + c] =
-          channels[c].values[pixel * channels[c].stride + channels[c].offset];
-  encode_image(description, pixels.data(), file);
+  Imf::FrameBuffer layers;
+  for (const Channel& channel : channels_of(image, rgb)) {
+    header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+    const std::size_t pixel = channel.stride * sizeof(float);
+    // OpenEXR only reads what it is given.
+    char* const values = reinterpret_cast<char*>(const_cast<float*>(channel.values + channel.offset));
+    layers.insert(channel.name,
+                  Imf::Slice(Imf::FLOAT, values, pixel, pixel * static_cast<std::size_t>(image.width)));
+  }
+  try {
+    ExrStream stream(file);
+    Imf::OutputFile output(stream, header, compression_threads());
+    output.setFrameBuffer(layers);
+    output.writePixels(image.height);
+  } catch (const Iex::BaseExc& e) {
+    throw ResourceError("EXR image", fmt::format("OpenEXR cannot write it: {}", e.what()),
+                        "Write .hdr instead, or a smaller picture.");
+  }
 }
 
 }  // namespace reemit

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "scenes/io/images/image_library.h"
 #include "scenes/model/error.h"
-#include "viewer_export/still/image_encoding.h"
 
 namespace reemit {
 namespace {
@@ -45,14 +47,26 @@ std::vector<float> representable(std::span<const float> rgb) {
   return result;
 }
 
+class MemorySink final : public ByteSink {
+ public:
+  void write_at(std::uint64_t offset, const void* from, std::size_t size) override {
+    bytes.resize(std::max(bytes.size(), offset + size));
+    std::memcpy(bytes.data() + offset, from, size);
+  }
+  std::string bytes;
+};
+
 }  // namespace
 
 void write_hdr(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
                OutputFile& file) {
   const std::vector<float> pixels = representable(rgb);
-  const std::string encoded = encode_image(sized_as(image, "hdr", PixelType::kFloat), pixels.data());
-
-  const std::string_view bytes = encoded;
+  const ImageDescription description{"hdr", image.width, image.height, {"R", "G", "B"}, PixelType::kFloat};
+  MemorySink encoded;
+  if (const std::string error = image_library().encode(description, pixels.data(), encoded); !error.empty())
+    throw ResourceError("hdr image", "OpenImageIO cannot write it: " + error,
+                        "Check that OpenImageIO was built with this format.");
+  const std::string_view bytes = encoded.bytes;
   const std::size_t header_end = bytes.find("\n\n");
   if (header_end == std::string_view::npos ||
       bytes.substr(0, header_end).find("PRIMARIES=") != std::string_view::npos)

@@ -9,7 +9,7 @@ namespace reemit {
 namespace {
 
 constexpr ImageFormat kFormats[] = {
-    {".exr", "OpenEXR, 32-bit float radiance with all layers", false, true, write_exr},
+    {".exr", "OpenEXR, 32-bit float radiance with all layers", false, false, write_exr},
     {".hdr", "Radiance picture, shared-exponent radiance", false, true, write_hdr},
     {".png", "8-bit sRGB, tone-mapped", true, false, write_png},
 };

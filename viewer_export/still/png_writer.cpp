@@ -3,7 +3,7 @@
 #include <string>
 
 #include "solver/sampling/counter_rng.h"
-#include "viewer_export/still/image_encoding.h"
+#include "viewer_export/still/picture_metadata.h"
 #include "viewer_export/still/png_encoding.h"
 
 namespace reemit {

@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
-#include <variant>
 #include <vector>
 
 namespace reemit {
@@ -40,13 +38,10 @@ struct OpenedImage {
 
 /// An image to write. Its pixels hold channels.size() values of `type` each, rows from the top.
 struct ImageDescription {
-  using Attribute = std::variant<float, std::string, std::vector<float>>;
-
   std::string format;  ///< As the library calls it: "png", "openexr", "hdr".
   int width = 0, height = 0;
   std::vector<std::string> channels;
   PixelType type = PixelType::kFloat;
-  std::vector<std::pair<std::string, Attribute>> attributes;  ///< Metadata by the library's names.
 };
 
 /// Where the bytes of an encoded image go.
@@ -56,8 +51,8 @@ class ByteSink {
   virtual void write_at(std::uint64_t offset, const void* bytes, std::size_t size) = 0;
 };
 
-/// The library that reads and writes image files. It needs some 260 others, which take half a second and
-/// 120 MB to load, so it is a module that is loaded when an image is first read or written.
+/// The library that reads image files, and writes what no smaller library does. It needs some 260 others,
+/// which take a quarter of a second and 120 MB to load, so it is a module that is loaded when first needed.
 class ImageLibrary {
  public:
   virtual ~ImageLibrary() = default;

@@ -160,7 +160,7 @@ TEST(GltfMaterials, RefusesWrongValues) {
 /// A PNG of one black and three white texels.
 std::string checker_png(const test::TempFolder& folder) {
   const std::vector<unsigned char> texels{0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 128, 0};
-  const ImageDescription description{"png", 2, 2, {"R", "G", "B"}, PixelType::kByte, {}};
+  const ImageDescription description{"png", 2, 2, {"R", "G", "B"}, PixelType::kByte};
   const std::string bytes = test::encoded_image(description, texels.data());
   folder.write("checker.png", bytes);
   return bytes;

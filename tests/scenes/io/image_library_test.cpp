@@ -19,7 +19,7 @@ using Bytes = std::vector<unsigned char>;
 constexpr int kWidth = 3, kHeight = 2;
 
 ImageDescription grey(const std::string& format) {
-  return {format, kWidth, kHeight, {"Y"}, PixelType::kByte, {{"ImageDescription", "six pixels"}}};
+  return {format, kWidth, kHeight, {"Y"}, PixelType::kByte};
 }
 
 const Bytes& pixels() {

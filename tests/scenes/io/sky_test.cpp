@@ -42,7 +42,7 @@ double lux(const Scene& scene, const Spectrum& irradiance) {
 /// An image of 16 x 8 pixels as .exr.
 std::filesystem::path write_image(const TempFolder& folder, std::vector<float> rgb, int width = 16,
                                   int height = 8) {
-  const ImageDescription description{"openexr", width, height, {"R", "G", "B"}, PixelType::kFloat, {}};
+  const ImageDescription description{"openexr", width, height, {"R", "G", "B"}, PixelType::kFloat};
   return folder.write("sky.exr", test::encoded_image(description, rgb.data()));
 }
 

@@ -86,14 +86,6 @@ OIIO::ImageSpec spec_of(const ImageDescription& description) {
   OIIO::ImageSpec spec(description.width, description.height, static_cast<int>(description.channels.size()),
                        type_of(description.type));
   spec.channelnames = description.channels;
-  for (const auto& [name, attribute] : description.attributes)
-    if (const auto* text = std::get_if<std::string>(&attribute))
-      spec.attribute(name, *text);
-    else if (const auto* values = std::get_if<std::vector<float>>(&attribute))
-      spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, static_cast<int>(values->size())),
-                     values->data());
-    else
-      spec.attribute(name, std::get<float>(attribute));
   return spec;
 }
 
