@@ -181,21 +181,20 @@ float DirectLight::found_by_lobe(TriangleId luminaire, float way, float pdf_per_
 
 void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequence, std::uint32_t first,
                               int count, double* sum, double* sum_of_squares) const {
-  if (empty()) return;
-  const Vec3f origin = ray_origin(*rays_, x);
-  for (int i = 0; i < count; ++i) {
+  const auto numbers = [&](int i) {
     const std::uint32_t index = first + static_cast<std::uint32_t>(i);
-    const std::array<float, kDimensions> u{sequence.sample(index, 0), sequence.sample(index, 1),
-                                           sequence.sample(index, 2)};
-    const Arrival light = estimate(x, origin, u);
-    if (!light.arrives()) continue;
+    return std::array<float, kDimensions>{sequence.sample(index, 0), sequence.sample(index, 1),
+                                          sequence.sample(index, 2)};
+  };
+  estimate_all(x, count, numbers, [&](const Arrival& light) {
+    if (!light.arrives()) return;
     for (std::size_t b = 0; b < band_count(); ++b) {
       const double e = static_cast<double>(light.factor) * static_cast<double>(light.strength_in(b)) *
                        static_cast<double>(light.pane(b));
       sum[b] += e;
       if (sum_of_squares != nullptr) sum_of_squares[b] += e * e;
     }
-  }
+  });
 }
 
 }  // namespace reemit

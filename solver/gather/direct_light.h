@@ -48,6 +48,14 @@ class DirectLight {
   void add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
                   float* sum) const;
 
+  /// `count` samples at one point, `numbers(i)` those of each: the same sums as by add_sample, but what they
+  /// have in common is found once.
+  template <class Numbers>
+  void add_samples(const SurfacePoint& x, int count, const Numbers& numbers, const float* weight,
+                   float* sum) const {
+    estimate_all(x, count, numbers, [&](const Arrival& light) { add(light, weight, sum); });
+  }
+
   /// Whether a sample weighs all luminaires for its point; weights for many points near each other can then
   /// be found once.
   bool is_weighed_by_point() const {
@@ -111,6 +119,20 @@ class DirectLight {
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
                    const std::array<float, kDimensions>& u) const;
+  /// Calls back with each of `count` estimates at one point.
+  template <class Numbers, class CallBack>
+  void estimate_all(const SurfacePoint& x, int count, const Numbers& numbers,
+                    const CallBack& call_back) const {
+    if (empty()) return;
+    const Vec3f origin = ray_origin(*rays_, x);
+    std::optional<LuminaireChoice> choice;
+    for (int i = 0; i < count; ++i) {
+      const std::array<float, kDimensions> u = numbers(i);
+      if (!choice || selection_ == Selection::kSpatial)  // the tree takes a number for each
+        choice.emplace(table_, selection_, origin, x.normal, u[2]);
+      call_back(estimate(x, origin, *choice, u));
+    }
+  }
   void add(const Arrival& light, const float* weight, float* sum) const;
 
   const RayTracer* rays_;

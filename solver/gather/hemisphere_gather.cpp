@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "solver/gather/uneven_zones.h"
-#include "solver/reflect/lambert.h"
 
 namespace reemit {
 namespace {
@@ -136,14 +135,14 @@ GatherBatch::GatherBatch(const HemisphereGather& gather)
 void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
                       float* sum, float* caustic) {
   if (caustic == nullptr) caustic = sum;
-  const RayTracer& rays = gather_->room().rays();
   // Inside a body of glass most rays would go round for ever, and no one asks for light there.
   if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return;
   gather_->add_photons(x, u0, u1, key, weight, caustic);
-  const Vec3f direction = sample_lambert(x.normal, u0, u1);
+  leave_from(x);
+  const Vec3f direction = frame_.to_world(sample_cosine_hemisphere(u0, u1));
   // Below a shading normal's horizon there is only the surface itself.
-  if (!(direction.dot(side_normal(rays, x)) > 0)) return;
-  rays_.set(count_, ray_origin(rays, x), direction);
+  if (!(direction.dot(above_) > 0)) return;
+  rays_.set(count_, origin_, direction);
   const auto lane = static_cast<std::size_t>(count_);
   second_look_[lane] = false;
   keys_[lane] = key;
@@ -152,6 +151,17 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   std::copy_n(weight, bands_, &weights_[lane * bands_]);
   ++count_;
   while (count_ == kWidth) trace();
+}
+
+void GatherBatch::leave_from(const SurfacePoint& x) {
+  if (x.triangle == from_.triangle && x.u == from_.u && x.v == from_.v && x.front == from_.front &&
+      x.normal == from_.normal)
+    return;
+  const RayTracer& rays = gather_->room().rays();
+  from_ = x;
+  origin_ = ray_origin(rays, x);
+  above_ = side_normal(rays, x);
+  frame_ = Frame(x.normal);
 }
 
 void GatherBatch::flush() {

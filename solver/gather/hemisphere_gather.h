@@ -11,6 +11,7 @@
 #include "solver/gather/radiance_field.h"
 #include "solver/gather/specular_path.h"
 #include "solver/sampling/counter_rng.h"
+#include "solver/sampling/warp.h"
 #include "solver/solution/gather_plan.h"
 #include "solver/trace/surface_point.h"
 
@@ -113,12 +114,18 @@ class GatherBatch {
  private:
   static constexpr int kWidth = 16;
 
+  /// Finds how rays leave x, unless the last one left it as well.
+  void leave_from(const SurfacePoint& x);
   void trace();
   void keep_for_second_look(std::size_t lane, const Hit16& hits);
 
   const HemisphereGather* gather_;
   std::size_t bands_;
   int count_ = 0;
+  SurfacePoint from_;  // that the last ray left
+  Vec3f origin_{0, 0, 0};
+  Vec3f above_{0, 0, 1};         // geometric normal there
+  Frame frame_{Vec3f(0, 0, 1)};  // of directions there
   Ray16 rays_{};
   std::array<bool, kWidth> second_look_{};
   std::array<PathKey, kWidth> keys_{};

@@ -85,10 +85,11 @@ void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& 
 void SeenLight::add_direct(const Points& points, const PointSampler& sampler, int rays, Look& look) const {
   const std::size_t bands = scale_.size();
   const std::vector<float> weight(bands, 1.0F / static_cast<float>(rays));
-  for (int i = 0; i < kPoints; ++i)
-    for (int ray = 0; ray < rays; ++ray)
-      direct_->add_sample(points[static_cast<std::size_t>(i)], sampler.light(i, ray, rays), weight.data(),
-                          &look.irradiance[static_cast<std::size_t>(i) * bands]);
+  for (int i = 0; i < kPoints; ++i) {
+    const auto shadow = [&](int ray) { return sampler.light(i, ray, rays); };
+    const auto point = static_cast<std::size_t>(i);
+    direct_->add_samples(points[point], rays, shadow, weight.data(), &look.irradiance[point * bands]);
+  }
 }
 
 SeenLight::Look SeenLight::look_around(ZoneId zone, const Points& points, const PointSampler& sampler) const {

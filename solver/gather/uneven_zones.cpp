@@ -94,8 +94,8 @@ class Looker {
       const PointSampler light = sampler(zone, half, effort);
       for (int i = 0; i < effort.points; ++i, next += bands) {
         const SurfacePoint x = point_in_zone(room_, zone, place.place(i));
-        for (int ray = 0; ray < effort.rays; ++ray)
-          direct_.add_sample(x, light.light(i, ray, effort.rays), weight.data(), next);
+        const auto shadow = [&](int ray) { return light.light(i, ray, effort.rays); };
+        direct_.add_samples(x, effort.rays, shadow, weight.data(), next);
       }
     }
     Spread worst;

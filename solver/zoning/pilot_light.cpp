@@ -148,9 +148,8 @@ void PilotLight::Looker::send_rays(const SideCell& cell, const LookEffort& effor
     // The same rays from every point, so that their noise is the same and only differences of the light are
     // left.
     for (int half = 0; half < kHalves; ++half, found += bands) {
-      for (int ray = 0; ray < effort.shadows; ++ray)
-        pilot_->direct_->add_sample(x, sampler.light(half, ray, effort.shadows), direct_weight_.data(),
-                                    found);
+      const auto shadow = [&](int ray) { return sampler.light(half, ray, effort.shadows); };
+      pilot_->direct_->add_samples(x, effort.shadows, shadow, direct_weight_.data(), found);
       const auto part =
           static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_->parts());
       for (int ray = 0; ray < effort.gathers; ++ray) {

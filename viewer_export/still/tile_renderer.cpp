@@ -334,8 +334,8 @@ void TileRenderer::add_scattered(const SurfacePoint& x, const float* share, std:
   const int shadow_rays = settings_->light_samples;
   for (std::size_t b = 0; b < bands; ++b)
     weight[b] = lambert_brdf_per_sr(share[b]) * sums.share / static_cast<float>(shadow_rays) * through[b];
-  for (int i = 0; i < shadow_rays; ++i)
-    direct_.add_sample(x, sums.sampler.light(sample, i, shadow_rays), weight.data(), sums.direct);
+  const auto shadow = [&](int i) { return sums.sampler.light(sample, i, shadow_rays); };
+  direct_.add_samples(x, shadow_rays, shadow, weight.data(), sums.direct);
 
   // Scattered radiance is share/pi times pi times the mean radiance over cosine-distributed rays.
   const bool path = settings_->integrator == Integrator::kPath;
