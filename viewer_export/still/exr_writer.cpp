@@ -1,6 +1,7 @@
 #include "viewer_export/still/exr_writer.h"
 
 #include <cstdint>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -68,19 +69,30 @@ std::vector<Channel> channels_of(const StillImage& image, std::span<const float>
   return channels;
 }
 
+/// Where the bytes go. OpenEXR ignores what is thrown when it closes a file, so the first error is kept.
 class ExrStream final : public Imf::OStream {
  public:
   explicit ExrStream(OutputFile& file) : OStream("picture"), file_(file) {}
   void write(const char* bytes, int size) override {
-    file_.write_at(at_, bytes, static_cast<std::size_t>(size));
+    try {
+      file_.write_at(at_, bytes, static_cast<std::size_t>(size));
+    } catch (...) {
+      if (!error_) error_ = std::current_exception();
+      throw;
+    }
     at_ += static_cast<std::uint64_t>(size);
   }
   std::uint64_t tellp() override { return at_; }
   void seekp(std::uint64_t at) override { at_ = at; }
 
+  void check() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
  private:
   OutputFile& file_;
   std::uint64_t at_ = 0;
+  std::exception_ptr error_;
 };
 
 /// Threads of OpenEXR, which has one pool for the whole program.
@@ -112,15 +124,17 @@ void write_exr(const StillImage& image, std::span<const float> rgb, const ToneMa
     layers.insert(channel.name,
                   Imf::Slice(Imf::FLOAT, values, pixel, pixel * static_cast<std::size_t>(image.width)));
   }
+  ExrStream stream(file);
   try {
-    ExrStream stream(file);
     Imf::OutputFile output(stream, header, compression_threads());
     output.setFrameBuffer(layers);
     output.writePixels(image.height);
   } catch (const Iex::BaseExc& e) {
+    stream.check();
     throw ResourceError("EXR image", fmt::format("OpenEXR cannot write it: {}", e.what()),
                         "Write .hdr instead, or a smaller picture.");
   }
+  stream.check();
 }
 
 }  // namespace reemit

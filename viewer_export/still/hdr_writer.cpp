@@ -47,6 +47,7 @@ std::vector<float> representable(std::span<const float> rgb) {
   return result;
 }
 
+// The encoder writes into memory, for lines to be added to the header.
 class MemorySink final : public ByteSink {
  public:
   void write_at(std::uint64_t offset, const void* from, std::size_t size) override {
