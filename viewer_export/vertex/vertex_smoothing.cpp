@@ -47,13 +47,15 @@ class LayerFits {
   }
 
   /// By how much the fits over `hops` edges to one half miss the values of the other, less the noise of
-  /// these.
-  void judge(std::size_t v, std::size_t hops, const Surrounding& around, const SurroundingFit& fit) {
+  /// these. Here and below, `sums` is room to work in.
+  void judge(std::size_t v, std::size_t hops, const Surrounding& around, const SurroundingFit& fit,
+             std::vector<float>& sums) {
+    fit_values(around, fit, sums);
     float sum = 0;
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t own = v * bands_ + b;
-      const float first = value(0, b, around, fit) - layer_.half[1][own];
-      const float second = value(1, b, around, fit) - layer_.half[0][own];
+      const float first = sums[b] - layer_.half[1][own];
+      const float second = sums[bands_ + b] - layer_.half[0][own];
       sum += 0.5F * (first * first + second * second) - layer_.variance[own];
     }
     squared_error_[v * kFits + hops] = sum;
@@ -76,10 +78,11 @@ class LayerFits {
     best_[v] = static_cast<std::uint8_t>(std::min_element(error.begin(), error.end()) - error.begin());
   }
   std::size_t chosen(std::size_t v) const { return best_[v]; }
-  void keep(std::size_t v, const Surrounding& around, const SurroundingFit& fit) {
+  void keep(std::size_t v, const Surrounding& around, const SurroundingFit& fit, std::vector<float>& sums) {
+    fit_values(around, fit, sums);
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t own = v * bands_ + b;
-      for (std::size_t h = 0; h < 2; ++h) half_[h][own] = value(h, b, around, fit);
+      for (std::size_t h = 0; h < 2; ++h) half_[h][own] = sums[h * bands_ + b];
       float variance = 0;
       for (std::size_t i = 0; i < fit.weight.size(); ++i)
         variance += fit.weight[i] * fit.weight[i] * layer_.variance[around.vertices[i] * bands_ + b];
@@ -97,11 +100,18 @@ class LayerFits {
  private:
   static constexpr std::size_t kJudged = 3;  ///< Edges to each side within which fits are judged.
 
-  float value(std::size_t h, std::size_t band, const Surrounding& around, const SurroundingFit& fit) const {
-    float sum = 0;
-    for (std::size_t i = 0; i < fit.weight.size(); ++i)
-      sum += fit.weight[i] * layer_.half[h][around.vertices[i] * bands_ + band];
-    return sum;
+  /// What the fit makes of the values of each half, [half * bands + band].
+  void fit_values(const Surrounding& around, const SurroundingFit& fit, std::vector<float>& sums) const {
+    sums.assign(2 * bands_, 0.0F);
+    for (std::size_t i = 0; i < fit.weight.size(); ++i) {
+      const float weight = fit.weight[i];
+      const float* first = &layer_.half[0][around.vertices[i] * bands_];
+      const float* second = &layer_.half[1][around.vertices[i] * bands_];
+      for (std::size_t b = 0; b < bands_; ++b) {
+        sums[b] += weight * first[b];
+        sums[bands_ + b] += weight * second[b];
+      }
+    }
   }
 
   const VertexLayer& layer_;
@@ -148,18 +158,22 @@ class Smoothing {
     };
     for (const VertexLayer& layer : layers) fits_.emplace_back(layer, rings.size(), bands_);
     for_vertices([&](std::size_t v, const Surrounding& around) {
+      const SurroundingFits of_hops(around);
       SurroundingFit fit;
+      std::vector<float> sums;
       for (std::size_t hops = 0; hops < kFits; ++hops) {
-        fit_surrounding(around, hops, fit);
-        for (LayerFits& fits : fits_) fits.judge(v, hops, around, fit);
+        of_hops.fit(hops, fit);
+        for (LayerFits& fits : fits_) fits.judge(v, hops, around, fit, sums);
       }
     });
     for_vertices([&](std::size_t v, const Surrounding& around) {
+      const SurroundingFits of_hops(around);
       SurroundingFit fit;
+      std::vector<float> sums;
       for (LayerFits& fits : fits_) {
         fits.choose(v, around);
-        fit_surrounding(around, fits.chosen(v), fit);
-        fits.keep(v, around, fit);
+        of_hops.fit(fits.chosen(v), fit);
+        fits.keep(v, around, fit, sums);
       }
     });
   }

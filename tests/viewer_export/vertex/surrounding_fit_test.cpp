@@ -41,9 +41,10 @@ TEST(SurroundingFit, ReproducesWhatItIsOfOrder) {
   };
   for (const bool half : {false, true}) {
     const Surrounding around = grid_around(half);
+    const SurroundingFits fits(around);
     SurroundingFit fit;
     for (std::size_t hops = 0; hops <= Surrounding::kHops; ++hops) {
-      fit_surrounding(around, hops, fit);
+      fits.fit(hops, fit);
       ASSERT_EQ(fit.weight.size(), around.upto[hops]);
       EXPECT_NEAR(fitted(around, fit, [](double, double) { return 1.0; }), 1, 1e-5);
       if (around.upto[hops] >= 5) {
@@ -58,9 +59,10 @@ TEST(SurroundingFit, ReproducesWhatItIsOfOrder) {
 
 TEST(SurroundingFit, OwnWeightIsTheSumOfSquares) {
   const Surrounding around = grid_around(true);
+  const SurroundingFits fits(around);
   SurroundingFit fit;
   for (std::size_t hops = 0; hops <= Surrounding::kHops; ++hops) {
-    fit_surrounding(around, hops, fit);
+    fits.fit(hops, fit);
     double squares = 0;
     for (const float w : fit.weight) squares += static_cast<double>(w) * static_cast<double>(w);
     EXPECT_NEAR(squares, fit.own_weight(), 1e-5);
@@ -77,7 +79,7 @@ TEST(SurroundingFit, TakesTheMeanOfVerticesInALine) {
   }
   around.upto.fill(7);
   SurroundingFit fit;
-  fit_surrounding(around, 1, fit);
+  SurroundingFits(around).fit(1, fit);
   for (const float w : fit.weight) EXPECT_FLOAT_EQ(w, 1.0F / 7);
 }
 
