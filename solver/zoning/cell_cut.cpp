@@ -10,7 +10,12 @@
 namespace reemit {
 namespace {
 
-constexpr LookEffort kCellEffort{8, 4, 8};
+/// Points of a cell: those seen before count among them, but some are new, for by the old ones the cut was
+/// chosen that left the cell.
+constexpr int kPoints = 8;
+constexpr int kNewPoints = 2;
+constexpr int kShadowRays = 4;
+constexpr int kGatherRays = 8;
 
 /// Variance of place in a cell [m2]: of a uniform point in a triangle the sum of the squares of its edges
 /// over 36. Of a curved patch, that of the triangle between its corners.
@@ -31,8 +36,8 @@ double variance_between_halves(const std::vector<SeenPoint>& points, std::uint32
     InCell at = point.at;
     const std::uint32_t half = half_of(at, corner);
     ++count[half];
-    first[half] += point.first_look;
-    second[half] += point.second_look;
+    first[half] += static_cast<double>(point.first_look);
+    second[half] += static_cast<double>(point.second_look);
   }
   if (count[0] == 0 || count[1] == 0) return 0;
   const auto n0 = static_cast<double>(count[0]);
@@ -43,12 +48,15 @@ double variance_between_halves(const std::vector<SeenPoint>& points, std::uint32
 
 }  // namespace
 
-CellCut best_cut(const SideCell& cell, double zone_area, const PilotLight& pilot,
-                 PilotLight::Looker& looker) {
+CellCut best_cut(const SideCell& cell, double zone_area, const PilotLight& pilot, PilotLight::Looker& looker,
+                 std::vector<SeenPoint>& points) {
   const ZoneMesh& mesh = pilot.mesh();
   const double area = cell_area(mesh, cell);
   const double place = place_variance(mesh, cell);
-  const LightSpread light = looker.look(cell, kCellEffort);
+  const int missing = std::max(kNewPoints, kPoints - static_cast<int>(points.size()));
+  looker.look(cell, {missing, kShadowRays, kGatherRays});
+  points.insert(points.end(), looker.points().begin(), looker.points().end());
+  const LightSpread light = spread_of(points);
   const auto cost_of_light = [&](double variance) {
     return kUnevenWeight * zone_area * unevenness(light.mean(), variance, pilot.mean());
   };
@@ -63,7 +71,7 @@ CellCut best_cut(const SideCell& cell, double zone_area, const PilotLight& pilot
       half.corners = corners;
       place_saved -= place_variance(mesh, half) / 2;
     }
-    const double between = variance_between_halves(looker.points(), static_cast<std::uint32_t>(k));
+    const double between = variance_between_halves(points, static_cast<std::uint32_t>(k));
     const double saved = area * (place_saved + cost_of_light(between));
     if (saved > best.saved) {
       best.saved = saved;
@@ -71,6 +79,16 @@ CellCut best_cut(const SideCell& cell, double zone_area, const PilotLight& pilot
     }
   }
   return best;
+}
+
+std::vector<SeenPoint> take_second_half(std::vector<SeenPoint>& points, std::size_t corner) {
+  std::vector<SeenPoint> second;
+  std::erase_if(points, [&](SeenPoint& point) {
+    if (half_of(point.at, static_cast<std::uint32_t>(corner)) == 0) return false;
+    second.push_back(point);
+    return true;
+  });
+  return second;
 }
 
 }  // namespace reemit

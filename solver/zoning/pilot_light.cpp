@@ -89,6 +89,13 @@ std::uint64_t key_of(const SideCell& cell) {
 
 }  // namespace
 
+LightSpread spread_of(std::span<const SeenPoint> points) {
+  LightSpread light;
+  for (const SeenPoint& point : points)
+    light.add(static_cast<double>(point.first_look), static_cast<double>(point.second_look));
+  return light;
+}
+
 PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& watch)
     : pilot_scene_(dimmed(scene)), solution_(solve_pilot(pilot_scene_, std::move(mesh), watch)) {
   room_.emplace(pilot_scene_, solution_.mesh);
@@ -119,8 +126,11 @@ void PilotLight::Looker::look_at_all(std::span<const SideCell> cells, const Look
   found_.assign(cells.size() * values, 0.0F);
   for (std::size_t i = 0; i < cells.size(); ++i) send_rays(cells[i], effort, &found_[i * values]);
   batch_.flush();
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    light[i] = spread(cells[i], std::span(points_).subspan(i * points, points), &found_[i * values]);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::span<SeenPoint> of_cell = std::span(points_).subspan(i * points, points);
+    add_up(cells[i], of_cell, &found_[i * values]);
+    light[i] = spread_of(of_cell);
+  }
 }
 
 void PilotLight::Looker::send_rays(const SideCell& cell, const LookEffort& effort, float* found) {
@@ -136,24 +146,26 @@ void PilotLight::Looker::send_rays(const SideCell& cell, const LookEffort& effor
     ray_weight_[b] = weight * reflectance[b] / static_cast<float>(effort.gathers);
   }
   const std::uint64_t key = key_of(cell);
-  const PointSampler sampler(kPilotSeed, RngPurpose::kPilotLight, key, 0,
-                             std::countr_zero(std::bit_ceil(static_cast<unsigned>(effort.points))));
+  const PointSampler places(kPilotSeed, RngPurpose::kPilotLight, key, 0,
+                            std::countr_zero(std::bit_ceil(static_cast<unsigned>(effort.points))));
+  const PointSampler rays(kPilotSeed, RngPurpose::kPilotLight, side_of(cell.triangle, cell.front).index(), 1,
+                          std::countr_zero(unsigned{kHalves}));
   for (int i = 0; i < effort.points; ++i) {
-    const std::array<float, 2> u = sampler.place(i);
+    const std::array<float, 2> u = places.place(i);
     const auto [a, b] = sample_triangle(u[0], u[1]);
     points_.push_back({{a, b}, 0, 0});
     const SidePoint at = cell_point(cell, a, b);
     const SurfacePoint x = surface_point(room.rays(), at.triangle, static_cast<float>(at.at.u),
                                          static_cast<float>(at.at.v), at.front);
-    // The same rays from every point, so that their noise is the same and only differences of the light are
-    // left.
+    // The same rays from every point of the side, so that their noise is the same and only differences of the
+    // light are left.
     for (int half = 0; half < kHalves; ++half, found += bands) {
-      const auto shadow = [&](int ray) { return sampler.light(half, ray, effort.shadows); };
+      const auto shadow = [&](int ray) { return rays.light(half, ray, effort.shadows); };
       pilot_->direct_->add_samples(x, effort.shadows, shadow, direct_weight_.data(), found);
       const auto part =
           static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_->parts());
       for (int ray = 0; ray < effort.gathers; ++ray) {
-        const std::array<float, 2> d = sampler.hemisphere(half, ray, effort.gathers);
+        const std::array<float, 2> d = rays.hemisphere(half, ray, effort.gathers);
         const auto path = static_cast<std::uint32_t>((i * kHalves + half) * effort.gathers + ray);
         batch_.add(x, d[0], d[1], {key, part, path, part}, ray_weight_.data(), found);
       }
@@ -161,20 +173,16 @@ void PilotLight::Looker::send_rays(const SideCell& cell, const LookEffort& effor
   }
 }
 
-LightSpread PilotLight::Looker::spread(const SideCell& cell, std::span<SeenPoint> points,
-                                       const float* found) const {
+void PilotLight::Looker::add_up(const SideCell& cell, std::span<SeenPoint> points, const float* found) const {
   const Room& room = pilot_->room();
   const double need = need_of(room, cell);
-  LightSpread light;
   for (SeenPoint& point : points) {
     std::array<double, kHalves> sum{};
     for (double& of_half : sum)
       for (std::size_t b = 0; b < room.band_count(); ++b) of_half += static_cast<double>(*found++);
-    point.first_look = need * sum[0];
-    point.second_look = need * sum[1];
-    light.add(point.first_look, point.second_look);
+    point.first_look = static_cast<float>(need * sum[0]);
+    point.second_look = static_cast<float>(need * sum[1]);
   }
-  return light;
 }
 
 }  // namespace reemit

@@ -22,8 +22,9 @@ struct LookEffort {
 /// A point of a cell and what was seen there at each look (LightSpread::add).
 struct SeenPoint {
   InCell at;
-  double first_look, second_look;
+  float first_look, second_look;
 };
+LightSpread spread_of(std::span<const SeenPoint> points);
 
 /// A quick solution on coarse zones, and what it says about the light on other cells of the same triangles:
 /// reflected radiance at points, by shadow rays and gather rays, all bands together, weighted such that each
@@ -46,7 +47,8 @@ class PilotLight {
    public:
     explicit Looker(const PilotLight& pilot);
     /// Looks at points of the cell, twice at each, with halves of the pilot solution. The same for the same
-    /// cell and effort.
+    /// cell and effort; what is seen at points of cells of one side can be compared, for all send the same
+    /// rays.
     LightSpread look(const SideCell& cell, const LookEffort& effort);
     /// The same for each of these cells, with their gather rays in common packets: for few rays from each.
     /// `light` has room for one result a cell.
@@ -57,7 +59,8 @@ class PilotLight {
    private:
     /// Adds to `found` by point, half and band, and to `points_`.
     void send_rays(const SideCell& cell, const LookEffort& effort, float* found);
-    LightSpread spread(const SideCell& cell, std::span<SeenPoint> points, const float* found) const;
+    /// Puts together what was found at these points.
+    void add_up(const SideCell& cell, std::span<SeenPoint> points, const float* found) const;
 
     const PilotLight* pilot_;
     GatherBatch batch_;

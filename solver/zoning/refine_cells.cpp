@@ -25,8 +25,9 @@ constexpr double kExpectedShare = 0.5;
 struct Node {
   SideCell cell;
   CellCut cut;
-  bool is_seen = false;    // or else `cut` is a guess
-  std::size_t halves = 0;  // the first of them; 0: it is not cut
+  std::vector<SeenPoint> points;  // as far as they are of use for its halves
+  bool is_seen = false;           // or else `cut` is a guess
+  std::size_t halves = 0;         // the first of them; 0: it is not cut
 };
 
 struct Candidate {
@@ -43,7 +44,7 @@ class Refinement {
 
   void add_roots(SideId side, std::uint32_t divisions) {
     for (std::uint32_t c = 0; c < divisions * divisions; ++c)
-      nodes_.push_back({{triangle_of(side), is_front(side), grid_cell(divisions, c)}, {}});
+      nodes_.push_back({{triangle_of(side), is_front(side), grid_cell(divisions, c)}, {}, {}});
   }
 
   void cut(const WorkWatch& watch) {
@@ -87,26 +88,34 @@ class Refinement {
     const CellCut cut = nodes_[node].cut;
     const CellHalves halves = halves_of(half.corners, cut.corner);
     nodes_[node].halves = nodes_.size();
-    for (const CellCorners& corners : {halves.first, halves.second}) {
+    std::vector<SeenPoint> first = std::move(nodes_[node].points);
+    std::vector<SeenPoint> second = take_second_half(first, cut.corner);
+    const auto add = [&](const CellCorners& corners, std::vector<SeenPoint>& points) {
       half.corners = corners;
       open_.push({kExpectedShare * (cut.cost - cut.saved), nodes_.size()});
-      nodes_.push_back({half, {}});
-    }
+      nodes_.push_back({half, {}, std::move(points)});
+    };
+    add(halves.first, first);
+    add(halves.second, second);
   }
 
   /// Finds out what these nodes cost.
   void look_at(const std::vector<std::size_t>& unseen) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unseen.size(), 64), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unseen.size(), 16), [&](const auto& range) {
       PilotLight::Looker looker(pilot_);
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         Node& node = nodes_[unseen[i]];
-        node.cut = best_cut(node.cell, budget_.zone_area, pilot_, looker);
+        node.cut = best_cut(node.cell, budget_.zone_area, pilot_, looker, node.points);
         node.is_seen = true;
       }
     });
-    for (const std::size_t i : unseen)
-      if (nodes_[i].cut.cost > kCellCost * budget_.zone_area * budget_.zone_area && nodes_[i].cut.saved > 0)
-        open_.push({nodes_[i].cut.saved, i});
+    for (const std::size_t i : unseen) {
+      const CellCut& cut = nodes_[i].cut;
+      if (cut.cost > kCellCost * budget_.zone_area * budget_.zone_area && cut.saved > 0)
+        open_.push({cut.saved, i});
+      else
+        nodes_[i].points = {};
+    }
   }
 
   void append_node(std::size_t node, std::vector<std::uint8_t>& cuts) const {

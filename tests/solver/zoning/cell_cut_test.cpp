@@ -2,8 +2,11 @@
 
 #include "solver/zoning/cell_cut.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,8 +36,10 @@ struct HalfLitTile {
     const PilotLight pilot(room_.scene(), build_mesh(room_.scene(), {.zone_area = 100}), {});
     PilotLight::Looker looker(pilot);
     mesh_ = pilot.mesh().base();
-    return best_cut({TriangleId(0), true, {}}, kZoneArea, pilot, looker);
+    std::vector<SeenPoint> points;
+    return best_cut({TriangleId(0), true, {}}, kZoneArea, pilot, looker, points);
   }
+  const Scene& scene() { return room_.scene(); }
   Vec3 corner(std::size_t k) const { return mesh_.vertices[mesh_.triangles[0].vertex[k]]; }
   double area() const { return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm(); }
 
@@ -78,6 +83,38 @@ TEST(CellCut, HalvesTheLongestEdgeWhereLightIsEven) {
     const double cost = tile.area() / 36 * (a + others);
     EXPECT_NEAR(cut.saved, saved, 0.05 * saved);
     EXPECT_NEAR(cut.cost, cost, 0.05 * cost);
+  }
+}
+
+TEST(CellCut, HalvesKeepWhatWasSeenWhereItWas) {
+  HalfLitTile tile({Vec3(-0.1, -0.2, 0), Vec3(0.2, -0.1, 0), Vec3(0, 0.2, 0)});
+  const PilotLight pilot(tile.scene(), build_mesh(tile.scene(), {.zone_area = 100}), {});
+  PilotLight::Looker looker(pilot);
+  const auto x_of = [&](const SideCell& cell, const SeenPoint& point) {
+    const SidePoint at = cell_point(cell, point.at.a, point.at.b);
+    return pilot.mesh().point(at.triangle, at.at.u, at.at.v).x();
+  };
+  const SideCell cell{TriangleId(0), true, {}};
+  std::vector<SeenPoint> first;
+  const CellCut cut = best_cut(cell, kZoneArea, pilot, looker, first);
+  const std::size_t seen = first.size();
+  std::vector<SeenPoint> second = take_second_half(first, cut.corner);
+  EXPECT_GT(first.size(), 0U);
+  EXPECT_GT(second.size(), 0U);
+  EXPECT_EQ(first.size() + second.size(), seen);
+  const CellHalves halves = halves_of(cell.corners, cut.corner);
+  for (auto& [corners, points] : {std::pair{halves.first, &first}, {halves.second, &second}}) {
+    const std::size_t old = points->size();
+    const SideCell half{cell.triangle, cell.front, corners};
+    best_cut(half, kZoneArea, pilot, looker, *points);
+    EXPECT_EQ(points->size(), std::max<std::size_t>(seen, old + 2));
+    // The screen keeps all light from x < 0: old and new points alike.
+    for (const SeenPoint& point : *points) {
+      const double x = x_of(half, point);
+      EXPECT_GE(std::min(point.at.a, std::min(point.at.b, 1 - point.at.a - point.at.b)), -1e-6F);
+      EXPECT_EQ(point.first_look > 0, x > 0) << x;
+      EXPECT_EQ(point.second_look > 0, x > 0) << x;
+    }
   }
 }
 
