@@ -22,6 +22,9 @@ constexpr double kMostLarger = 4;
 /// Where light is even, cells are this many times as large as zones on average: what looks even from a few
 /// points may not be.
 constexpr double kCoarsest = 4;
+/// Share of the room's area from which on a cell is looked at where exports have their vertices: smaller ones
+/// are too small for a wrong vertex to be seen, and so very many zones cost no such looks.
+constexpr double kSmallestRim = 1.0 / 16384;
 
 std::vector<SideUse> uses_of_sides(const Room& room, const WorkWatch& watch) {
   const std::vector<std::uint8_t> sealed = sealed_sides(room, watch);
@@ -118,7 +121,8 @@ MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const W
   const double root_area = std::min(kCoarsest * plan.zone_area, largest);
   BaseMesh base = std::move(result.mesh).release_base();
   size_zones(base, root_area, dark);
-  CellSplits splits = refine_cells(pilot, base, sides, {cells, plan.zone_area}, watch.part(kGrouped, 1));
+  CellSplits splits = refine_cells(pilot, base, sides, {cells, {plan.zone_area, kSmallestRim * area}},
+                                   watch.part(kGrouped, 1));
   result.mesh = ZoneMesh(std::move(base), std::move(plan.groups), std::move(splits));
   return result;
 }

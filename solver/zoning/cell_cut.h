@@ -1,7 +1,5 @@
 #pragma once
-#include <vector>
-
-#include "solver/zoning/pilot_light.h"
+#include "solver/zoning/cell_looks.h"
 
 namespace reemit {
 
@@ -12,15 +10,17 @@ struct CellCut {
   std::size_t corner = 0;  ///< To cut from (halves_of).
 };
 
-/// Looks at the cell, where zones that cost what is fine in even light have this area [m2]. Of what light
-/// costs, a cut saves what the halves of the points that were seen differ by; so borders of shadows get cells
-/// that are long and lie along them. `points`: of the cell, those seen before, by looks at cells that it is a
-/// part of; others are added.
-CellCut best_cut(const SideCell& cell, double zone_area, const PilotLight& pilot, PilotLight::Looker& looker,
-                 std::vector<SeenPoint>& points);
+/// What cells are measured by.
+struct CellScale {
+  double zone_area;  ///< Of a zone that costs what is fine in even light [m2].
+  double rim_area;   ///< Cells of less are not looked at where exports have their vertices [m2].
+};
 
-/// Moves the points of a cell that lie in the second half of this cut from `points` to what is returned, all
-/// as points of their halves.
-std::vector<SeenPoint> take_second_half(std::vector<SeenPoint>& points, std::size_t corner);
+/// Looks at the cell. Of what light costs, a cut saves what the halves of the points that were seen differ
+/// by; so borders of shadows get cells that are long and lie along them. Where points differ more from what
+/// lies between the corners than from each other, such as beside a thing that keeps light from a corner
+/// alone, that counts instead. `looks`: what is known of the cell; what is seen is added.
+CellCut best_cut(const SideCell& cell, const CellScale& scale, const PilotLight& pilot,
+                 PilotLight::Looker& looker, CellLooks& looks);
 
 }  // namespace reemit

@@ -92,7 +92,7 @@ std::uint64_t key_of(const SideCell& cell) {
 LightSpread spread_of(std::span<const SeenPoint> points) {
   LightSpread light;
   for (const SeenPoint& point : points)
-    light.add(static_cast<double>(point.first_look), static_cast<double>(point.second_look));
+    light.add(static_cast<double>(point.seen.first_look), static_cast<double>(point.seen.second_look));
   return light;
 }
 
@@ -124,7 +124,16 @@ void PilotLight::Looker::look_at_all(std::span<const SideCell> cells, const Look
   const std::size_t values = points * kHalves * pilot_->room().band_count();
   points_.clear();
   found_.assign(cells.size() * values, 0.0F);
-  for (std::size_t i = 0; i < cells.size(); ++i) send_rays(cells[i], effort, &found_[i * values]);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const PointSampler places(kPilotSeed, RngPurpose::kPilotLight, key_of(cells[i]), 0,
+                              std::countr_zero(std::bit_ceil(static_cast<unsigned>(effort.points))));
+    for (int k = 0; k < effort.points; ++k) {
+      const std::array<float, 2> u = places.place(k);
+      const auto [a, b] = sample_triangle(u[0], u[1]);
+      points_.push_back({{a, b}, {}});
+    }
+    send_rays(cells[i], std::span(points_).subspan(i * points, points), effort, &found_[i * values]);
+  }
   batch_.flush();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::span<SeenPoint> of_cell = std::span(points_).subspan(i * points, points);
@@ -133,7 +142,16 @@ void PilotLight::Looker::look_at_all(std::span<const SideCell> cells, const Look
   }
 }
 
-void PilotLight::Looker::send_rays(const SideCell& cell, const LookEffort& effort, float* found) {
+void PilotLight::Looker::look_at(const SideCell& cell, std::span<SeenPoint> places,
+                                 const LookEffort& effort) {
+  found_.assign(places.size() * kHalves * pilot_->room().band_count(), 0.0F);
+  send_rays(cell, places, effort, found_.data());
+  batch_.flush();
+  add_up(cell, places, found_.data());
+}
+
+void PilotLight::Looker::send_rays(const SideCell& cell, std::span<const SeenPoint> places,
+                                   const LookEffort& effort, float* found) {
   const Room& room = pilot_->room();
   const std::size_t bands = room.band_count();
   const float* reflectance = room.surfaces().reflectance(cell.triangle, cell.front);
@@ -146,15 +164,11 @@ void PilotLight::Looker::send_rays(const SideCell& cell, const LookEffort& effor
     ray_weight_[b] = weight * reflectance[b] / static_cast<float>(effort.gathers);
   }
   const std::uint64_t key = key_of(cell);
-  const PointSampler places(kPilotSeed, RngPurpose::kPilotLight, key, 0,
-                            std::countr_zero(std::bit_ceil(static_cast<unsigned>(effort.points))));
   const PointSampler rays(kPilotSeed, RngPurpose::kPilotLight, side_of(cell.triangle, cell.front).index(), 1,
                           std::countr_zero(unsigned{kHalves}));
   for (int i = 0; i < effort.points; ++i) {
-    const std::array<float, 2> u = places.place(i);
-    const auto [a, b] = sample_triangle(u[0], u[1]);
-    points_.push_back({{a, b}, 0, 0});
-    const SidePoint at = cell_point(cell, a, b);
+    const InCell& place = places[static_cast<std::size_t>(i)].at;
+    const SidePoint at = cell_point(cell, place.a, place.b);
     const SurfacePoint x = surface_point(room.rays(), at.triangle, static_cast<float>(at.at.u),
                                          static_cast<float>(at.at.v), at.front);
     // The same rays from every point of the side, so that their noise is the same and only differences of the
@@ -180,8 +194,7 @@ void PilotLight::Looker::add_up(const SideCell& cell, std::span<SeenPoint> point
     std::array<double, kHalves> sum{};
     for (double& of_half : sum)
       for (std::size_t b = 0; b < room.band_count(); ++b) of_half += static_cast<double>(*found++);
-    point.first_look = static_cast<float>(need * sum[0]);
-    point.second_look = static_cast<float>(need * sum[1]);
+    point.seen = {static_cast<float>(need * sum[0]), static_cast<float>(need * sum[1])};
   }
 }
 

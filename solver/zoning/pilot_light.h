@@ -19,10 +19,14 @@ struct LookEffort {
   int gathers;  ///< Gather rays likewise, >= 1.
 };
 
-/// A point of a cell and what was seen there at each look (LightSpread::add).
-struct SeenPoint {
-  InCell at;
+/// What was seen at a point at each look (LightSpread::add).
+struct Seen {
   float first_look, second_look;
+};
+
+struct SeenPoint {
+  InCell at;  ///< Of a cell.
+  Seen seen;
 };
 LightSpread spread_of(std::span<const SeenPoint> points);
 
@@ -50,6 +54,8 @@ class PilotLight {
     /// cell and effort; what is seen at points of cells of one side can be compared, for all send the same
     /// rays.
     LightSpread look(const SideCell& cell, const LookEffort& effort);
+    /// The same at these places of the cell, as many as the effort says; what is seen there is set.
+    void look_at(const SideCell& cell, std::span<SeenPoint> places, const LookEffort& effort);
     /// The same for each of these cells, with their gather rays in common packets: for few rays from each.
     /// `light` has room for one result a cell.
     void look_at_all(std::span<const SideCell> cells, const LookEffort& effort, LightSpread* light);
@@ -57,8 +63,9 @@ class PilotLight {
     const std::vector<SeenPoint>& points() const { return points_; }
 
    private:
-    /// Adds to `found` by point, half and band, and to `points_`.
-    void send_rays(const SideCell& cell, const LookEffort& effort, float* found);
+    /// Adds to `found` by point, half and band.
+    void send_rays(const SideCell& cell, std::span<const SeenPoint> places, const LookEffort& effort,
+                   float* found);
     /// Puts together what was found at these points.
     void add_up(const SideCell& cell, std::span<SeenPoint> points, const float* found) const;
 

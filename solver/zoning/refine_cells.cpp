@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <numeric>
 #include <queue>
 
@@ -10,7 +11,6 @@
 #include <tbb/parallel_for.h>
 
 #include "mesh/zones/zone_cost.h"
-#include "solver/zoning/cell_cut.h"
 
 namespace reemit {
 namespace {
@@ -25,9 +25,9 @@ constexpr double kExpectedShare = 0.5;
 struct Node {
   SideCell cell;
   CellCut cut;
-  std::vector<SeenPoint> points;  // as far as they are of use for its halves
-  bool is_seen = false;           // or else `cut` is a guess
-  std::size_t halves = 0;         // the first of them; 0: it is not cut
+  std::unique_ptr<CellLooks> looks;  // as long as they are of use for it and its halves
+  bool is_seen = false;              // or else `cut` is a guess
+  std::size_t halves = 0;            // the first of them; 0: it is not cut
 };
 
 struct Candidate {
@@ -44,7 +44,8 @@ class Refinement {
 
   void add_roots(SideId side, std::uint32_t divisions) {
     for (std::uint32_t c = 0; c < divisions * divisions; ++c)
-      nodes_.push_back({{triangle_of(side), is_front(side), grid_cell(divisions, c)}, {}, {}});
+      nodes_.push_back(
+          {{triangle_of(side), is_front(side), grid_cell(divisions, c)}, {}, std::make_unique<CellLooks>()});
   }
 
   void cut(const WorkWatch& watch) {
@@ -88,12 +89,12 @@ class Refinement {
     const CellCut cut = nodes_[node].cut;
     const CellHalves halves = halves_of(half.corners, cut.corner);
     nodes_[node].halves = nodes_.size();
-    std::vector<SeenPoint> first = std::move(nodes_[node].points);
-    std::vector<SeenPoint> second = take_second_half(first, cut.corner);
-    const auto add = [&](const CellCorners& corners, std::vector<SeenPoint>& points) {
+    auto [first, second] = looks_of_halves(*nodes_[node].looks, cut.corner);
+    nodes_[node].looks.reset();
+    const auto add = [&](const CellCorners& corners, CellLooks& looks) {
       half.corners = corners;
       open_.push({kExpectedShare * (cut.cost - cut.saved), nodes_.size()});
-      nodes_.push_back({half, {}, std::move(points)});
+      nodes_.push_back({half, {}, std::make_unique<CellLooks>(std::move(looks))});
     };
     add(halves.first, first);
     add(halves.second, second);
@@ -105,16 +106,16 @@ class Refinement {
       PilotLight::Looker looker(pilot_);
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         Node& node = nodes_[unseen[i]];
-        node.cut = best_cut(node.cell, budget_.zone_area, pilot_, looker, node.points);
+        node.cut = best_cut(node.cell, budget_.scale, pilot_, looker, *node.looks);
         node.is_seen = true;
       }
     });
     for (const std::size_t i : unseen) {
       const CellCut& cut = nodes_[i].cut;
-      if (cut.cost > kCellCost * budget_.zone_area * budget_.zone_area && cut.saved > 0)
+      if (cut.cost > kCellCost * budget_.scale.zone_area * budget_.scale.zone_area && cut.saved > 0)
         open_.push({cut.saved, i});
       else
-        nodes_[i].points = {};
+        nodes_[i].looks.reset();
     }
   }
 

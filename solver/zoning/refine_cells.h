@@ -3,15 +3,15 @@
 
 #include "mesh/zones/cell_splits.h"
 #include "scenes/model/work_watch.h"
-#include "solver/zoning/pilot_light.h"
+#include "solver/zoning/cell_cut.h"
 
 namespace reemit {
 
 /// How far cells are cut.
 struct CellBudget {
   double cells = 0;  ///< About as many in all, [1, 1e9].
-  double zone_area =
-      0;  ///< Of a zone that costs what is fine in even light [m2]: none that costs less is cut.
+  /// None is cut that costs less than a zone of zone_area in even light.
+  CellScale scale{};
 };
 
 /// Cuts the cells of these sides of `base`, divided as its triangles say, where light differs: that
