@@ -1,9 +1,14 @@
 #include "solver/solution/hdf5_group.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <limits>
+
+#include <tbb/parallel_for.h>
+
+#include "solver/solution/packed_chunk.h"
 
 namespace reemit {
 namespace {
@@ -69,7 +74,6 @@ constexpr H5T_class_t kClass = std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INT
 
 // Chunks of whole rows of about this size: small enough to compress in cache, large enough to be few.
 constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 18;
-constexpr unsigned kDeflateLevel = 2;
 
 // Properties of a new object without the times that HDF5 would put into it: the same solution must give the
 // same bytes.
@@ -97,36 +101,45 @@ Hdf5Id dataset_properties(const Hdf5Shape& shape, std::size_t value_size) {
   check_hdf5(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), what);
   check_hdf5(H5Pset_shuffle(properties.get()), what);
   check_hdf5(H5Pset_deflate(properties.get(), kDeflateLevel), what);
-  check_hdf5(H5Pset_fletcher32(properties.get()), what);
   return properties;
 }
 
-// Writes a dataset chunk by chunk, those for which `packs` is false without filters.
+// What H5Dwrite_chunk is told of the filters that were left out.
+constexpr std::uint32_t kAllFilters = 0;
+constexpr std::uint32_t kNoFilters = 0xffffffff;
+// Chunks that are packed at once: enough for many threads, few enough to be done in the moment that Packing
+// allows.
+constexpr std::uint64_t kChunksAtOnce = 16;
+
+// Writes a dataset chunk by chunk, packed side by side; those for which `packs` is false without filters.
 template <class Packs>
-void write_chunks(hid_t dataset, hid_t type, std::span<const std::byte> bytes, const Hdf5Shape& shape,
+void write_chunks(hid_t dataset, std::span<const std::byte> bytes, const Hdf5Shape& shape,
                   std::size_t value_size, const Packs& packs, const std::string& what) {
-  constexpr std::uint32_t kNoFilters = 0xffffffff;
   const std::size_t of_row = row_bytes(shape, value_size);
   const std::uint64_t rows = rows_of_chunk(shape, value_size);
-  const Hdf5Id space(H5Dget_space(dataset), H5Sclose, what);
-  std::vector<hsize_t> first(shape.size(), 0);
-  std::vector<hsize_t> count(shape.begin(), shape.end());
-  for (; first[0] < shape[0]; first[0] += rows) {
-    count[0] = std::min<std::uint64_t>(rows, shape[0] - first[0]);
-    const auto chunk = bytes.subspan(first[0] * of_row, count[0] * of_row);
-    if (packs()) {
-      check_hdf5(
-          H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr),
-          what);
-      const Hdf5Id memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose,
-                          what);
-      check_hdf5(H5Dwrite(dataset, type, memory.get(), space.get(), H5P_DEFAULT, chunk.data()), what);
-      continue;
-    }
+  const std::uint64_t chunks = (shape[0] + rows - 1) / rows;
+  const auto whole_chunk = [&](std::uint64_t c) {
+    const auto found = bytes.subspan(c * rows * of_row, std::min(rows, shape[0] - c * rows) * of_row);
     std::vector<std::byte> whole(rows * of_row);  // the last one may be larger than what is left
-    std::copy(chunk.begin(), chunk.end(), whole.begin());
-    check_hdf5(H5Dwrite_chunk(dataset, H5P_DEFAULT, kNoFilters, first.data(), whole.size(), whole.data()),
-               what);
+    std::copy(found.begin(), found.end(), whole.begin());
+    return whole;
+  };
+  std::array<std::vector<std::byte>, kChunksAtOnce> stored;
+  for (std::uint64_t first = 0; first < chunks; first += kChunksAtOnce) {
+    const std::uint64_t end = std::min(first + kChunksAtOnce, chunks);
+    const bool is_packed = packs();
+    tbb::parallel_for(first, end, [&](std::uint64_t c) {
+      std::vector<std::byte> whole = whole_chunk(c);
+      stored[c - first] = is_packed ? packed_chunk(whole, value_size) : std::move(whole);
+    });
+    for (std::uint64_t c = first; c < end; ++c) {
+      std::vector<hsize_t> at(shape.size(), 0);
+      at[0] = c * rows;
+      const std::vector<std::byte>& chunk = stored[c - first];
+      check_hdf5(H5Dwrite_chunk(dataset, H5P_DEFAULT, is_packed ? kAllFilters : kNoFilters, at.data(),
+                                chunk.size(), chunk.data()),
+                 what);
+    }
   }
 }
 
@@ -285,8 +298,7 @@ void Hdf5Group::write(const std::string& name, std::span<const T> values, const 
   static_assert(std::endian::native == std::endian::little, "chunks are stored as they are");
   if (!values.empty())
     write_chunks(
-        dataset.get(), hdf5_type<T>(), std::as_bytes(values), shape, sizeof(T), [&] { return packs(); },
-        what);
+        dataset.get(), std::as_bytes(values), shape, sizeof(T), [&] { return packs(); }, what);
   dataset.close(what);
 }
 
@@ -305,8 +317,8 @@ void Hdf5Group::write(const std::string& name, std::span<const std::string> text
   const std::string what = "cannot write the dataset " + full_name(name);
   if (!texts.empty())
     write_chunks(
-        dataset.get(), type.get(), std::as_bytes(std::span(padded)), {texts.size()}, length,
-        [&] { return packs(); }, what);
+        dataset.get(), std::as_bytes(std::span(padded)), {texts.size()}, length, [&] { return packs(); },
+        what);
   dataset.close(what);
 }
 

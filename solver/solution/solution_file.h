@@ -14,8 +14,8 @@ inline constexpr std::uint32_t kSolutionFormatVersion = 12;
 /// Writes a solution as HDF5, all of it that load_solution needs to go on solving, and zone values for other
 /// programs; docs/solution_file.md specifies every dataset. The file appears whole or not at all: until then
 /// the previous one stays. Throws ResourceError when it cannot be written, std::invalid_argument for a
-/// solution whose parts do not fit together. Not for several threads at once: HDF5 is not. `packing`: when
-/// what is left is stored without compression.
+/// solution whose parts do not fit together. Not for several threads at once: HDF5 is not; it packs with as
+/// many as the settings say. `packing`: when what is left is stored without compression.
 void save_solution(const Solution& solution, const std::filesystem::path& file,
                    const Packing& packing = Packing(nullptr));
 

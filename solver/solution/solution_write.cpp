@@ -3,8 +3,11 @@
 #include <new>
 #include <stdexcept>
 
+#include <tbb/task_arena.h>
+
 #include "scenes/io/common/output_file.h"
 #include "scenes/model/error.h"
+#include "solver/run/thread_count.h"
 #include "solver/solution/audit_group.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/gather_plan_group.h"
@@ -401,7 +404,8 @@ void save_solution(const Solution& solution, const std::filesystem::path& file, 
   OutputFile output(file);
   try {
     Hdf5MemoryFile memory;
-    write_all(memory.root(&packing), solution);
+    tbb::task_arena arena(thread_count(solution.settings.threads));
+    arena.execute([&] { write_all(memory.root(&packing), solution); });
     const std::string_view bytes = memory.close();
     output.write(bytes);
     output.write(seal_of(bytes));
