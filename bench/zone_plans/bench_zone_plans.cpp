@@ -1,5 +1,5 @@
-// What zones that fit the light bring: the error of zones at points, of light gathered from them and of
-// pictures, against their number and against time, for zones of one size and for those of build_zones.
+// What zones that fit the light bring: the error of zones at points, of light gathered from them, of pictures
+// and of exports, against their number and against time, for zones of one size and for those of build_zones.
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "bench/program_options.h"
+#include "bench/zone_plans/export_check.h"
 #include "bench/zone_plans/picture_check.h"
 #include "bench/zone_plans/plan_plot.h"
 #include "bench/zone_plans/plan_table.h"
@@ -27,6 +28,7 @@ using namespace reemit;
 using namespace reemit::bench;
 
 constexpr std::size_t kProbes = 16'384;
+constexpr std::size_t kExportPoints = 8'192;
 const std::atomic<bool> kNever{false};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -63,6 +65,9 @@ PlanRow measure(const Scene& scene, const Plan& plan, const SolverSettings& sett
   row.points = discretisation_error(room, s, stop, kProbes).value_or(0);
   if (const auto gathered = estimate_zone_bias(room, s, stop)) row.gathered = gathered->rms;
   row.picture_zones = pictures.error(room, s);
+  const ExportDifference exported = export_difference(room, s, kExportPoints);
+  row.exported = exported.rms;
+  row.wrong_area = exported.wrong_area;
   return row;
 }
 

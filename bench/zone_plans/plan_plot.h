@@ -18,6 +18,8 @@ struct PlanRow {
   double points = 0;         ///< Points against their zones, relative; 0 = not known.
   double gathered = 0;       ///< Error that zones leave in gathered light, relative; 0 = not known.
   double picture_zones = 0;  ///< Error of a picture that shows the zones, relative.
+  double exported = 0;       ///< Export against points between its vertices, relative.
+  double wrong_area = 0;     ///< Share of its area where that is far off (ExportDifference).
 };
 
 /// Draws the picture and point errors against zones (`by_time` false) or against seconds of zoning and

@@ -10,7 +10,7 @@ namespace reemit::bench {
 namespace {
 
 constexpr const char* kFitting = "fit the light";
-constexpr std::size_t kColumns = 11;
+constexpr std::size_t kColumns = 13;
 
 std::string percent(double value) {
   return value > 0 ? fmt::format("{:.2f} %", 100 * value) : "-";
@@ -35,14 +35,14 @@ double fraction(const std::string& text) {
 std::string plan_table_head() {
   return "| room | zones | number | lit | zoning [s] | solve [s] | Mray/s | noise | points | gathered light "
          "| "
-         "picture of zones |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+         "picture of zones | export | wrong area |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 }
 
 std::string row_text(const PlanRow& r) {
-  return fmt::format("| {} | {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.3f} % | {} | {} | {} |\n", r.room,
-                     r.fitting ? kFitting : "of one size", r.zones, r.lit, r.zoning_s, r.solve_s,
+  return fmt::format("| {} | {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.3f} % | {} | {} | {} | {} | {} |\n",
+                     r.room, r.fitting ? kFitting : "of one size", r.zones, r.lit, r.zoning_s, r.solve_s,
                      r.rays_per_s / 1e6, 100 * r.noise, percent(r.points), percent(r.gathered),
-                     percent(r.picture_zones));
+                     percent(r.picture_zones), percent(r.exported), percent(r.wrong_area));
 }
 
 std::vector<PlanRow> read_plan_table(const std::filesystem::path& file) {
@@ -57,7 +57,7 @@ std::vector<PlanRow> read_plan_table(const std::filesystem::path& file) {
       if (c.size() != kColumns) throw std::invalid_argument("columns");
       rows.push_back({c[0], c[1] == kFitting, std::stoul(c[2]), std::stoul(c[3]), std::stod(c[4]),
                       std::stod(c[5]), 1e6 * std::stod(c[6]), fraction(c[7]), fraction(c[8]), fraction(c[9]),
-                      fraction(c[10])});
+                      fraction(c[10]), fraction(c[11]), fraction(c[12])});
     } catch (const std::logic_error&) {
       throw std::runtime_error(
           fmt::format("{}:{}: this is no line of a table of zones", file.string(), number));
