@@ -1,7 +1,6 @@
 #include "solver/solution/hdf5_group.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <limits>
@@ -107,9 +106,10 @@ Hdf5Id dataset_properties(const Hdf5Shape& shape, std::size_t value_size) {
 // What H5Dwrite_chunk is told of the filters that were left out.
 constexpr std::uint32_t kAllFilters = 0;
 constexpr std::uint32_t kNoFilters = 0xffffffff;
-// Chunks that are packed at once: enough for many threads, few enough to be done in the moment that Packing
-// allows.
+// What is packed at once: enough for many threads, little enough to be done in the moment that Packing
+// allows, and to fit beside a large solution, whose rows are chunks of megabytes.
 constexpr std::uint64_t kChunksAtOnce = 16;
+constexpr std::uint64_t kBytesAtOnce = std::uint64_t{1} << 25;
 
 // Writes a dataset chunk by chunk, packed side by side; those for which `packs` is false without filters.
 template <class Packs>
@@ -118,15 +118,16 @@ void write_chunks(hid_t dataset, std::span<const std::byte> bytes, const Hdf5Sha
   const std::size_t of_row = row_bytes(shape, value_size);
   const std::uint64_t rows = rows_of_chunk(shape, value_size);
   const std::uint64_t chunks = (shape[0] + rows - 1) / rows;
+  const std::uint64_t at_once = std::clamp<std::uint64_t>(kBytesAtOnce / (rows * of_row), 1, kChunksAtOnce);
   const auto whole_chunk = [&](std::uint64_t c) {
     const auto found = bytes.subspan(c * rows * of_row, std::min(rows, shape[0] - c * rows) * of_row);
     std::vector<std::byte> whole(rows * of_row);  // the last one may be larger than what is left
     std::copy(found.begin(), found.end(), whole.begin());
     return whole;
   };
-  std::array<std::vector<std::byte>, kChunksAtOnce> stored;
-  for (std::uint64_t first = 0; first < chunks; first += kChunksAtOnce) {
-    const std::uint64_t end = std::min(first + kChunksAtOnce, chunks);
+  std::vector<std::vector<std::byte>> stored(at_once);
+  for (std::uint64_t first = 0; first < chunks; first += at_once) {
+    const std::uint64_t end = std::min(first + at_once, chunks);
     const bool is_packed = packs();
     tbb::parallel_for(first, end, [&](std::uint64_t c) {
       std::vector<std::byte> whole = whole_chunk(c);

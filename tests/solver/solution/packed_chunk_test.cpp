@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/solution/hdf5_group.h"
+#include "solver/solution/hdf5_memory_file.h"
 
 namespace reemit {
 namespace {
@@ -89,6 +89,17 @@ TEST(PackedChunk, IsWhatHdf5Stores) {
   expect_like_hdf5<std::uint8_t>(H5T_STD_U8LE);
   expect_like_hdf5<float>(H5T_IEEE_F32LE);
   expect_like_hdf5<double>(H5T_IEEE_F64LE);
+}
+
+/// More chunks than are packed at once, the last of them not full; and rows that are chunks each.
+TEST(PackedChunk, ManyOfThemComeBack) {
+  const Hdf5MemoryFile file;
+  const Hdf5Group root = file.root();
+  const std::vector<float> values = smooth_values<float>(3'000'003);
+  root.write<float>("long", values, {values.size()}, "", "values");
+  EXPECT_EQ(root.read<float>("long", {values.size()}), values);
+  root.write<float>("rows", values, {3, values.size() / 3}, "", "values");
+  EXPECT_EQ(root.read<float>("rows", {3, values.size() / 3}), values);
 }
 
 TEST(PackedChunk, DamageIsNoticed) {
