@@ -17,8 +17,8 @@
 #include "solver/run/examination.h"
 #include "solver/run/prepared_room.h"
 #include "solver/run/schedule.h"
-#include "solver/run/thread_count.h"
 #include "solver/shoot/batches_ahead.h"
+#include "solver/solution/thread_count.h"
 #include "solver/tally/batch_statistics.h"
 #include "solver/tally/stop_rule.h"
 

@@ -7,7 +7,6 @@
 
 #include "scenes/io/common/output_file.h"
 #include "scenes/model/error.h"
-#include "solver/run/thread_count.h"
 #include "solver/solution/audit_group.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/gather_plan_group.h"
@@ -17,6 +16,7 @@
 #include "solver/solution/solution_file.h"
 #include "solver/solution/solution_layout.h"
 #include "solver/solution/texture_group.h"
+#include "solver/solution/thread_count.h"
 
 namespace reemit {
 namespace {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <tbb/task_arena.h>
 
-#include "solver/run/thread_count.h"
 #include "solver/solution/solution_file.h"
+#include "solver/solution/thread_count.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/output_path.h"

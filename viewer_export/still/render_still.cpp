@@ -13,7 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/stop_token.h"
-#include "solver/run/thread_count.h"
+#include "solver/solution/thread_count.h"
 #include "viewer_export/output/refinement.h"
 #include "viewer_export/still/smoothed_refinement.h"
 #include "viewer_export/still/tile_renderer.h"

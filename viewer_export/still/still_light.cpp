@@ -5,7 +5,7 @@
 
 #include <tbb/task_arena.h>
 
-#include "solver/run/thread_count.h"
+#include "solver/solution/thread_count.h"
 #include "viewer_export/still/film.h"
 
 namespace reemit {

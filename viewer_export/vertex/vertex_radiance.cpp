@@ -13,7 +13,7 @@
 #include "scenes/io/common/up_direction.h"
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
-#include "solver/run/thread_count.h"
+#include "solver/solution/thread_count.h"
 #include "solver/tally/replicates.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
 #include "viewer_export/vertex/vertex_refinement.h"
