@@ -9,12 +9,11 @@
 
 namespace reemit {
 
-void plan_uneven_zones(const Room& room, const StopToken& stop, Solution& solution) {
+void plan_uneven_zones(const RadianceField& field, const StopToken& stop, Solution& solution) {
   GatherPlan& plan = solution.gather_plan;
   plan.seed = solution.settings.seed;
   plan.uneven.clear();
-  const RadianceField field(room, solution, ZoneSums::kGroups);
-  const DirectLight direct(room);
+  const DirectLight direct(field.room());
   std::vector<std::uint8_t> uneven = uneven_zones(field, direct, plan.seed, &stop);
   if (!stop.requested()) plan.uneven = std::move(uneven);
 }

@@ -18,13 +18,15 @@ constexpr double kDarkZone = 0.05;
 /// Share of a first ray of each point that get far, above which nothing is taken to hide a part of the zone.
 constexpr double kOpen = 0.9;
 
-enum SamplerNumber : int { kPlaces, kGlance, kOneLook, kOtherLook };
-
 }  // namespace
 
 SeenLight::SeenLight(const RadianceField& field, const DirectLight& direct, std::span<const float> reflected,
                      std::span<const double> scale, std::uint64_t seed)
     : field_(&field), direct_(&direct), reflected_(reflected), scale_(scale), seed_(seed) {}
+
+PointSampler SeenLight::sampler(ZoneId zone, SamplerNumber number) const {
+  return {seed_, RngPurpose::kSeenLight, zone.index(), number, std::countr_zero(unsigned{kPoints})};
+}
 
 bool SeenLight::is_dark_end(ZoneId zone) const {
   const float* radiance = &reflected_[zone.index() * scale_.size()];
@@ -51,34 +53,36 @@ SeenLight::Points SeenLight::points_of(ZoneId zone, const PointSampler& place) c
   return points;
 }
 
+void SeenLight::set_ray(const SurfacePoint& x, const std::array<float, 2>& u, int lane, Ray16& rays) const {
+  rays.set(lane, ray_origin(field_->room().rays(), x), sample_lambert(x.normal, u[0], u[1]));
+}
+
+SeenLight::Ends SeenLight::trace(const Ray16& rays, std::size_t count) const {
+  const Room& room = field_->room();
+  Ends ends;
+  // Without second looks: a ray in a thousand that slips through a hairline changes no choice.
+  room.rays().closest16(rays, static_cast<int>(count), ends.hits);
+  room.mesh().zones_at16(ends.hits.points(), ends.zone);
+  return ends;
+}
+
 void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& sampler, int ray, int rays,
                          Look& look) const {
-  const Room& room = field_->room();
   Ray16 packet;
-  for (int i = 0; i < kPoints; ++i) {
-    const SurfacePoint& x = points[static_cast<std::size_t>(i)];
-    const std::array<float, 2> u = sampler.hemisphere(i, ray, rays);
-    packet.set(i, ray_origin(room.rays(), x), sample_lambert(x.normal, u[0], u[1]));
-  }
-  // Without second looks: a ray in a thousand that slips through a hairline changes no choice.
-  Hit16 hits;
-  room.rays().closest16(packet, kPoints, hits);
+  for (int i = 0; i < kPoints; ++i)
+    set_ray(points[static_cast<std::size_t>(i)], sampler.hemisphere(i, ray, rays), i, packet);
+  const Ends ends = trace(packet, kPoints);
   const float reach = field_->zone_size(zone);
   const std::size_t bands = scale_.size();
   const float share = 1.0F / static_cast<float>(rays);
   for (std::size_t i = 0; i < kPoints; ++i) {
-    if (hits.triangle[i] == RayTracer::kMiss) {
-      look.far += share / kPoints;
-      continue;
-    }
-    const ZoneId end = room.mesh().zone_at(TriangleId(hits.triangle[i]), hits.u[i], hits.v[i], hits.front[i]);
-    if (!end.valid()) continue;
-    const float* radiance = &reflected_[end.index() * bands];
+    const bool is_far = ends.gets_far(i, reach);
+    if (is_far) look.far += share / kPoints;
+    if (!ends.is_on_zone(i)) continue;
+    const float* radiance = &reflected_[ends.zone[i] * bands];
     for (std::size_t b = 0; b < bands; ++b)
       look.irradiance[i * bands + b] += std::numbers::pi_v<float> * share * radiance[b];
-    if (!(hits.distance[i] > reach)) continue;
-    look.far += share / kPoints;
-    if (!is_dark_end(end)) look.open[i] += share;
+    if (is_far && !is_dark_end(ZoneId(ends.zone[i]))) look.open[i] += share;
   }
 }
 
@@ -119,21 +123,17 @@ SeenLight::Half SeenLight::half_of(const std::array<float, kPoints>& open,
 }
 
 SeenLight::Zone SeenLight::look(ZoneId zone) const {
-  const auto sampler = [&](SamplerNumber number) {
-    return PointSampler(seed_, RngPurpose::kSeenLight, zone.index(), number,
-                        std::countr_zero(unsigned{kPoints}));
-  };
-  const Points points = points_of(zone, sampler(kPlaces));
+  const Points points = points_of(zone, sampler(zone, kPlaces));
   Look glance;
   glance.irradiance.assign(kPoints * scale_.size(), 0.0F);
-  look_out(zone, points, sampler(kGlance), 0, 1, glance);
+  look_out(zone, points, sampler(zone, kGlance), 0, 1, glance);
   const double openness = std::accumulate(glance.open.begin(), glance.open.end(), 0.0) / kPoints;
   // Where they end on, however dark: where packets are few, many zones are dark that need not be.
   if (glance.far > kOpen) return {openness, 0};
-  add_direct(points, sampler(kGlance), 1, glance);
+  add_direct(points, sampler(zone, kGlance), 1, glance);
   if (is_dark_zone(zone, glance)) return {};
-  const Look one = look_around(zone, points, sampler(kOneLook));
-  const Look other = look_around(zone, points, sampler(kOtherLook));
+  const Look one = look_around(zone, points, sampler(zone, kOneLook));
+  const Look other = look_around(zone, points, sampler(zone, kOtherLook));
   const float* reflectance = field_->room().zone_reflectance(zone);
   Zone seen;
   double lit_bands = 0;
@@ -149,6 +149,30 @@ SeenLight::Zone SeenLight::look(ZoneId zone) const {
   }
   if (lit_bands > 0) seen.misread /= lit_bands;
   return seen;
+}
+
+void SeenLight::look(ZoneId first, std::span<Zone> seen) const {
+  constexpr int kEach = kPoints / kTogether;
+  const Room& room = field_->room();
+  Ray16 rays;
+  for (std::size_t z = 0; z < seen.size(); ++z) {
+    const ZoneId zone(first.index() + z);
+    const PointSampler numbers = sampler(zone, kGlance);
+    for (int i = 0; i < kEach; ++i)
+      set_ray(point_in_zone(room, zone, numbers.place(i)), numbers.hemisphere(i, 0, 1),
+              kEach * static_cast<int>(z) + i, rays);
+  }
+  const std::size_t count = seen.size() * kEach;
+  const Ends ends = trace(rays, count);
+  bool all_get_far = true;
+  for (std::size_t i = 0; i < count && all_get_far; ++i)
+    all_get_far = ends.gets_far(i, field_->zone_size(ZoneId(first.index() + i / kEach)));
+  for (std::size_t z = 0; z < seen.size(); ++z) {
+    seen[z] = all_get_far ? Zone{} : look(ZoneId(first.index() + z));
+    if (!all_get_far) continue;
+    for (std::size_t i = z * kEach; i < (z + 1) * kEach; ++i)
+      if (ends.is_on_zone(i) && !is_dark_end(ZoneId(ends.zone[i]))) seen[z].open += 1.0 / kEach;
+  }
 }
 
 }  // namespace reemit

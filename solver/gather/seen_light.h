@@ -36,12 +36,18 @@ class SeenLight {
   /// What the zone itself has in `reflected` is not looked at: where packets are few, that would choose zones
   /// that have met more of them than they should.
   Zone look(ZoneId zone) const;
+  /// Zones whose first rays are traced together.
+  static constexpr std::size_t kTogether = 4;
+  /// Of the zones from `first` on, at most kTogether: where all of four rays of each get far, that is all
+  /// that is looked at, and `open` is what they tell; else each gets its own look.
+  void look(ZoneId first, std::span<Zone> seen) const;
 
  private:
   static constexpr int kPoints = 16;     // of a zone; their rays are traced together
   static constexpr int kRays = 4;        // of a point in one look
   static constexpr int kShadowRays = 2;  // likewise
   using Points = std::array<SurfacePoint, kPoints>;
+  enum SamplerNumber : int { kPlaces, kGlance, kOneLook, kOtherLook };
 
   /// What one look finds, by point.
   struct Look {
@@ -55,11 +61,26 @@ class SeenLight {
     double covariance;  // of openness and irradiance [W/m2]
   };
 
+  PointSampler sampler(ZoneId zone, SamplerNumber number) const;
   /// As what a ray ends on: by what the zone has in reflected_.
   bool is_dark_end(ZoneId zone) const;
   /// As a zone that is looked at: by what it reflects of the light that the glance found.
   bool is_dark_zone(ZoneId zone, const Look& glance) const;
   Points points_of(ZoneId zone, const PointSampler& place) const;
+  /// What rays end on, by lane.
+  struct Ends {
+    Hit16 hits;
+    alignas(64) std::uint32_t zone[16];
+
+    bool leaves(std::size_t lane) const { return hits.triangle[lane] == RayTracer::kMiss; }
+    bool is_on_zone(std::size_t lane) const { return !leaves(lane) && zone[lane] != ZoneMesh::kNone; }
+    /// Out of the room, or to a zone farther away than that [normalised units].
+    bool gets_far(std::size_t lane, float reach) const {
+      return leaves(lane) || (is_on_zone(lane) && hits.distance[lane] > reach);
+    }
+  };
+  void set_ray(const SurfacePoint& x, const std::array<float, 2>& u, int lane, Ray16& rays) const;
+  Ends trace(const Ray16& rays, std::size_t count) const;
   /// One ray of each point, the sampler's `ray` of `rays`.
   void look_out(ZoneId zone, const Points& points, const PointSampler& sampler, int ray, int rays,
                 Look& look) const;

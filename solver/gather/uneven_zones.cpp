@@ -1,6 +1,7 @@
 #include "solver/gather/uneven_zones.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -29,17 +30,21 @@ constexpr double kBright = 16;
 constexpr double kMisread = 0.002;
 /// Share of the area that gather rays are continued from at most: bounds what that costs.
 constexpr double kMostArea = 0.2;
-/// Points per zone and shadow rays per point of each of two halves: of all zones, and of those that the first
-/// look leaves in doubt.
+/// Points per zone and shadow rays per point of each of two halves: of zones that follow each other, which
+/// mostly lie beside each other, as if they were one; of each where these differ; and of those that this
+/// leaves in doubt.
 struct Look {
   int points;
   int rays;
 };
+constexpr Look kLookAtGroup{2, 1};
 constexpr Look kFirstLook{4, 1};
 constexpr Look kSecondLook{16, 2};
-/// Share of the limits from which on a zone gets a second look.
+/// Share of the limits from which on the zones of a group are looked at one by one, and from which on a zone
+/// gets a second look.
+constexpr double kDoubtInGroup = 0.25;
 constexpr double kDoubt = 0.5;
-constexpr int kHalves = 2;
+constexpr std::size_t kHalves = 2;
 
 /// Direct light inside a zone, as reflected radiance over the room's mean, of the band that matters most.
 struct Spread {
@@ -82,27 +87,28 @@ class Looker {
          std::uint64_t seed)
       : room_(field.room()), field_(field), direct_(direct), seed_(seed), mean_(mean) {}
 
-  Spread look(ZoneId zone, const Look& effort) const {
+  /// Over `count` zones from `first` on, each with so many points.
+  Spread look(std::size_t first, std::size_t count, const Look& effort) const {
     const std::size_t bands = field_.band_count();
-    const float* reflectance = room_.zone_reflectance(zone);
-    const auto points = static_cast<std::size_t>(effort.points);
-    const std::vector<float> weight(bands, 1.0F / static_cast<float>(effort.rays));
-    std::vector<float> found(kHalves * points * bands, 0.0F);  // by half, point and band
-    const PointSampler place = sampler(zone, kHalves, effort);
+    const std::size_t points = count * static_cast<std::size_t>(effort.points);
+    std::vector<float> weight(bands);
+    std::vector<float> found(kHalves * points * bands, 0.0F);  // by half, point and band; over the mean
     float* next = found.data();
-    for (int half = 0; half < kHalves; ++half) {
-      const PointSampler light = sampler(zone, half, effort);
+    for (std::size_t z = first; z < first + count; ++z) {
+      const ZoneId zone(z);
+      weigh(zone, effort.rays, weight);
+      const std::array<PointSampler, kHalves> samplers{sampler(zone, 0, effort), sampler(zone, 1, effort)};
       for (int i = 0; i < effort.points; ++i, next += bands) {
-        const SurfacePoint x = point_in_zone(room_, zone, place.place(i));
-        const auto shadow = [&](int ray) { return light.light(i, ray, effort.rays); };
-        direct_.add_samples(x, effort.rays, shadow, weight.data(), next);
+        const SurfacePoint x = point_in_zone(room_, zone, samplers[0].place(i));
+        for (std::size_t half = 0; half < kHalves; ++half) {
+          const auto shadow = [&](int ray) { return samplers[half].light(i, ray, effort.rays); };
+          direct_.add_samples(x, effort.rays, shadow, weight.data(), next + half * points * bands);
+        }
       }
     }
     Spread worst;
     for (std::size_t b = 0; b < bands; ++b) {
-      if (!(mean_[b] > 0)) continue;
-      const double scale = lambert_brdf_per_sr(reflectance[b]) / mean_[b];
-      const Spread spread = spread_of(&found[b], points, bands, scale);
+      const Spread spread = spread_of(&found[b], points, bands);
       worst.mean = std::max(worst.mean, spread.mean);
       worst.variance = std::max(worst.variance, spread.variance);
     }
@@ -115,11 +121,19 @@ class Looker {
             std::countr_zero(static_cast<unsigned>(effort.points))};
   }
 
-  static Spread spread_of(const float* values, std::size_t points, std::size_t bands, double scale) {
+  /// What makes reflected radiance over the room's mean out of the irradiance of one of so many rays; 0 in
+  /// bands without light.
+  void weigh(ZoneId zone, int rays, std::vector<float>& weight) const {
+    const float* reflectance = room_.zone_reflectance(zone);
+    for (std::size_t b = 0; b < weight.size(); ++b)
+      weight[b] =
+          mean_[b] > 0 ? static_cast<float>(lambert_brdf_per_sr(reflectance[b]) / (mean_[b] * rays)) : 0.0F;
+  }
+
+  static Spread spread_of(const float* values, std::size_t points, std::size_t bands) {
     LightSpread light;
     for (std::size_t i = 0; i < points; ++i)
-      light.add(scale * static_cast<double>(values[i * bands]),
-                scale * static_cast<double>(values[(points + i) * bands]));
+      light.add(static_cast<double>(values[i * bands]), static_cast<double>(values[(points + i) * bands]));
     return {light.mean(), light.variance()};
   }
 
@@ -192,13 +206,18 @@ std::vector<std::uint8_t> uneven_zones(const RadianceField& field, const DirectL
   const SeenLight seen_light(field, direct, reflected, mean, seed);
   std::vector<SeenLight::Zone> seen(mesh.zone_count());
   std::vector<double> harm(mesh.zone_count(), 0.0);
-  tbb::parallel_for(std::size_t{0}, mesh.zone_count(), [&](std::size_t z) {
+  constexpr std::size_t kGroup = SeenLight::kTogether;
+  tbb::parallel_for(std::size_t{0}, (mesh.zone_count() + kGroup - 1) / kGroup, [&](std::size_t group) {
     if (is_to_stop()) return;
-    const ZoneId zone(z);
-    seen[z] = seen_light.look(zone);
-    if (unevenness(looker.look(zone, kFirstLook)) <= kDoubt) return;
-    const double looked_at = unevenness(looker.look(zone, kSecondLook));
-    if (looked_at > 1) harm[z] = looked_at;
+    const std::size_t first = kGroup * group;
+    const std::size_t count = std::min(kGroup, mesh.zone_count() - first);
+    seen_light.look(ZoneId(first), std::span(seen).subspan(first, count));
+    if (unevenness(looker.look(first, count, kLookAtGroup)) <= kDoubtInGroup) return;
+    for (std::size_t z = first; z < first + count; ++z) {
+      if (unevenness(looker.look(z, 1, kFirstLook)) <= kDoubt) continue;
+      const double looked_at = unevenness(looker.look(z, 1, kSecondLook));
+      if (looked_at > 1) harm[z] = looked_at;
+    }
   });
   if (is_to_stop()) return uneven;
   const Misreading misreading(mesh, reflected, mean, seen);

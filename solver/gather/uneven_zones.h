@@ -15,9 +15,9 @@ namespace reemit {
 /// - A part of the zone is hidden from the room and darker or brighter than the rest (SeenLight).
 /// Found with rays of its own: the choice does not follow the noise of the zones, so that continuing gather
 /// rays there favours no side. The zones with the largest differences come first where they would make up
-/// more than a fifth of the area. 8 shadow rays and 16 others per zone, ten times that for candidates; the
-/// same for any number of threads. When `stop` (may be null) is requested it returns early, and what it
-/// returns means nothing.
+/// more than a fifth of the area. Four shadow rays and four others per zone; 8 and 16 more where those of
+/// zones that follow each other leave a doubt, ten times that for candidates. The same for any number of
+/// threads. When `stop` (may be null) is requested it returns early, and what it returns means nothing.
 std::vector<std::uint8_t> uneven_zones(const RadianceField& field, const DirectLight& direct,
                                        std::uint64_t seed, const StopToken* stop = nullptr);
 

@@ -94,7 +94,7 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
   return worst;
 }
 
-std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& solution,
+std::optional<ZoneBias> estimate_zone_bias(const RadianceField& field, const Solution& solution,
                                            const StopToken& stop) {
   if (stop.requested()) return std::nullopt;
   const std::uint64_t seed = solution.settings.seed;
@@ -102,7 +102,7 @@ std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& sol
   const double offset = static_cast<double>(rng.uniform4(0, kBiasReplicates, 0)[0]);
   const std::vector<ZoneProbe> probes = choose_probes(solution, ZoneBiasEffort::kPoints, offset);
   if (probes.size() < ZoneBiasEffort::kPoints) return std::nullopt;
-  const RadianceField field(room, solution, ZoneSums::kGroups);
+  const Room& room = field.room();
   const DirectLight direct(room);
   const HemisphereGather gather(field, direct, GatherSettings{.seed = seed, .plan = &solution.gather_plan},
                                 &stop);

@@ -37,7 +37,9 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
                             const StopToken* stop = nullptr);
 
 /// The same for light gathered all over the surfaces of the room, over its mean reflected radiance there.
-/// Nothing without light, or when `stop` is requested before it is done.
-std::optional<ZoneBias> estimate_zone_bias(const Room& room, const Solution& solution, const StopToken& stop);
+/// `field`: of the solution, in as many parts as there are. Nothing without light, or when `stop` is
+/// requested before it is done.
+std::optional<ZoneBias> estimate_zone_bias(const RadianceField& field, const Solution& solution,
+                                           const StopToken& stop);
 
 }  // namespace reemit

@@ -7,6 +7,7 @@
 #include "scenes/model/interrupted.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/plan_gathers.h"
+#include "solver/gather/radiance_field.h"
 #include "solver/gather/small_zones.h"
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/losses/lost_light.h"
@@ -43,9 +44,10 @@ void examine_zones(const Room& room, const Schedule& schedule, const std::atomic
   const StopToken stop = solution.settings.method == SolveMethod::kMatrix
                              ? StopToken(interrupt)
                              : schedule.token(schedule.limit_s + kMoment, interrupt);
-  plan_uneven_zones(room, stop, solution);
+  const RadianceField field(room, solution, ZoneSums::kGroups);
+  plan_uneven_zones(field, stop, solution);
   solution.record.discretisation = discretisation_error(room, solution, stop);
-  solution.record.gather_bias = estimate_zone_bias(room, solution, stop);
+  solution.record.gather_bias = estimate_zone_bias(field, solution, stop);
   plan_caustic_packets(room, stop, solution);
 }
 

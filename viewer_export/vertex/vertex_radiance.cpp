@@ -166,9 +166,10 @@ VertexData gather_vertices(const Room& room, const Solution& solution, const Ver
                            const VertexProgressCallback& progress, const std::atomic<bool>& interrupt) {
   check(settings);
   const Scene& scene = room.scene();
-  const VertexRings rings(room.surfaces(), solution, settings.all_zones);
-  VertexData data = make_vertices(scene, solution, rings);
   tbb::task_arena arena(thread_count(settings.threads));
+  const VertexRings rings =
+      arena.execute([&] { return VertexRings(room.surfaces(), solution, settings.all_zones); });
+  VertexData data = make_vertices(scene, solution, rings);
   arena.execute([&] {
     const VertexGatherer gatherer(room, solution, rings, settings, VertexRefinement::most_points(settings),
                                   StopToken(interrupt));

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include "mesh/zones/zone_cells.h"
 #include "viewer_export/vertex/kept_cells.h"
 
@@ -15,13 +18,23 @@ Vec3 to_vec3(const OpenMesh::Vec3d& v) {
   return {v[0], v[1], v[2]};
 }
 
+/// By zone, all bands together [W/m2].
+std::vector<double> irradiance_of_zones(const Solution& solution) {
+  std::vector<double> irradiance(solution.mesh.zone_count(), 0.0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, irradiance.size(), 4096), [&](const auto& range) {
+    for (std::size_t z = range.begin(); z != range.end(); ++z)
+      for (std::size_t b = 0; b < solution.bands.count(); ++b)
+        irradiance[z] += solution.irradiance(ZoneId(z), b).mean;
+  });
+  return irradiance;
+}
+
 /// Incident power that a packet brought on average [W]; 0 where zones are known exactly.
-double watts_per_packet(const Solution& solution) {
+double watts_per_packet(const Solution& solution, const std::vector<double>& irradiance) {
   if (solution.record.rays == 0 || solution.settings.method == SolveMethod::kMatrix) return 0;
   double power = 0;
-  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
-    for (std::size_t b = 0; b < solution.bands.count(); ++b)
-      power += solution.mesh.zone_area(ZoneId(z)) * solution.irradiance(ZoneId(z), b).mean;
+  for (std::size_t z = 0; z < irradiance.size(); ++z)
+    power += solution.mesh.zone_area(ZoneId(z)) * irradiance[z];
   return power / static_cast<double>(solution.record.rays);
 }
 
@@ -30,19 +43,14 @@ double watts_per_packet(const Solution& solution) {
 /// line of contact, along which faces are cut, has such zones on one side and visible ones on the other, and
 /// their mean would draw a dark border around every thing. Zones that are dark only because packets happened
 /// to miss them stay in. A ring that is dark all around is left as it is.
-void leave_out_covered(const Solution& solution, double watts, std::size_t first,
+void leave_out_covered(const std::vector<double>& irradiance_of_zone, double watts, std::size_t first,
                        std::vector<RingCell>& rings) {
   /// Irradiance over the mean of the ring below which a zone is covered. Shadows on zones in sight may be as
   /// dark; nothing is lost there, as light is gathered beside the vertex and not all over the zones.
   constexpr double kCovered = 0.1;
   /// Packets that the mean of the ring stands for on a zone: odds of 1 in 10,000,000 to get a tenth of that.
   constexpr double kSureOf = 20;
-  const std::size_t bands = solution.bands.count();
-  const auto irradiance = [&](const RingCell& ring) {
-    double sum = 0;
-    for (std::size_t b = 0; b < bands; ++b) sum += solution.irradiance(ring.zone, b).mean;
-    return sum;
-  };
+  const auto irradiance = [&](const RingCell& ring) { return irradiance_of_zone[ring.zone.index()]; };
   double power = 0;
   double area = 0;
   for (std::size_t i = first; i < rings.size(); ++i) {
@@ -57,6 +65,13 @@ void leave_out_covered(const Solution& solution, double watts, std::size_t first
   rings.erase(std::remove_if(rings.begin() + static_cast<std::ptrdiff_t>(first), rings.end(), covered),
               rings.end());
 }
+
+/// Rings of vertices that follow each other in the topology, empty for those that are left out.
+struct RingBlock {
+  std::vector<std::size_t> sizes;
+  std::vector<RingCell> rings;
+};
+constexpr std::size_t kVerticesPerBlock = 1024;
 
 double turn_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 0.5 * (b - a).cross(c - a).norm();
@@ -104,24 +119,40 @@ VertexRings::VertexRings(const SurfaceModel& surfaces, const Solution& solution,
   const ZoneTopology topology = make_zone_topology(mesh, solution.mesh_settings.crease_angle_deg);
   const ZoneCells cells(mesh);
   const std::vector<bool> kept = kept_cells(surfaces, solution, cells, all_zones);
-  const double watts = watts_per_packet(solution);
+  const std::vector<double> irradiance = irradiance_of_zones(solution);
+  const double watts = watts_per_packet(solution, irradiance);
+  std::vector<RingBlock> blocks((topology.n_vertices() + kVerticesPerBlock - 1) / kVerticesPerBlock);
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    const std::size_t first = i * kVerticesPerBlock;
+    const std::size_t last = std::min(first + kVerticesPerBlock, topology.n_vertices());
+    for (std::size_t v = first; v < last; ++v) {
+      const OpenMesh::VertexHandle vertex(static_cast<int>(v));
+      const Vec3 position = to_vec3(topology.point(vertex));
+      std::vector<RingCell>& rings = blocks[i].rings;
+      const std::size_t begin = rings.size();
+      for (auto face = topology.cvf_iter(vertex); face.is_valid(); ++face) {
+        const auto c = static_cast<std::size_t>(face->idx());
+        if (!kept[c]) continue;
+        const SideCell cell = cells.cell(c);
+        rings.push_back({cells.zone(c), cell, mesh.barycentric_of(cell.triangle, position), cells.area(c)});
+      }
+      if (rings.size() > begin) leave_out_covered(irradiance, watts, begin, rings);
+      blocks[i].sizes.push_back(rings.size() - begin);
+    }
+  });
   std::vector<std::uint32_t> number(topology.n_vertices(), kLeftOut);
   first_.push_back(0);
-  for (const auto vertex : topology.vertices()) {
-    const Vec3 position = to_vec3(topology.point(vertex));
-    for (auto face = topology.cvf_iter(vertex); face.is_valid(); ++face) {
-      const auto i = static_cast<std::size_t>(face->idx());
-      if (!kept[i]) continue;
-      const SideCell cell = cells.cell(i);
-      rings_.push_back({cells.zone(i), cell, mesh.barycentric_of(cell.triangle, position), cells.area(i)});
-    }
-    if (rings_.size() == first_.back()) continue;
-    leave_out_covered(solution, watts, first_.back(), rings_);
-    number[static_cast<std::size_t>(vertex.idx())] = static_cast<std::uint32_t>(positions_.size());
-    positions_.push_back(position);
+  for (std::size_t v = 0; v < topology.n_vertices(); ++v) {
+    const std::size_t size = blocks[v / kVerticesPerBlock].sizes[v % kVerticesPerBlock];
+    if (size == 0) continue;
+    const OpenMesh::VertexHandle vertex(static_cast<int>(v));
+    number[v] = static_cast<std::uint32_t>(positions_.size());
+    positions_.push_back(to_vec3(topology.point(vertex)));
     normals_.push_back(to_vec3(topology.normal(vertex)));
-    first_.push_back(rings_.size());
+    first_.push_back(first_.back() + size);
   }
+  rings_.reserve(first_.back());
+  for (const RingBlock& block : blocks) rings_.insert(rings_.end(), block.rings.begin(), block.rings.end());
   add_triangles(topology, kept, number);
 }
 

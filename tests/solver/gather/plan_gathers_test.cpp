@@ -19,7 +19,8 @@
 namespace reemit {
 namespace {
 
-/// A closed room with a lamp close to its ceiling, a solid, and a small mirror on the floor.
+/// A closed room with a lamp that shines down, one that makes a bright spot on the ceiling close above it, a
+/// solid, and a small mirror on the floor.
 test::RoomBuilder room_with_a_mirror(double mirror_at = 0.2) {
   test::RoomBuilder room;
   const MaterialId wall = room.material("wall", 0.6);
@@ -29,6 +30,7 @@ test::RoomBuilder room_with_a_mirror(double mirror_at = 0.2) {
   room.box(Vec3::Zero(), {3, 3, 2.5}, {wall, wall, wall, wall, wall, wall}, 12);
   room.solid({1, 1, 0.01}, {2, 2, 0.8}, wall, 6);
   room.quad(lamp, {Vec3(1, 1, 2.4), Vec3(1, 2, 2.4), Vec3(2, 2, 2.4), Vec3(2, 1, 2.4)}, 2);
+  room.quad(lamp, {Vec3(1, 1, 2.45), Vec3(1.4, 1, 2.45), Vec3(1.4, 1.4, 2.45), Vec3(1, 1.4, 2.45)}, 1);
   const double x = mirror_at;
   room.quad(silver, {Vec3(x, .2, .1), Vec3(x + .3, .2, .1), Vec3(x + .3, .5, .1), Vec3(x, .5, .1)}, 1);
   return room;
@@ -36,7 +38,7 @@ test::RoomBuilder room_with_a_mirror(double mirror_at = 0.2) {
 
 Solution solved_quickly(const test::RoomBuilder& room) {
   SolverSettings settings;
-  settings.packets = 2'500;  // so few that some zones seem uneven
+  settings.packets = 2'500;
   return solve(room.scene(), room.mesh(), settings, {}, test::kNever);
 }
 
@@ -120,7 +122,7 @@ TEST(PlanGathers, a_run_that_is_stopped_leaves_them_to_others) {
   const Room walls(room.scene(), solution.mesh);
   const std::atomic<bool> stopped{true};
   const StopToken stop(stopped);
-  plan_uneven_zones(walls, stop, solution);
+  plan_uneven_zones(RadianceField(walls, solution, ZoneSums::kGroups), stop, solution);
   plan_caustic_packets(walls, stop, solution);
   EXPECT_TRUE(solution.gather_plan.uneven.empty());
   EXPECT_FALSE(solution.gather_plan.caustics);

@@ -1,5 +1,6 @@
 #include "solver/gather/seen_light.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -36,6 +37,11 @@ class TileUnderPlate {
   }
 
   static constexpr double kTile = 0.5;  ///< Its reflectance.
+
+  const test::RoomBuilder& builder() const { return room_; }
+  ZoneId first_tile_zone(const ZoneMesh& mesh) const {
+    return mesh.first_zone(TriangleId(static_cast<std::uint32_t>(tile_)), true);
+  }
 
   /// Looks at tile zone 0 or 1, 512 times; every surface reflects its reflectance times 1 W/(m2 sr).
   void look(std::uint32_t number, MeanTest& open, MeanTest& misread) const {
@@ -132,6 +138,48 @@ TEST(SeenLight, looks_once_where_most_rays_leave_the_room) {
     EXPECT_EQ(light.seen.look(ZoneId(z)).misread, 0);
   }
   EXPECT_EQ(looked_at, 128);
+}
+
+TEST(SeenLight, zones_looked_at_together_get_their_own_looks_where_something_is_near) {
+  const TileUnderPlate room(1, 0);
+  const EvenlyLitRoom light(room.builder());
+  const ZoneId first = room.first_tile_zone(light.solution.mesh);
+  std::array<SeenLight::Zone, 2> together;
+  light.seen.look(first, together);
+  for (std::size_t z = 0; z < together.size(); ++z) {
+    const SeenLight::Zone alone = light.seen.look(ZoneId(first.index() + z));
+    EXPECT_NE(alone.misread, 0);
+    EXPECT_EQ(together[z].misread, alone.misread);
+    EXPECT_EQ(together[z].open, alone.open);
+  }
+}
+
+/// In a room with nothing in it. Zones of which some rays do not get far pass at times, and are taken to be
+/// quite open then: that may make 1 % of the openness.
+TEST(SeenLight, zones_looked_at_together_need_few_rays_where_nothing_is_near) {
+  test::RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5);
+  room.box(Vec3::Zero(), {3, 2, 1}, {wall, wall, wall, wall, wall, wall}, 16);
+  const EvenlyLitRoom light(room);
+  const std::size_t zones = light.solution.mesh.zone_count();
+  MeanTest difference;
+  std::size_t not_looked_at = 0;
+  for (std::size_t z = 0; z + SeenLight::kTogether <= zones; z += SeenLight::kTogether) {
+    std::array<SeenLight::Zone, SeenLight::kTogether> together;
+    light.seen.look(ZoneId(z), together);
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      const SeenLight::Zone alone = light.seen.look(ZoneId(z + i));
+      if (together[i].misread != 0) {
+        EXPECT_EQ(together[i].misread, alone.misread);
+        continue;
+      }
+      ++not_looked_at;
+      difference.add(together[i].open - alone.open);
+    }
+  }
+  EXPECT_GT(not_looked_at, zones / 4);
+  EXPECT_NEAR(difference.mean(), 0, 0.01);
+  EXPECT_LT(MeanTest::kErrors * difference.standard_error(), 0.01) << "test too weak";
 }
 
 }  // namespace
