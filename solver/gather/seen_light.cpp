@@ -46,15 +46,15 @@ bool SeenLight::is_dark_zone(ZoneId zone, const Look& glance) const {
   return true;
 }
 
-SeenLight::Points SeenLight::points_of(ZoneId zone, const PointSampler& place) const {
-  Points points;
-  for (int i = 0; i < kPoints; ++i)
-    points[static_cast<std::size_t>(i)] = point_in_zone(field_->room(), zone, place.place(i));
-  return points;
+SeenLight::Start SeenLight::start_in(ZoneId zone, const std::array<float, 2>& u) const {
+  const SurfacePoint x = point_in_zone(field_->room(), zone, u);
+  return {x, ray_origin(field_->room().rays(), x), Frame(x.normal)};
 }
 
-void SeenLight::set_ray(const SurfacePoint& x, const std::array<float, 2>& u, int lane, Ray16& rays) const {
-  rays.set(lane, ray_origin(field_->room().rays(), x), sample_lambert(x.normal, u[0], u[1]));
+SeenLight::Points SeenLight::points_of(ZoneId zone, const PointSampler& place) const {
+  Points points;
+  for (int i = 0; i < kPoints; ++i) points[static_cast<std::size_t>(i)] = start_in(zone, place.place(i));
+  return points;
 }
 
 SeenLight::Ends SeenLight::trace(const Ray16& rays, std::size_t count) const {
@@ -70,7 +70,7 @@ void SeenLight::look_out(ZoneId zone, const Points& points, const PointSampler& 
                          Look& look) const {
   Ray16 packet;
   for (int i = 0; i < kPoints; ++i)
-    set_ray(points[static_cast<std::size_t>(i)], sampler.hemisphere(i, ray, rays), i, packet);
+    points[static_cast<std::size_t>(i)].set_ray(sampler.hemisphere(i, ray, rays), i, packet);
   const Ends ends = trace(packet, kPoints);
   const float reach = field_->zone_size(zone);
   const std::size_t bands = scale_.size();
@@ -92,7 +92,7 @@ void SeenLight::add_direct(const Points& points, const PointSampler& sampler, in
   for (int i = 0; i < kPoints; ++i) {
     const auto shadow = [&](int ray) { return sampler.light(i, ray, rays); };
     const auto point = static_cast<std::size_t>(i);
-    direct_->add_samples(points[point], rays, shadow, weight.data(), &look.irradiance[point * bands]);
+    direct_->add_samples(points[point].point, rays, shadow, weight.data(), &look.irradiance[point * bands]);
   }
 }
 
@@ -153,14 +153,13 @@ SeenLight::Zone SeenLight::look(ZoneId zone) const {
 
 void SeenLight::look(ZoneId first, std::span<Zone> seen) const {
   constexpr int kEach = kPoints / kTogether;
-  const Room& room = field_->room();
   Ray16 rays;
   for (std::size_t z = 0; z < seen.size(); ++z) {
     const ZoneId zone(first.index() + z);
     const PointSampler numbers = sampler(zone, kGlance);
     for (int i = 0; i < kEach; ++i)
-      set_ray(point_in_zone(room, zone, numbers.place(i)), numbers.hemisphere(i, 0, 1),
-              kEach * static_cast<int>(z) + i, rays);
+      start_in(zone, numbers.place(i))
+          .set_ray(numbers.hemisphere(i, 0, 1), kEach * static_cast<int>(z) + i, rays);
   }
   const std::size_t count = seen.size() * kEach;
   const Ends ends = trace(rays, count);

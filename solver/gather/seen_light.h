@@ -7,6 +7,7 @@
 #include "solver/gather/direct_light.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/gather/radiance_field.h"
+#include "solver/sampling/warp.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
@@ -46,7 +47,18 @@ class SeenLight {
   static constexpr int kPoints = 16;     // of a zone; their rays are traced together
   static constexpr int kRays = 4;        // of a point in one look
   static constexpr int kShadowRays = 2;  // likewise
-  using Points = std::array<SurfacePoint, kPoints>;
+  /// A point of a zone, and how rays leave it.
+  struct Start {
+    SurfacePoint point;
+    Vec3f origin{0, 0, 0};
+    Frame frame{Vec3f(0, 0, 1)};
+
+    /// One in this direction of the hemisphere of diffuse light.
+    void set_ray(const std::array<float, 2>& u, int lane, Ray16& rays) const {
+      rays.set(lane, origin, frame.to_world(sample_cosine_hemisphere(u[0], u[1])));
+    }
+  };
+  using Points = std::array<Start, kPoints>;
   enum SamplerNumber : int { kPlaces, kGlance, kOneLook, kOtherLook };
 
   /// What one look finds, by point.
@@ -66,6 +78,7 @@ class SeenLight {
   bool is_dark_end(ZoneId zone) const;
   /// As a zone that is looked at: by what it reflects of the light that the glance found.
   bool is_dark_zone(ZoneId zone, const Look& glance) const;
+  Start start_in(ZoneId zone, const std::array<float, 2>& u) const;
   Points points_of(ZoneId zone, const PointSampler& place) const;
   /// What rays end on, by lane.
   struct Ends {
@@ -79,7 +92,6 @@ class SeenLight {
       return leaves(lane) || (is_on_zone(lane) && hits.distance[lane] > reach);
     }
   };
-  void set_ray(const SurfacePoint& x, const std::array<float, 2>& u, int lane, Ray16& rays) const;
   Ends trace(const Ray16& rays, std::size_t count) const;
   /// One ray of each point, the sampler's `ray` of `rays`.
   void look_out(ZoneId zone, const Points& points, const PointSampler& sampler, int ray, int rays,

@@ -10,6 +10,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
 #include "solver/sampling/counter_rng.h"
@@ -220,6 +221,19 @@ TEST(HdrWriter, RoundsToTheNearestMantissa) {
   }
   // Cut instead, the mean would be -0.0034; of 2397 errors that are even within +-0.0039 it has an s of 4e-5.
   EXPECT_NEAR(sum / 2397, 0, 2e-4);
+}
+
+TEST(ExrWriter, WritesTheSameBytesOnAnyNumberOfThreads) {
+  const TempFolder folder;
+  const StillImage image = sample_image(BandSet::rgb(), 40, 100);  // blocks of 16 lines are compressed as one
+  const auto written_by = [&](int threads) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] { write_still_image(image, folder / "a.exr"); });
+    return read_bytes(folder / "a.exr");
+  };
+  const std::string by_one = written_by(1);
+  EXPECT_EQ(written_by(3), by_one);
+  EXPECT_EQ(written_by(1), by_one);
 }
 
 TEST(ExrWriter, SaysNothingAboutWhenItWasWritten) {

@@ -12,12 +12,14 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <tbb/task_arena.h>
 
 #include "scenes/io/images/image_library.h"
 #include "scenes/model/error.h"
 #include "scenes/model/memory.h"
 #include "solver/losses/open_room.h"
 #include "solver/progressive_solver.h"
+#include "solver/solution/thread_count.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
@@ -120,7 +122,9 @@ class Renderer {
     const StillImage image = render_still(*light_, job.camera, on_progress, interrupt_.requested());
     progress.finish();
     std::optional<WrittenImage> written;
-    write_output([&] { written = write_still_image(image, job.file, options_.tone_map); });
+    tbb::task_arena arena(thread_count(options_.still.threads));  // compression is parallel
+    write_output(
+        [&] { arena.execute([&] { written = write_still_image(image, job.file, options_.tone_map); }); });
     if (!options_.style.quiet) explain_missed_target(job, image);
     report(job, image, *written,
            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

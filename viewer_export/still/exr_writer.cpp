@@ -95,12 +95,10 @@ class ExrStream final : public Imf::OStream {
   std::exception_ptr error_;
 };
 
-/// Threads of OpenEXR, which has one pool for the whole program.
+/// As many as the task arena that asks has; OpenEXR has one pool of its own for the whole program.
 int compression_threads() {
-  static const int threads = [] {
-    Imf::setGlobalThreadCount(tbb::this_task_arena::max_concurrency());
-    return Imf::globalThreadCount();
-  }();
+  const int threads = tbb::this_task_arena::max_concurrency();
+  if (Imf::globalThreadCount() != threads) Imf::setGlobalThreadCount(threads);
   return threads;
 }
 

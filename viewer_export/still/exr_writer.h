@@ -9,7 +9,8 @@ namespace reemit {
 
 /// OpenEXR: 32-bit float channels R, G, B and every layer the picture has, with chromaticities,
 /// whiteLuminance and the settings as metadata. Layer names are in docs/export_formats.md. `rgb`: the picture
-/// in linear Rec.709, 3 values per pixel. Throws ResourceError.
+/// in linear Rec.709, 3 values per pixel. Compressed on as many threads as the task arena of the caller has,
+/// of one caller at a time. Throws ResourceError.
 void write_exr(const StillImage& image, std::span<const float> rgb, const ToneMap& tone_map,
                OutputFile& file);
 
