@@ -1,5 +1,6 @@
 #include "solver/gather/seen_light.h"
 
+#include <algorithm>
 #include <bit>
 #include <numbers>
 #include <numeric>
@@ -166,12 +167,13 @@ void SeenLight::look(ZoneId first, std::span<Zone> seen) const {
   bool all_get_far = true;
   for (std::size_t i = 0; i < count && all_get_far; ++i)
     all_get_far = ends.gets_far(i, field_->zone_size(ZoneId(first.index() + i / kEach)));
-  for (std::size_t z = 0; z < seen.size(); ++z) {
-    seen[z] = all_get_far ? Zone{} : look(ZoneId(first.index() + z));
-    if (!all_get_far) continue;
-    for (std::size_t i = z * kEach; i < (z + 1) * kEach; ++i)
-      if (ends.is_on_zone(i) && !is_dark_end(ZoneId(ends.zone[i]))) seen[z].open += 1.0 / kEach;
+  if (!all_get_far) {
+    for (std::size_t z = 0; z < seen.size(); ++z) seen[z] = look(ZoneId(first.index() + z));
+    return;
   }
+  std::fill(seen.begin(), seen.end(), Zone{});
+  for (std::size_t i = 0; i < count; ++i)
+    if (ends.is_on_zone(i) && !is_dark_end(ZoneId(ends.zone[i]))) seen[i / kEach].open += 1.0 / kEach;
 }
 
 }  // namespace reemit
