@@ -35,6 +35,8 @@ enum class RngPurpose : std::uint32_t {
   kSeenLight,
   kSkySurvey,
   kSampledDirect,
+  kPixelGroup,
+  kVertexGroup,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

@@ -18,25 +18,28 @@ struct SmoothedValues {
 };
 
 /// Completes the variances of smoothed values, by what averages hide: noise that neighbours share (of the
-/// zone solution) does not average out, and values that differ by more than noise have means that are off.
-/// One object for a band.
+/// zone solution) does not average out, that of sequences whose points fill each other's gaps averages out
+/// better than any of its own, and values that differ by more than noise have means that are off. One object
+/// for a band.
 class SmoothingErrors {
  public:
-  /// scale[item]: errors are taken relative to its reciprocal; 0 leaves an item out.
-  SmoothingErrors(SmoothedValues& smoothed, std::size_t bands, std::size_t band,
+  /// `before`, `stderrs`: the values before smoothing and their standard errors. scale[item]: errors are
+  /// taken relative to its reciprocal; 0 leaves an item out. Variances and covariances become what the halves
+  /// say of them, all those together that averaging is to have lessened alike.
+  SmoothingErrors(SmoothedValues& smoothed, const std::vector<float>& before,
+                  const std::vector<float>& stderrs, std::size_t bands, std::size_t band,
                   const std::vector<double>& scale);
 
-  /// Completes the variances of a group of items, among which means are off alike. `before`, `stderrs`: the
-  /// values before smoothing and their standard errors.
-  void complete(std::span<const std::size_t> group, const std::vector<float>& before,
-                const std::vector<float>& stderrs);
+  /// Completes the variances of a group of items, among which means are off alike.
+  void complete(std::span<const std::size_t> group);
 
  private:
   SmoothedValues& smoothed_;
+  const std::vector<float>& before_;
+  const std::vector<float>& stderrs_;
   std::size_t bands_;
   std::size_t band_;
   const std::vector<double>& scale_;
-  double shared_ = 1;
 };
 
 }  // namespace reemit

@@ -24,8 +24,9 @@ void add_variances(float* __restrict sum, const float* __restrict weight, const 
 }
 
 REEMIT_ROW_KERNEL
-void add_differences(float* __restrict sum, const Pixels& p, const Pixels& q, float share, float strength,
+void add_differences(float* __restrict sum, const Pixels& p, const Pixels& q, const DifferenceScales& scales,
                      std::size_t count) {
+  const auto [share, strength, noise] = scales;
   const float* const value_p = p.value;
   const float* const value_q = q.value;
   const float* const variance_p = p.variance;
@@ -37,7 +38,7 @@ void add_differences(float* __restrict sum, const Pixels& p, const Pixels& q, fl
     const float vq = variance_q[i];
     const float tiny = 1e-6F * value_p[i] * value_p[i] + 1e-30F;
     const float least = vp < vq ? vp : vq;
-    sum[i] += share * (difference * difference - (vp + least)) / (tiny + allowed * (vp + vq));
+    sum[i] += share * (difference * difference - noise * (vp + least)) / (tiny + allowed * (vp + vq));
   }
 }
 

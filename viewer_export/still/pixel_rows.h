@@ -17,9 +17,14 @@ struct Pixels {
   const float* value;
   const float* variance;
 };
-/// sum[i] += share times the squared difference of two pixels over what noise explains ([RKZ12] eq. 3):
-/// `strength` standard errors.
-void add_differences(float* sum, const Pixels& p, const Pixels& q, float share, float strength,
+/// How differences of pixels count.
+struct DifferenceScales {
+  float share;     ///< Of all that is added up.
+  float strength;  ///< Standard errors by which pixels may differ ([RKZ12] eq. 3: k).
+  float noise;     ///< Share of the noise by which they differ if they are alike: below 1 if they share some.
+};
+/// sum[i] += the squared difference of two pixels over what noise explains ([RKZ12] eq. 3).
+void add_differences(float* sum, const Pixels& p, const Pixels& q, const DifferenceScales& scales,
                      std::size_t count);
 
 /// mean[i] becomes the mean of value[i-reach .. i+reach], as far as they are in [0,count).

@@ -75,6 +75,8 @@ class Rendering {
     const int replicates = static_cast<int>(film_.replicates());
     const int all_alike =
         refines_smoothed_ ? std::min(most_samples_, kFewestToStop / replicates) : most_samples_;
+    // Smoothing averages neighbours; without it each pixel is for itself.
+    const int shared = smooths_ ? static_cast<int>(std::bit_ceil(static_cast<unsigned>(all_alike))) : 0;
     while (samples < all_alike && !interrupt_) {
       const int wished = std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(samples) / 2)),
                                     kSmallestBlock, kLargestBlock);
@@ -83,7 +85,7 @@ class Rendering {
       // so that there is a whole picture early.
       for (int first = 0; first < replicates && !interrupt_;) {
         const int count = samples > 0 ? replicates : std::max(1, first);
-        render_block({samples, block, log2_samples_, first, count}, all_alike);
+        render_block({samples, block, log2_samples_, shared, first, count}, all_alike);
         first += count;
       }
       if (interrupt_) break;

@@ -8,8 +8,6 @@
 namespace reemit {
 namespace {
 
-constexpr int kPatch = 3;          ///< Pixels to each side that are compared.
-constexpr float kStrength = 0.6F;  ///< Standard errors by which pixels may differ ([RKZ12] eq. 3: k).
 /// Distance at which a pixel counts no more. The kernel is (1 - d/4)^4, which is like exp(-d) but ends.
 constexpr float kNotAlike = 4;
 constexpr float kNormalScale = 0.25F;  ///< Length of the difference of normals that counts as distance 1.
@@ -17,12 +15,26 @@ constexpr float kDepthScale = 0.02F;   ///< Relative difference of depth that do
 
 }  // namespace
 
-SimilarPixels::SimilarPixels(const StillPlanes& planes, int first, int last)
+PixelGuide PixelGuide::of(const StillPlanes& planes) {
+  constexpr int kPatch = 3;
+  constexpr float kStrength = 0.6F;
+  return {{planes.irradiance[0].data(), planes.irradiance[1].data()},
+          planes.variance.data(),
+          kPatch,
+          kStrength,
+          1};
+}
+
+SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide, Layers layers, int first,
+                             int last)
     : planes_(planes),
+      guide_(guide),
       first_(first),
       last_(last),
       size_(static_cast<std::size_t>(planes.width) * static_cast<std::size_t>(last - first)),
-      layers_(planes.caustic.empty() ? 2 : 3) {
+      layers_(layers == Layers::kIrradiance ? 1
+              : planes.caustic.empty()      ? 2
+                                            : 3) {
   for (std::size_t h = 0; h < 2; ++h) {
     weight_[h].assign(size_, 0.0F);
     squares_[h].assign(planes.bands * size_, 0.0F);
@@ -39,8 +51,8 @@ void SimilarPixels::add_offset(int dx, int dy) {
   const int x0 = std::max(0, -dx);
   const int x1 = std::min(planes_.width, planes_.width - dx);
   // Rows whose patches are needed and that the picture has at both ends.
-  const int y0 = std::max({0, -dy, first_ - kPatch});
-  const int y1 = std::min({planes_.height, planes_.height - dy, last_ + kPatch});
+  const int y0 = std::max({0, -dy, first_ - guide_.patch});
+  const int y1 = std::min({planes_.height, planes_.height - dy, last_ + guide_.patch});
   if (x0 >= x1 || y0 >= y1) return;
   if (dx == 0 && dy == 0) {
     add_own();
@@ -70,7 +82,7 @@ void SimilarPixels::add_values(std::size_t h, std::size_t p, std::size_t q, std:
   const std::size_t bands = planes_.bands;
   for (std::size_t b = 0; b < bands; ++b) {
     add_plane(b, &planes_.irradiance[h][b * n + q]);
-    add_plane(bands + b, &planes_.direct[b * n + q]);
+    if (layers_ > 1) add_plane(bands + b, &planes_.direct[b * n + q]);
     if (layers_ == 3) add_plane(2 * bands + b, &planes_.caustic[b * n + q]);
     pixel_rows::add_variances(&squares_[h][b * size_ + p], w, &planes_.variance[b * n + q], count);
   }
@@ -81,13 +93,14 @@ void SimilarPixels::find_differences(std::size_t h, int dx, int dy, const Area& 
   differences_.assign(area.width() * static_cast<std::size_t>(area.y1 - area.y0), 0.0F);
   const float share = 1.0F / static_cast<float>(planes_.bands);
   for (std::size_t b = 0; b < planes_.bands; ++b) {
-    const float* value = &planes_.irradiance[h][b * n];
-    const float* variance = &planes_.variance[b * n];
+    const float* value = guide_.value[h] + b * n;
+    const float* variance = guide_.variance + b * n;
     for (int y = area.y0; y < area.y1; ++y) {
       const std::size_t p = planes_.at(area.x0, y);
       const std::size_t q = planes_.at(area.x0 + dx, y + dy);
       pixel_rows::add_differences(&differences_[area.at(area.x0, y)], {value + p, variance + p},
-                                  {value + q, variance + q}, share, kStrength, area.width());
+                                  {value + q, variance + q}, {share, guide_.strength, guide_.noise},
+                                  area.width());
     }
   }
 }
@@ -96,11 +109,11 @@ void SimilarPixels::average_patches(std::size_t h, const Area& area) {
   rows_.resize(differences_.size());
   patches_[h].resize(differences_.size());
   for (int y = area.y0; y < area.y1; ++y)
-    pixel_rows::average_along(&rows_[area.at(area.x0, y)], &differences_[area.at(area.x0, y)], kPatch,
+    pixel_rows::average_along(&rows_[area.at(area.x0, y)], &differences_[area.at(area.x0, y)], guide_.patch,
                               area.width());
   for (int y = std::max(area.y0, first_); y < std::min(area.y1, last_); ++y) {
-    const int from = std::max(area.y0, y - kPatch);
-    const int to = std::min(area.y1, y + kPatch + 1);
+    const int from = std::max(area.y0, y - guide_.patch);
+    const int to = std::min(area.y1, y + guide_.patch + 1);
     pixel_rows::average_across(&patches_[h][area.at(area.x0, y)], &rows_[area.at(area.x0, from)],
                                static_cast<std::size_t>(to - from), area.width(), area.width());
   }

@@ -7,6 +7,17 @@
 
 namespace reemit {
 
+/// What tells how alike pixels are: values of each half in the layout of StillPlanes::irradiance.
+struct PixelGuide {
+  std::array<const float*, 2> value;
+  const float* variance;  ///< Of the noise in one half's.
+  int patch;              ///< Pixels to each side that are compared.
+  float strength, noise;  ///< As of pixel_rows::DifferenceScales.
+
+  /// The pixels themselves.
+  static PixelGuide of(const StillPlanes& planes);
+};
+
 /// Means of the pixels of some rows of a still over the pixels around them that are the same within their
 /// noise: non-local means with two buffers ([RKZ12] sec. 4), bounded by normal and depth. What is found of a
 /// pixel does not depend on which rows it is looked at with.
@@ -14,8 +25,10 @@ class SimilarPixels {
  public:
   static constexpr int kWindow = 8;  ///< Pixels to each side that a pixel is averaged over.
 
-  /// Rows first .. last-1. The planes must outlive it.
-  SimilarPixels(const StillPlanes& planes, int first, int last);
+  enum class Layers { kIrradiance, kAll };
+
+  /// Rows first .. last-1. The planes and what guides must outlive it. Only of `layers` means are found.
+  SimilarPixels(const StillPlanes& planes, const PixelGuide& guide, Layers layers, int first, int last);
 
   /// Before anything is read.
   void average();
@@ -66,6 +79,7 @@ class SimilarPixels {
   void add_row(int y, int dx, int dy, const Area& area);
 
   const StillPlanes& planes_;
+  PixelGuide guide_;
   int first_, last_;
   std::size_t size_;
   std::size_t layers_;

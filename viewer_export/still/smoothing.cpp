@@ -21,6 +21,53 @@ namespace {
 constexpr int kStripe = 16;  ///< Rows that are averaged in one go.
 constexpr int kBlock = 16;   ///< Pixels to a side of a block.
 
+/// Hands the means of all pixels, a stripe of rows after the other, to take(stripe, first row, last row).
+template <class Take>
+void for_stripes(const StillPlanes& planes, const PixelGuide& guide, SimilarPixels::Layers layers,
+                 const StopToken& stop, Take&& take) {
+  const int stripes = (planes.height + kStripe - 1) / kStripe;
+  tbb::parallel_for(0, stripes, [&](int s) {
+    if (stop.requested()) return;
+    const int first = s * kStripe;
+    const int last = std::min(planes.height, first + kStripe);
+    SimilarPixels stripe(planes, guide, layers, first, last);
+    stripe.average();
+    take(stripe, first, last);
+  });
+}
+
+/// The picture smoothed once, which has so little noise left that it tells better than the pixels themselves
+/// what is alike: the basic estimate of [DFKE07].
+class BasicEstimate {
+ public:
+  BasicEstimate(const StillPlanes& planes, const StopToken& stop) {
+    const std::size_t n = planes.pixels();
+    for (std::vector<float>& of_half : value_) of_half.resize(planes.bands * n);
+    variance_.resize(planes.bands * n);
+    for_stripes(planes, PixelGuide::of(planes), SimilarPixels::Layers::kIrradiance, stop,
+                [&](const SimilarPixels& stripe, int first, int last) {
+                  const std::size_t start = planes.at(0, first);
+                  for (std::size_t p = 0; p < planes.at(0, last) - start; ++p)
+                    for (std::size_t b = 0; b < planes.bands; ++b) {
+                      const std::size_t at = b * n + start + p;
+                      for (std::size_t h = 0; h < 2; ++h) value_[h][at] = stripe.mean(h, 0, b, p);
+                      variance_[at] = 2 * stripe.variance(b, p);
+                    }
+                });
+  }
+
+  PixelGuide guide() const {
+    constexpr int kPatch = 2;
+    constexpr float kStrength = 1;
+    constexpr float kNoise = 0.5F;
+    return {{value_[0].data(), value_[1].data()}, variance_.data(), kPatch, kStrength, kNoise};
+  }
+
+ private:
+  std::array<std::vector<float>, 2> value_;  // of each half, as StillPlanes::irradiance
+  std::vector<float> variance_;              // of a half
+};
+
 /// What a picture becomes.
 struct SmoothedLayers {
   SmoothedLayers(const StillImage& image, const StillPlanes& planes)
@@ -104,10 +151,9 @@ double complete_errors(const StillImage& image, SmoothedValues& smoothed, std::s
                        double error_floor) {
   const std::size_t bands = image.bands.count();
   const std::vector<double> scales = relative_scales(smoothed.value, bands, band, error_floor);
-  SmoothingErrors errors(smoothed, bands, band, scales);
+  SmoothingErrors errors(smoothed, image.radiance, image.radiance_stderr, bands, band, scales);
   for (int y0 = 0; y0 < image.height; y0 += kBlock)
-    for (int x0 = 0; x0 < image.width; x0 += kBlock)
-      errors.complete(pixels_of_block(image, x0, y0), image.radiance, image.radiance_stderr);
+    for (int x0 = 0; x0 < image.width; x0 += kBlock) errors.complete(pixels_of_block(image, x0, y0));
   double squares = 0;
   for (std::size_t p = 0; p < scales.size(); ++p)
     squares += static_cast<double>(smoothed.variance[p * bands + band]) * scales[p] * scales[p];
@@ -121,15 +167,13 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
   try {
     StillPlanes planes(image, halves);
     SmoothedLayers smoothed(image, planes);
-    const int stripes = (image.height + kStripe - 1) / kStripe;
-    tbb::parallel_for(0, stripes, [&](int s) {
-      if (stop.requested()) return;
-      const int first = s * kStripe;
-      const int last = std::min(image.height, first + kStripe);
-      SimilarPixels stripe(planes, first, last);
-      stripe.average();
-      smoothed.take(stripe, planes, image, first, last);
-    });
+    {
+      const BasicEstimate basic(planes, stop);
+      for_stripes(planes, basic.guide(), SimilarPixels::Layers::kAll, stop,
+                  [&](const SimilarPixels& stripe, int first, int last) {
+                    smoothed.take(stripe, planes, image, first, last);
+                  });
+    }
     if (stop.requested()) return;
     planes.irradiance = std::move(smoothed.irradiance);
     planes.direct = std::move(smoothed.direct);

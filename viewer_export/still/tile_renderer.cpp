@@ -8,6 +8,7 @@
 
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/reflect/lambert.h"
+#include "viewer_export/still/pixel_groups.h"
 
 namespace reemit {
 
@@ -60,6 +61,14 @@ TileRenderer::TileRenderer(const StillLight& light, const PinholeCamera& camera,
       has_caustics_(room_->scene().bends_light()),
       all_(room_->band_count(), 1.0F) {}
 
+PointSampler TileRenderer::sampler_of(std::uint32_t pixel, std::uint32_t width, int replicate,
+                                      const SampleBlock& block) const {
+  if (block.first + block.samples > block.shared)
+    return {settings_->seed, RngPurpose::kPixel, pixel, replicate, block.log2_samples};
+  return {settings_->seed, RngPurpose::kPixelGroup, place_in_group(pixel % width, pixel / width), replicate,
+          std::countr_zero(static_cast<unsigned>(block.shared))};
+}
+
 TileRenderer::PixelSums TileRenderer::sums_into(float* values, std::uint64_t pixel,
                                                 const PointSampler& sampler, int samples,
                                                 std::vector<float>& weight) const {
@@ -97,9 +106,7 @@ void TileRenderer::render(std::span<const std::uint32_t> pixels, const SampleBlo
     const std::uint32_t row = pixel / width;
     for (int r = block.first_replicate; r < last_replicate; ++r, next += stride) {
       if (stop_->requested()) return;
-      PixelSums sums = sums_into(
-          next, pixel, PointSampler(settings_->seed, RngPurpose::kPixel, pixel, r, block.log2_samples),
-          block.samples, weight);
+      PixelSums sums = sums_into(next, pixel, sampler_of(pixel, width, r, block), block.samples, weight);
       sums.batch = static_cast<std::uint32_t>(block.first * static_cast<int>(Film::kReplicates) + r);
       sums.part = static_cast<std::uint32_t>(r) % static_cast<std::uint32_t>(field_.parts());
       sums.found.earlier = block.first;

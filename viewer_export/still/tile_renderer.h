@@ -30,6 +30,9 @@ struct SampleBlock {
   int first = 0;
   int samples = 1;
   int log2_samples = 0;  ///< No sample number of this picture reaches 2^log2_samples.
+  /// Blocks that end by this sample number, a power of two, are of sequences that a pixel shares with those
+  /// around it; 0: none.
+  int shared = 0;
   int first_replicate = 0;
   int replicates = 1;
 };
@@ -64,6 +67,9 @@ class TileRenderer {
 
   /// Of the film, that a pixel's samples add to: direct, indirect, albedo and, where they are, caustics.
   std::size_t layers() const { return has_caustics_ ? 4 : 3; }
+  /// The random numbers of a replicate of a pixel.
+  PointSampler sampler_of(std::uint32_t pixel, std::uint32_t width, int replicate,
+                          const SampleBlock& block) const;
   /// Sums of a pixel over so many samples into layers() times bands values; `weight`: scratch, by band.
   PixelSums sums_into(float* values, std::uint64_t pixel, const PointSampler& sampler, int samples,
                       std::vector<float>& weight) const;

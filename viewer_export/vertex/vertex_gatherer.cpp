@@ -43,6 +43,15 @@ const float* VertexGatherer::emitted(std::size_t v, SurfaceModel::PointValues& h
   return room_.surfaces().emitted(rings_.point(v), here);
 }
 
+PointSampler VertexGatherer::sampler_of(std::size_t v, int replicate) const {
+  // To a target vertices may get more points than those around them.
+  if (settings_.error_target > 0) return {settings_.seed, RngPurpose::kProbe, v, replicate, log2_points_};
+  constexpr int kLog2Group = 8;
+  const AmongNeighbours place{v >> kLog2Group, static_cast<std::uint32_t>(v) & ((1U << kLog2Group) - 1),
+                              kLog2Group};
+  return {settings_.seed, RngPurpose::kVertexGroup, place, replicate, log2_points_};
+}
+
 void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
                             VertexData& data) const {
   std::vector<float> found((last - first) * values_per_vertex(), 0.0F);
@@ -51,7 +60,7 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
   float* next = found.data();
   for (std::size_t v = first; v < last; ++v)
     for (std::size_t r = 0; r < kReplicates; ++r, next += values_per_replicate()) {
-      const PointSampler sampler(settings_.seed, RngPurpose::kProbe, v, static_cast<int>(r), log2_points_);
+      const PointSampler sampler = sampler_of(v, static_cast<int>(r));
       const PathKey key{v, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % field_.parts())};
       const auto caustic_of = [&](float* side) { return has_caustics_ ? side + 2 * bands_ : nullptr; };
       add_replicate(

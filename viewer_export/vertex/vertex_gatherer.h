@@ -58,6 +58,7 @@ class VertexGatherer {
   std::optional<ZoneBias> zone_bias(const VertexData& data, double rays) const;
 
  private:
+  PointSampler sampler_of(std::size_t v, int replicate) const;
   SurfacePoint point_beside(std::size_t v, const std::array<float, 2>& u) const;
   std::size_t values_per_side() const { return (has_caustics_ ? 3 : 2) * bands_; }
   std::size_t values_per_replicate() const { return (is_translucent_ ? 2 : 1) * values_per_side(); }

@@ -256,12 +256,12 @@ void smooth_vertices(const VertexGatherer& gatherer, const VertexRings& rings, c
   const std::size_t bands = data.bands.count();
   for (std::size_t b = 0; b < bands; ++b) {
     const std::vector<double> scales = relative_scales(gatherer, rings, smooth.radiance, bands, b);
-    SmoothingErrors errors(smooth.radiance, bands, b, scales);
+    SmoothingErrors errors(smooth.radiance, data.radiance, data.radiance_stderr, bands, b, scales);
     std::vector<std::size_t> group;
     for (std::size_t v = 0; v < rings.size(); ++v) {
       group.push_back(v);
       if (group.size() < kGroup && v + 1 < rings.size()) continue;
-      errors.complete(group, data.radiance, data.radiance_stderr);
+      errors.complete(group);
       group.clear();
     }
   }

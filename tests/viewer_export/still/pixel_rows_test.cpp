@@ -55,12 +55,16 @@ TEST(PixelRows, differences_count_what_noise_does_not_explain) {
   // Two pixels 3 apart, of variance 1 and 2: (9 - (1 + 1)) / (4 (1 + 2)), and half of it.
   const float p = 5, q = 2, vp = 1, vq = 2;
   float sum = 1;
-  pixel_rows::add_differences(&sum, {&p, &vp}, {&q, &vq}, 0.5F, 2.0F, 1);
+  pixel_rows::add_differences(&sum, {&p, &vp}, {&q, &vq}, {.share = 0.5F, .strength = 2, .noise = 1}, 1);
   EXPECT_NEAR(sum, 1 + 0.5 * 7.0 / 12, 1e-4);
   // Equal pixels are nearer than noise lets one expect.
   sum = 0;
-  pixel_rows::add_differences(&sum, {&p, &vp}, {&p, &vq}, 1.0F, 2.0F, 1);
+  pixel_rows::add_differences(&sum, {&p, &vp}, {&p, &vq}, {.share = 1, .strength = 2, .noise = 1}, 1);
   EXPECT_NEAR(sum, -2.0 / 12, 1e-4);
+  // Half of it if they share half of their noise.
+  sum = 0;
+  pixel_rows::add_differences(&sum, {&p, &vp}, {&p, &vq}, {.share = 1, .strength = 2, .noise = 0.5F}, 1);
+  EXPECT_NEAR(sum, -1.0 / 12, 1e-4);
 }
 
 TEST(PixelRows, things_differ_by_normal_or_depth) {
