@@ -44,8 +44,11 @@ const float* VertexGatherer::emitted(std::size_t v, SurfaceModel::PointValues& h
 }
 
 PointSampler VertexGatherer::sampler_of(std::size_t v, int replicate) const {
-  // To a target vertices may get more points than those around them.
-  if (settings_.error_target > 0) return {settings_.seed, RngPurpose::kProbe, v, replicate, log2_points_};
+  // Smoothing averages neighbours, but those that go to a target have unequal numbers of points; what is not
+  // smoothed is for itself.
+  const bool shares =
+      settings_.smooth && !(settings_.error_target > 0) && diffuse_transmittance(v) == nullptr;
+  if (!shares) return {settings_.seed, RngPurpose::kProbe, v, replicate, log2_points_};
   constexpr int kLog2Group = 8;
   const AmongNeighbours place{v >> kLog2Group, static_cast<std::uint32_t>(v) & ((1U << kLog2Group) - 1),
                               kLog2Group};
