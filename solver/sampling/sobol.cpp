@@ -62,11 +62,10 @@ alignas(64) constexpr auto kNibblePoints = make_nibble_points();
 
 }  // namespace
 
-std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
-  const DirectionNumbers& v = kDirections[static_cast<std::size_t>(dimension)];
+std::uint32_t reversed_sobol_bits(std::uint32_t index, int dimension) {
+  const NibblePoints& points = kNibblePoints[static_cast<std::size_t>(dimension)];
   std::uint32_t x = 0;
-  for (std::size_t bit = 0; index != 0; ++bit, index >>= 1)
-    if (index & 1U) x ^= v[bit];
+  for (std::size_t nibble = 0; index != 0; ++nibble, index >>= 4) x ^= points[nibble][index & 15U];
   return x;
 }
 

@@ -8,8 +8,8 @@ namespace reemit {
 /// scrambling of [BUR20, listings 2 and 3]. Any aligned block of 2^m consecutive indices is a (t,m,s)-net.
 inline constexpr int kSobolDimensions = 8;
 
-/// Unscrambled point, one 32-bit fraction. Pre: 0 <= dimension < kSobolDimensions.
-std::uint32_t sobol_bits(std::uint32_t index, int dimension);
+/// Bits of an unscrambled point from last to first. Pre: 0 <= dimension < kSobolDimensions.
+std::uint32_t reversed_sobol_bits(std::uint32_t index, int dimension);
 
 constexpr std::uint32_t reversed_bits(std::uint32_t v) {
   v = ((v >> 1) & 0x55555555U) | ((v & 0x55555555U) << 1);
@@ -17,6 +17,11 @@ constexpr std::uint32_t reversed_bits(std::uint32_t v) {
   v = ((v >> 4) & 0x0F0F0F0FU) | ((v & 0x0F0F0F0FU) << 4);
   v = ((v >> 8) & 0x00FF00FFU) | ((v & 0x00FF00FFU) << 8);
   return (v >> 16) | (v << 16);
+}
+
+/// Unscrambled point, one 32-bit fraction. Pre: 0 <= dimension < kSobolDimensions.
+inline std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
+  return reversed_bits(reversed_sobol_bits(index, dimension));
 }
 
 /// owen_scramble of a fraction whose bits are reversed, before and after.
@@ -41,7 +46,8 @@ class SobolSequence {
   explicit SobolSequence(std::uint64_t seed);
 
   float sample(std::uint32_t index, int dimension) const {
-    return unit(owen_scramble(sobol_bits(index, dimension), seeds_[static_cast<std::size_t>(dimension)]));
+    return unit(reversed_bits(scrambled_reversed(reversed_sobol_bits(index, dimension),
+                                                 seeds_[static_cast<std::size_t>(dimension)])));
   }
   /// The samples of points first_index .. first_index+15, sooner; first_index is a multiple of 16.
   void sample16(std::uint32_t first_index, int dimension, float* out) const;
