@@ -73,7 +73,7 @@ Changes changes_of(const StillPlanes& squares, const StopToken& stop) {
     if (stop.requested()) return;
     const int first = s * kRowsTogether;
     const int last = std::min(squares.height, first + kRowsTogether);
-    SimilarPixels stripe(squares, PixelGuide::of(squares), SimilarPixels::Layers::kAll, first, last);
+    SimilarPixels stripe(squares, PixelGuide::of(squares), SimilarPixels::Extent::kWide, first, last);
     stripe.average();
     const std::size_t start = squares.at(0, first);
     for (std::size_t p = 0; p < squares.at(0, last) - start; ++p)

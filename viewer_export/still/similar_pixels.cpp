@@ -25,16 +25,17 @@ PixelGuide PixelGuide::of(const StillPlanes& planes) {
           1};
 }
 
-SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide, Layers layers, int first,
+SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide, Extent extent, int first,
                              int last)
     : planes_(planes),
       guide_(guide),
+      window_(extent == Extent::kWide ? 8 : 4),
       first_(first),
       last_(last),
       size_(static_cast<std::size_t>(planes.width) * static_cast<std::size_t>(last - first)),
-      layers_(layers == Layers::kIrradiance ? 1
-              : planes.caustic.empty()      ? 2
-                                            : 3) {
+      layers_(extent == Extent::kNarrow ? 1
+              : planes.caustic.empty()  ? 2
+                                        : 3) {
   for (std::size_t h = 0; h < 2; ++h) {
     weight_[h].assign(size_, 0.0F);
     squares_[h].assign(planes.bands * size_, 0.0F);
@@ -43,8 +44,8 @@ SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide,
 }
 
 void SimilarPixels::average() {
-  for (int dy = -kWindow; dy <= kWindow; ++dy)
-    for (int dx = -kWindow; dx <= kWindow; ++dx) add_offset(dx, dy);
+  for (int dy = -window_; dy <= window_; ++dy)
+    for (int dx = -window_; dx <= window_; ++dx) add_offset(dx, dy);
 }
 
 void SimilarPixels::add_offset(int dx, int dy) {

@@ -23,12 +23,14 @@ struct PixelGuide {
 /// pixel does not depend on which rows it is looked at with.
 class SimilarPixels {
  public:
-  static constexpr int kWindow = 8;  ///< Pixels to each side that a pixel is averaged over.
+  /// What is averaged.
+  enum class Extent {
+    kWide,   ///< All layers over 17 x 17 pixels.
+    kNarrow  ///< Irradiance alone over 9 x 9 pixels.
+  };
 
-  enum class Layers { kIrradiance, kAll };
-
-  /// Rows first .. last-1. The planes and what guides must outlive it. Only of `layers` means are found.
-  SimilarPixels(const StillPlanes& planes, const PixelGuide& guide, Layers layers, int first, int last);
+  /// Rows first .. last-1. The planes and what guides must outlive it.
+  SimilarPixels(const StillPlanes& planes, const PixelGuide& guide, Extent extent, int first, int last);
 
   /// Before anything is read.
   void average();
@@ -80,6 +82,7 @@ class SimilarPixels {
 
   const StillPlanes& planes_;
   PixelGuide guide_;
+  int window_;  // pixels to each side
   int first_, last_;
   std::size_t size_;
   std::size_t layers_;

@@ -23,28 +23,28 @@ constexpr int kBlock = 16;   ///< Pixels to a side of a block.
 
 /// Hands the means of all pixels, a stripe of rows after the other, to take(stripe, first row, last row).
 template <class Take>
-void for_stripes(const StillPlanes& planes, const PixelGuide& guide, SimilarPixels::Layers layers,
+void for_stripes(const StillPlanes& planes, const PixelGuide& guide, SimilarPixels::Extent extent,
                  const StopToken& stop, Take&& take) {
   const int stripes = (planes.height + kStripe - 1) / kStripe;
   tbb::parallel_for(0, stripes, [&](int s) {
     if (stop.requested()) return;
     const int first = s * kStripe;
     const int last = std::min(planes.height, first + kStripe);
-    SimilarPixels stripe(planes, guide, layers, first, last);
+    SimilarPixels stripe(planes, guide, extent, first, last);
     stripe.average();
     take(stripe, first, last);
   });
 }
 
-/// The picture smoothed once, which has so little noise left that it tells better than the pixels themselves
-/// what is alike: the basic estimate of [DFKE07].
+/// The picture smoothed a little, which has so little noise left that it tells better than the pixels
+/// themselves what is alike: the basic estimate of [DFKE07].
 class BasicEstimate {
  public:
   BasicEstimate(const StillPlanes& planes, const StopToken& stop) {
     const std::size_t n = planes.pixels();
     for (std::vector<float>& of_half : value_) of_half.resize(planes.bands * n);
     variance_.resize(planes.bands * n);
-    for_stripes(planes, PixelGuide::of(planes), SimilarPixels::Layers::kIrradiance, stop,
+    for_stripes(planes, PixelGuide::of(planes), SimilarPixels::Extent::kNarrow, stop,
                 [&](const SimilarPixels& stripe, int first, int last) {
                   const std::size_t start = planes.at(0, first);
                   for (std::size_t p = 0; p < planes.at(0, last) - start; ++p)
@@ -169,7 +169,7 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
     SmoothedLayers smoothed(image, planes);
     {
       const BasicEstimate basic(planes, stop);
-      for_stripes(planes, basic.guide(), SimilarPixels::Layers::kAll, stop,
+      for_stripes(planes, basic.guide(), SimilarPixels::Extent::kWide, stop,
                   [&](const SimilarPixels& stripe, int first, int last) {
                     smoothed.take(stripe, planes, image, first, last);
                   });
