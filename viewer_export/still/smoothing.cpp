@@ -167,13 +167,17 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
   try {
     StillPlanes planes(image, halves);
     SmoothedLayers smoothed(image, planes);
-    {
-      const BasicEstimate basic(planes, stop);
-      for_stripes(planes, basic.guide(), SimilarPixels::Extent::kWide, stop,
+    const auto average = [&](const PixelGuide& guide) {
+      for_stripes(planes, guide, SimilarPixels::Extent::kWide, stop,
                   [&](const SimilarPixels& stripe, int first, int last) {
                     smoothed.take(stripe, planes, image, first, last);
                   });
-    }
+    };
+    // Blotches of photons, and of what is seen over gloss, are left by the first step and would get borders.
+    if (planes.caustic.empty())
+      average(BasicEstimate(planes, stop).guide());
+    else
+      average(PixelGuide::of(planes));
     if (stop.requested()) return;
     planes.irradiance = std::move(smoothed.irradiance);
     planes.direct = std::move(smoothed.direct);
