@@ -84,9 +84,7 @@ REEMIT_FOR_INSTRUCTION_SETS
 void SobolSequence::sample16(std::uint32_t first_index, int dimension, float* out) const {
   const auto d = static_cast<std::size_t>(dimension);
   const NibblePoints& points = kNibblePoints[d];
-  std::uint32_t high = 0;
-  for (std::uint32_t nibble = 1; nibble < 8; ++nibble)
-    high ^= points[nibble][first_index >> (4 * nibble) & 15U];
+  const std::uint32_t high = reversed_sobol_bits(first_index, dimension);
   const std::uint32_t seed = seeds_[d];
   for (std::size_t i = 0; i < 16; ++i)
     out[i] = unit(reversed_bits(scrambled_reversed(high ^ points[0][i], seed)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace reemit {
 namespace {
@@ -29,27 +30,27 @@ SmoothingErrors::SmoothingErrors(SmoothedValues& smoothed, const std::vector<flo
     : smoothed_(smoothed), before_(before), stderrs_(stderrs), bands_(bands), band_(band), scale_(scale) {
   std::array<HalvesApart, kClasses> of_class;
   HalvesApart of_all;
+  std::vector<std::uint8_t> class_of(scale.size());
   const auto lessened_to = [&](std::size_t k) {
     const double variance = std::pow(static_cast<double>(stderrs[k]), 2);
     return variance > 0 ? static_cast<double>(smoothed.variance[k]) / variance : 1;
   };
-  const auto class_of = [&](std::size_t k) {
-    const double halvings = -std::log2(std::max(lessened_to(k), 1e-9));
-    return static_cast<std::size_t>(std::clamp(std::round(halvings), 0.0, static_cast<double>(kClasses - 1)));
-  };
   for (std::size_t i = 0; i < scale.size(); ++i) {
     const std::size_t k = i * bands + band;
+    const double left = lessened_to(k);
+    const double halvings = std::round(-std::log2(std::max(left, 1e-9)));
+    class_of[i] = static_cast<std::uint8_t>(std::clamp(halvings, 0.0, static_cast<double>(kClasses - 1)));
     const double explained = static_cast<double>(smoothed.variance[k]) * scale[i] * scale[i];
     if (!(explained > 0)) continue;
-    for (HalvesApart* apart : {&of_all, &of_class[class_of(k)]}) {
+    for (HalvesApart* apart : {&of_all, &of_class[class_of[i]]}) {
       apart->found += std::pow(static_cast<double>(smoothed.halves_apart[k]) * scale[i], 2);
       apart->explained += explained;
-      apart->means += lessened_to(k);
+      apart->means += left;
     }
   }
   for (std::size_t i = 0; i < scale.size(); ++i) {
     const std::size_t k = i * bands + band;
-    const HalvesApart& own = of_class[class_of(k)];
+    const HalvesApart& own = of_class[class_of[i]];
     const auto ratio = static_cast<float>((own.means >= kEnough ? own : of_all).ratio());
     smoothed.variance[k] *= ratio;
     smoothed.covariance[k] *= ratio;
