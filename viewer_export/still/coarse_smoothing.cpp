@@ -69,25 +69,19 @@ struct Changes {
 Changes changes_of(const StillPlanes& squares, const StopToken& stop) {
   const std::size_t n = squares.pixels();
   Changes result{squares.irradiance, squares.direct, squares.caustic};
-  tbb::parallel_for(0, (squares.height + kRowsTogether - 1) / kRowsTogether, [&](int s) {
-    if (stop.requested()) return;
-    const int first = s * kRowsTogether;
-    const int last = std::min(squares.height, first + kRowsTogether);
-    SimilarPixels stripe(squares, PixelGuide::of(squares), SimilarPixels::Extent::kWide, first, last);
-    stripe.average();
+  const auto take = [&](const SimilarPixels& means, int first, int last) {
     const std::size_t start = squares.at(0, first);
     for (std::size_t p = 0; p < squares.at(0, last) - start; ++p)
       for (std::size_t b = 0; b < squares.bands; ++b) {
         const std::size_t at = b * n + start + p;
-        const auto both = [&](std::size_t layer) {
-          return 0.5F * (stripe.mean(0, layer, b, p) + stripe.mean(1, layer, b, p));
-        };
         for (std::size_t h = 0; h < 2; ++h)
-          result.irradiance[h][at] = stripe.mean(h, 0, b, p) - squares.irradiance[h][at];
-        result.direct[at] = both(1) - squares.direct[at];
-        result.caustic[at] = both(2) - squares.caustic[at];
+          result.irradiance[h][at] = means.mean(h, 0, b, p) - squares.irradiance[h][at];
+        result.direct[at] = means.mean_of_both(1, b, p) - squares.direct[at];
+        result.caustic[at] = means.mean_of_both(2, b, p) - squares.caustic[at];
       }
-  });
+  };
+  for_similar_pixels(squares, PixelGuide::of(squares), SimilarPixels::Extent::kWide, kRowsTogether, stop,
+                     take);
   return result;
 }
 

@@ -10,6 +10,14 @@
 #endif
 
 namespace reemit::pixel_rows {
+namespace {
+
+/// Square of a difference that matters to nobody, so that pixels without noise can be compared.
+inline float tiny_beside(float p, float q) {
+  return 0.5e-6F * (p * p + q * q) + 1e-30F;
+}
+
+}  // namespace
 
 REEMIT_ROW_KERNEL
 void add_weighted(float* __restrict sum, const float* __restrict weight, const float* __restrict value,
@@ -36,9 +44,27 @@ void add_differences(float* __restrict sum, const Pixels& p, const Pixels& q, co
     const float difference = value_p[i] - value_q[i];
     const float vp = variance_p[i];
     const float vq = variance_q[i];
-    const float tiny = 1e-6F * value_p[i] * value_p[i] + 1e-30F;
+    const float tiny = tiny_beside(value_p[i], value_q[i]);
     const float least = vp < vq ? vp : vq;
-    sum[i] += share * (difference * difference - noise * (vp + least)) / (tiny + allowed * (vp + vq));
+    sum[i] += share * (difference * difference - 2 * noise * least) / (tiny + allowed * (vp + vq));
+  }
+}
+
+REEMIT_ROW_KERNEL
+void add_pair_differences(float* __restrict sum, const Pixels& p, const Pixels& q, const Pixels& r,
+                          const DifferenceScales& scales, std::size_t count) {
+  const auto [share, strength, noise] = scales;
+  const float *value_p = p.value, *value_q = q.value, *value_r = r.value;
+  const float *variance_p = p.variance, *variance_q = q.variance, *variance_r = r.variance;
+  const float allowed = strength * strength;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float mean = 0.5F * (value_q[i] + value_r[i]);
+    const float difference = value_p[i] - mean;
+    const float vp = variance_p[i];
+    const float vm = 0.25F * (variance_q[i] + variance_r[i]);
+    const float tiny = tiny_beside(value_p[i], mean);
+    const float least = vp < vm ? vp : vm;
+    sum[i] += share * (difference * difference - noise * (vp + least)) / (tiny + allowed * (vp + vm));
   }
 }
 
@@ -103,6 +129,16 @@ void weigh(float* __restrict weight, const float* __restrict distance, const flo
     const float near = 1 - (positive < farthest ? positive : farthest) / farthest;
     weight[i] = precision[i] * (near * near * near * near);
   }
+}
+
+REEMIT_ROW_KERNEL
+void raise(float* __restrict value, const float* __restrict other, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) value[i] = value[i] > other[i] ? value[i] : other[i];
+}
+
+REEMIT_ROW_KERNEL
+void lower(float* __restrict value, const float* __restrict other, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) value[i] = value[i] < other[i] ? value[i] : other[i];
 }
 
 }  // namespace reemit::pixel_rows

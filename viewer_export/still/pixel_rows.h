@@ -23,9 +23,14 @@ struct DifferenceScales {
   float strength;  ///< Standard errors by which pixels may differ ([RKZ12] eq. 3: k).
   float noise;     ///< Share of the noise by which they differ if they are alike: below 1 if they share some.
 };
-/// sum[i] += the squared difference of two pixels over what noise explains ([RKZ12] eq. 3).
+/// sum[i] += the squared difference of two pixels over what noise explains ([RKZ12] eq. 3, where the smaller
+/// variance stands for both, so that it is the same from either).
 void add_differences(float* sum, const Pixels& p, const Pixels& q, const DifferenceScales& scales,
                      std::size_t count);
+
+/// Likewise of pixels p and the means of two others, q and r.
+void add_pair_differences(float* sum, const Pixels& p, const Pixels& q, const Pixels& r,
+                          const DifferenceScales& scales, std::size_t count);
 
 /// mean[i] becomes the mean of value[i-reach .. i+reach], as far as they are in [0,count).
 void average_along(float* mean, const float* value, int reach, std::size_t count);
@@ -53,5 +58,9 @@ void find_distances(float* distance, const Things& p, const Things& q, const Thi
 /// weight[i] = precision[i] (1 - d/farthest)^4 with d the larger of the distances, within [0,farthest].
 void weigh(float* weight, const float* distance, const float* other_distance, float farthest,
            const float* precision, std::size_t count);
+
+/// value[i] becomes the larger, or the smaller of both.
+void raise(float* value, const float* other, std::size_t count);
+void lower(float* value, const float* other, std::size_t count);
 
 }  // namespace reemit::pixel_rows

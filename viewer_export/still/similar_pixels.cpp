@@ -1,7 +1,7 @@
 #include "viewer_export/still/similar_pixels.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
 
 #include "viewer_export/still/pixel_rows.h"
 
@@ -12,6 +12,9 @@ namespace {
 constexpr float kNotAlike = 4;
 constexpr float kNormalScale = 0.25F;  ///< Length of the difference of normals that counts as distance 1.
 constexpr float kDepthScale = 0.02F;   ///< Relative difference of depth that does.
+
+/// Light that curves is off to the same side on all pairs, so that less is allowed for.
+constexpr float kPairStrength = 0.4F;
 
 }  // namespace
 
@@ -29,7 +32,7 @@ SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide,
                              int last)
     : planes_(planes),
       guide_(guide),
-      window_(extent == Extent::kWide ? 8 : 4),
+      window_(extent == Extent::kWide ? 7 : 4),
       first_(first),
       last_(last),
       size_(static_cast<std::size_t>(planes.width) * static_cast<std::size_t>(last - first)),
@@ -44,26 +47,9 @@ SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide,
 }
 
 void SimilarPixels::average() {
-  for (int dy = -window_; dy <= window_; ++dy)
-    for (int dx = -window_; dx <= window_; ++dx) add_offset(dx, dy);
-}
-
-void SimilarPixels::add_offset(int dx, int dy) {
-  const int x0 = std::max(0, -dx);
-  const int x1 = std::min(planes_.width, planes_.width - dx);
-  // Rows whose patches are needed and that the picture has at both ends.
-  const int y0 = std::max({0, -dy, first_ - guide_.patch});
-  const int y1 = std::min({planes_.height, planes_.height - dy, last_ + guide_.patch});
-  if (x0 >= x1 || y0 >= y1) return;
-  if (dx == 0 && dy == 0) {
-    add_own();
-    return;
-  }
-  for (std::size_t h = 0; h < 2; ++h) {
-    find_differences(h, dx, dy, {x0, y0, x1, y1});
-    average_patches(h, {x0, y0, x1, y1});
-  }
-  for (int y = std::max(y0, first_); y < std::min(y1, last_); ++y) add_row(y, dx, dy, {x0, y0, x1, y1});
+  add_own();
+  for (int dy = 0; dy <= window_; ++dy)
+    for (int dx = dy == 0 ? 1 : -window_; dx <= window_; ++dx) add_opposite(dx, dy);
 }
 
 void SimilarPixels::add_own() {
@@ -89,62 +75,123 @@ void SimilarPixels::add_values(std::size_t h, std::size_t p, std::size_t q, std:
   }
 }
 
-void SimilarPixels::find_differences(std::size_t h, int dx, int dy, const Area& area) {
-  const std::size_t n = planes_.pixels();
-  differences_.assign(area.width() * static_cast<std::size_t>(area.y1 - area.y0), 0.0F);
-  const float share = 1.0F / static_cast<float>(planes_.bands);
-  for (std::size_t b = 0; b < planes_.bands; ++b) {
-    const float* value = guide_.value[h] + b * n;
-    const float* variance = guide_.variance + b * n;
-    for (int y = area.y0; y < area.y1; ++y) {
-      const std::size_t p = planes_.at(area.x0, y);
-      const std::size_t q = planes_.at(area.x0 + dx, y + dy);
-      pixel_rows::add_differences(&differences_[area.at(area.x0, y)], {value + p, variance + p},
-                                  {value + q, variance + q}, {share, guide_.strength, guide_.noise},
-                                  area.width());
-    }
+void SimilarPixels::add_opposite(int dx, int dy) {
+  const int width = planes_.width;
+  const int height = planes_.height;
+  // Neighbours on the opposite side compare as these do from their end.
+  neighbours_ = {std::max(0, -dx), std::max(0, first_ - guide_.patch - dy), std::min(width, width - dx),
+                 std::min(height - dy, last_ + guide_.patch)};
+  pairs_ = {std::abs(dx), std::max(dy, first_ - guide_.patch), width - std::abs(dx), neighbours_.y1};
+  if (neighbours_.empty()) return;
+  for (std::size_t h = 0; h < 2; ++h) {
+    compare(h, dx, dy);
+    if (!pairs_.empty()) compare_pairs(h, dx, dy);
   }
+  for (int y = first_; y < last_; ++y) add_row(y, dx, dy);
 }
 
-void SimilarPixels::average_patches(std::size_t h, const Area& area) {
+template <class AddRow>
+void SimilarPixels::add_differences(std::size_t h, const Area& area, AddRow&& add_row) {
+  differences_.assign(area.width() * area.height(), 0.0F);
+  for (std::size_t b = 0; b < planes_.bands; ++b)
+    for (int y = area.y0; y < area.y1; ++y)
+      add_row(&differences_[area.at(area.x0, y)], [&](int dx, int dy) {
+        const std::size_t at = b * planes_.pixels() + planes_.at(area.x0 + dx, y + dy);
+        return pixel_rows::Pixels{guide_.value[h] + at, guide_.variance + at};
+      });
+}
+
+void SimilarPixels::compare(std::size_t h, int dx, int dy) {
+  const pixel_rows::DifferenceScales scales{1.0F / static_cast<float>(planes_.bands), guide_.strength,
+                                            guide_.noise};
+  add_differences(h, neighbours_, [&](float* sum, auto&& pixels_at) {
+    pixel_rows::add_differences(sum, pixels_at(0, 0), pixels_at(dx, dy), scales, neighbours_.width());
+  });
+  average_patches(patches_[h], neighbours_, first_ - dy);
+}
+
+void SimilarPixels::compare_pairs(std::size_t h, int dx, int dy) {
+  const pixel_rows::DifferenceScales scales{1.0F / static_cast<float>(planes_.bands),
+                                            kPairStrength * guide_.strength, guide_.noise};
+  add_differences(h, pairs_, [&](float* sum, auto&& pixels_at) {
+    pixel_rows::add_pair_differences(sum, pixels_at(0, 0), pixels_at(dx, dy), pixels_at(-dx, -dy), scales,
+                                     pairs_.width());
+  });
+  average_patches(pair_patches_[h], pairs_, first_);
+}
+
+void SimilarPixels::average_patches(std::vector<float>& patches, const Area& area, int from) {
   rows_.resize(differences_.size());
-  patches_[h].resize(differences_.size());
+  patches.resize(differences_.size());
   for (int y = area.y0; y < area.y1; ++y)
     pixel_rows::average_along(&rows_[area.at(area.x0, y)], &differences_[area.at(area.x0, y)], guide_.patch,
                               area.width());
-  for (int y = std::max(area.y0, first_); y < std::min(area.y1, last_); ++y) {
-    const int from = std::max(area.y0, y - guide_.patch);
-    const int to = std::min(area.y1, y + guide_.patch + 1);
-    pixel_rows::average_across(&patches_[h][area.at(area.x0, y)], &rows_[area.at(area.x0, from)],
-                               static_cast<std::size_t>(to - from), area.width(), area.width());
+  for (int y = std::max(area.y0, from); y < std::min(area.y1, last_); ++y) {
+    const int top = std::max(area.y0, y - guide_.patch);
+    const int bottom = std::min(area.y1, y + guide_.patch + 1);
+    pixel_rows::average_across(&patches[area.at(area.x0, y)], &rows_[area.at(area.x0, top)],
+                               static_cast<std::size_t>(bottom - top), area.width(), area.width());
   }
 }
 
-void SimilarPixels::add_row(int y, int dx, int dy, const Area& area) {
-  const std::size_t from = planes_.at(area.x0, y);
-  const std::size_t q = planes_.at(area.x0 + dx, y + dy);
-  const std::size_t patch = area.at(area.x0, y);
-  row_things_.resize(area.width());
-  row_weight_.resize(area.width());
-  const auto things_at = [&](std::size_t first) {
+bool SimilarPixels::find_things(std::vector<float>& distances, int y, const Side& side) {
+  if (side.x0 >= side.x1 || y + side.dy < 0 || y + side.dy >= planes_.height) return false;
+  const auto things_from = [&](int u, int v) {
+    const std::size_t first = planes_.at(u, v);
     return pixel_rows::Things{
         {&planes_.normal[0][first], &planes_.normal[1][first], &planes_.normal[2][first]},
         &planes_.depth[first],
         &planes_.slope_x[first],
         &planes_.slope_y[first]};
   };
-  pixel_rows::find_distances(row_things_.data(), things_at(from), things_at(q),
+  distances.resize(side.width());
+  pixel_rows::find_distances(distances.data(), things_from(side.x0, y),
+                             things_from(side.x0 + side.dx, y + side.dy),
                              {.normals = kNormalScale,
                               .depth = kDepthScale,
-                              .columns = static_cast<float>(std::abs(dx)),
-                              .rows = static_cast<float>(std::abs(dy))},
-                             area.width());
-  const bool any = std::any_of(row_things_.begin(), row_things_.end(), [](float d) { return d < kNotAlike; });
-  if (!any) return;
+                              .columns = static_cast<float>(std::abs(side.dx)),
+                              .rows = static_cast<float>(std::abs(side.dy))},
+                             side.width());
+  return std::any_of(distances.begin(), distances.end(), [](float d) { return d < kNotAlike; });
+}
+
+void SimilarPixels::add_row(int y, int dx, int dy) {
+  const int width = planes_.width;
+  const std::array<Side, 2> sides{Side{dx, dy, std::max(0, -dx), std::min(width, width - dx)},
+                                  Side{-dx, -dy, std::max(0, dx), std::min(width, width + dx)}};
+  std::array<bool, 2> any{};
+  for (std::size_t s = 0; s < 2; ++s) any[s] = find_things(row_things_[s], y, sides[s]);
+  const bool pairs = any[0] && any[1] && !pairs_.empty();
+  // Of the pixels of pairs in a row that begins at x0.
+  const auto in_row = [&](int x0) { return static_cast<std::size_t>(pairs_.x0 - x0); };
+  if (pairs) {
+    const auto copy = [&](std::vector<float>& to, const float* from) {
+      to.assign(from, from + pairs_.width());
+    };
+    copy(pair_things_, &row_things_[0][in_row(sides[0].x0)]);
+    pixel_rows::raise(pair_things_.data(), &row_things_[1][in_row(sides[1].x0)], pairs_.width());
+    // Opposite pixels must count alike.
+    copy(pair_precision_, &planes_.precision[planes_.at(pairs_.x0 + dx, y + dy)]);
+    pixel_rows::lower(pair_precision_.data(), &planes_.precision[planes_.at(pairs_.x0 - dx, y - dy)],
+                      pairs_.width());
+    pair_weight_.resize(pairs_.width());
+  }
   for (std::size_t h = 0; h < 2; ++h) {
-    pixel_rows::weigh(row_weight_.data(), &patches_[1 - h][patch], row_things_.data(), kNotAlike,
-                      &planes_.precision[q], area.width());
-    add_values(h, from - planes_.at(0, first_), q, area.width());
+    if (pairs)
+      pixel_rows::weigh(pair_weight_.data(), &pair_patches_[1 - h][pairs_.at(pairs_.x0, y)],
+                        pair_things_.data(), kNotAlike, pair_precision_.data(), pairs_.width());
+    for (std::size_t s = 0; s < 2; ++s) {
+      if (!any[s]) continue;
+      const Side& side = sides[s];
+      const std::size_t q = planes_.at(side.x0 + side.dx, y + side.dy);
+      const std::size_t patch =
+          s == 0 ? neighbours_.at(side.x0, y) : neighbours_.at(side.x0 + side.dx, y + side.dy);
+      row_weight_.resize(side.width());
+      pixel_rows::weigh(row_weight_.data(), &patches_[1 - h][patch], row_things_[s].data(), kNotAlike,
+                        &planes_.precision[q], side.width());
+      if (pairs) pixel_rows::raise(&row_weight_[in_row(side.x0)], pair_weight_.data(), pairs_.width());
+      add_values(h, planes_.at(side.x0, y) - planes_.at(0, first_), q, side.width());
+    }
   }
 }
 

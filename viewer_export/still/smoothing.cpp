@@ -7,10 +7,9 @@
 #include <string>
 #include <utility>
 
-#include <tbb/parallel_for.h>
-
 #include "scenes/model/error.h"
 #include "viewer_export/output/smoothing_errors.h"
+#include "viewer_export/still/basic_estimate.h"
 #include "viewer_export/still/coarse_smoothing.h"
 #include "viewer_export/still/similar_pixels.h"
 #include "viewer_export/still/still_planes.h"
@@ -18,55 +17,7 @@
 namespace reemit {
 namespace {
 
-constexpr int kStripe = 16;  ///< Rows that are averaged in one go.
-constexpr int kBlock = 16;   ///< Pixels to a side of a block.
-
-/// Hands the means of all pixels, a stripe of rows after the other, to take(stripe, first row, last row).
-template <class Take>
-void for_stripes(const StillPlanes& planes, const PixelGuide& guide, SimilarPixels::Extent extent,
-                 const StopToken& stop, Take&& take) {
-  const int stripes = (planes.height + kStripe - 1) / kStripe;
-  tbb::parallel_for(0, stripes, [&](int s) {
-    if (stop.requested()) return;
-    const int first = s * kStripe;
-    const int last = std::min(planes.height, first + kStripe);
-    SimilarPixels stripe(planes, guide, extent, first, last);
-    stripe.average();
-    take(stripe, first, last);
-  });
-}
-
-/// The picture smoothed a little, which has so little noise left that it tells better than the pixels
-/// themselves what is alike: the basic estimate of [DFKE07].
-class BasicEstimate {
- public:
-  BasicEstimate(const StillPlanes& planes, const StopToken& stop) {
-    const std::size_t n = planes.pixels();
-    for (std::vector<float>& of_half : value_) of_half.resize(planes.bands * n);
-    variance_.resize(planes.bands * n);
-    for_stripes(planes, PixelGuide::of(planes), SimilarPixels::Extent::kNarrow, stop,
-                [&](const SimilarPixels& stripe, int first, int last) {
-                  const std::size_t start = planes.at(0, first);
-                  for (std::size_t p = 0; p < planes.at(0, last) - start; ++p)
-                    for (std::size_t b = 0; b < planes.bands; ++b) {
-                      const std::size_t at = b * n + start + p;
-                      for (std::size_t h = 0; h < 2; ++h) value_[h][at] = stripe.mean(h, 0, b, p);
-                      variance_[at] = 2 * stripe.variance(b, p);
-                    }
-                });
-  }
-
-  PixelGuide guide() const {
-    constexpr int kPatch = 2;
-    constexpr float kStrength = 1;
-    constexpr float kNoise = 0.5F;
-    return {{value_[0].data(), value_[1].data()}, variance_.data(), kPatch, kStrength, kNoise};
-  }
-
- private:
-  std::array<std::vector<float>, 2> value_;  // of each half, as StillPlanes::irradiance
-  std::vector<float> variance_;              // of a half
-};
+constexpr int kBlock = 16;  ///< Pixels to a side of a block.
 
 /// What a picture becomes.
 struct SmoothedLayers {
@@ -76,7 +27,7 @@ struct SmoothedLayers {
         caustic(planes.caustic),
         radiance(image.radiance.size()) {}
 
-  void take(const SimilarPixels& stripe, const StillPlanes& planes, const StillImage& image, int first,
+  void take(const SimilarPixels& means, const StillPlanes& planes, const StillImage& image, int first,
             int last) {
     const std::size_t n = planes.pixels();
     const std::size_t start = planes.at(0, first);
@@ -86,14 +37,11 @@ struct SmoothedLayers {
         const std::size_t at = b * n + start + p;
         const std::size_t k = (start + p) * planes.bands + b;
         const float scale = planes.scale[at];
-        const auto both = [&](std::size_t layer) {
-          return 0.5F * (stripe.mean(0, layer, b, p) + stripe.mean(1, layer, b, p));
-        };
-        for (std::size_t h = 0; h < 2; ++h) irradiance[h][at] = stripe.mean(h, 0, b, p);
-        direct[at] = both(1);
-        if (!caustic.empty()) caustic[at] = both(2);
-        radiance.variance[k] = scale * scale * stripe.variance(b, p);
-        radiance.covariance[k] = stripe.own_share(p) * image.radiance_stderr[k] * image.radiance_stderr[k];
+        for (std::size_t h = 0; h < 2; ++h) irradiance[h][at] = means.mean(h, 0, b, p);
+        direct[at] = means.mean_of_both(1, b, p);
+        if (!caustic.empty()) caustic[at] = means.mean_of_both(2, b, p);
+        radiance.variance[k] = scale * scale * means.variance(b, p);
+        radiance.covariance[k] = means.own_share(p) * image.radiance_stderr[k] * image.radiance_stderr[k];
       }
     }
   }
@@ -167,17 +115,11 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
   try {
     StillPlanes planes(image, halves);
     SmoothedLayers smoothed(image, planes);
-    const auto average = [&](const PixelGuide& guide) {
-      for_stripes(planes, guide, SimilarPixels::Extent::kWide, stop,
-                  [&](const SimilarPixels& stripe, int first, int last) {
-                    smoothed.take(stripe, planes, image, first, last);
-                  });
-    };
-    // Blotches of photons, and of what is seen over gloss, are left by the first step and would get borders.
-    if (planes.caustic.empty())
-      average(BasicEstimate(planes, stop).guide());
-    else
-      average(PixelGuide::of(planes));
+    const BasicEstimate basic(planes, stop);
+    for_similar_pixels(planes, basic.guide(), SimilarPixels::Extent::kWide, kSmoothedRows, stop,
+                       [&](const SimilarPixels& means, int first, int last) {
+                         smoothed.take(means, planes, image, first, last);
+                       });
     if (stop.requested()) return;
     planes.irradiance = std::move(smoothed.irradiance);
     planes.direct = std::move(smoothed.direct);

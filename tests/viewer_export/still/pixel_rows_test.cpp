@@ -67,6 +67,43 @@ TEST(PixelRows, differences_count_what_noise_does_not_explain) {
   EXPECT_NEAR(sum, -1.0 / 12, 1e-4);
 }
 
+TEST(PixelRows, differences_are_the_same_from_either_pixel) {
+  const float p = 5, q = 2, vp = 1, vq = 2;
+  float from_p = 0;
+  float from_q = 0;
+  const pixel_rows::DifferenceScales scales{.share = 1, .strength = 0.6F, .noise = 1};
+  pixel_rows::add_differences(&from_p, {&p, &vp}, {&q, &vq}, scales, 1);
+  pixel_rows::add_differences(&from_q, {&q, &vq}, {&p, &vp}, scales, 1);
+  EXPECT_EQ(from_p, from_q);
+}
+
+TEST(PixelRows, a_pixel_differs_from_the_mean_of_two) {
+  // 5 from the mean of 2 and 4, whose variance is (2 + 6) / 4: (4 - (1 + 1)) / (4 (1 + 2)).
+  const float p = 5, q = 2, r = 4, vp = 1, vq = 2, vr = 6;
+  float sum = 0;
+  const pixel_rows::DifferenceScales scales{.share = 1, .strength = 2, .noise = 1};
+  pixel_rows::add_pair_differences(&sum, {&p, &vp}, {&q, &vq}, {&r, &vr}, scales, 1);
+  EXPECT_NEAR(sum, 2.0 / 12, 1e-4);
+  // On a slope it does not, but for noise.
+  const float below = 4, above = 6;
+  sum = 0;
+  pixel_rows::add_pair_differences(&sum, {&p, &vp}, {&below, &vq}, {&above, &vr}, scales, 1);
+  EXPECT_NEAR(sum, -2.0 / 12, 1e-4);
+}
+
+TEST(PixelRows, larger_and_smaller_of_two_rows) {
+  const std::vector<float> a = random_row(61, 3);
+  const std::vector<float> b = random_row(61, 4);
+  std::vector<float> larger = a;
+  std::vector<float> smaller = a;
+  pixel_rows::raise(larger.data(), b.data(), b.size());
+  pixel_rows::lower(smaller.data(), b.data(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(larger[i], std::max(a[i], b[i]));
+    EXPECT_EQ(smaller[i], std::min(a[i], b[i]));
+  }
+}
+
 TEST(PixelRows, things_differ_by_normal_or_depth) {
   const float up[] = {0, 0, 1}, aside[] = {0, 0.6F, 0.8F};
   const float depth = 2, deeper = 2.5F, slope = 0.1F, none = 0;

@@ -1,0 +1,30 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "scenes/model/stop_token.h"
+#include "viewer_export/still/similar_pixels.h"
+#include "viewer_export/still/still_planes.h"
+
+namespace reemit {
+
+/// A picture smoothed a little, which has so little noise left that it tells better than the pixels
+/// themselves what is alike: the basic estimate of [DFKE07].
+class BasicEstimate {
+ public:
+  /// Runs in the arena of the caller; ends early when `stop` is requested.
+  BasicEstimate(const StillPlanes& planes, const StopToken& stop);
+
+  /// Of what it tells. It must outlive that.
+  PixelGuide guide() const;
+
+ private:
+  /// Makes the variances of a band as large as the halves say of the pixels around: noise that these share
+  /// (of photons) is left in the estimate, and must not look like light.
+  void add_shared_noise(const StillPlanes& planes, std::size_t band);
+
+  std::array<std::vector<float>, 2> value_;  // of each half, as StillPlanes::irradiance
+  std::vector<float> variance_;              // of a half
+};
+
+}  // namespace reemit
