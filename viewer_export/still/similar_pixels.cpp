@@ -91,7 +91,7 @@ void SimilarPixels::add_opposite(int dx, int dy) {
 }
 
 template <class AddRow>
-void SimilarPixels::add_differences(std::size_t h, const Area& area, AddRow&& add_row) {
+void SimilarPixels::compare_rows(std::size_t h, const Area& area, AddRow&& add_row) {
   differences_.assign(area.width() * area.height(), 0.0F);
   for (std::size_t b = 0; b < planes_.bands; ++b)
     for (int y = area.y0; y < area.y1; ++y)
@@ -104,7 +104,7 @@ void SimilarPixels::add_differences(std::size_t h, const Area& area, AddRow&& ad
 void SimilarPixels::compare(std::size_t h, int dx, int dy) {
   const pixel_rows::DifferenceScales scales{1.0F / static_cast<float>(planes_.bands), guide_.strength,
                                             guide_.noise};
-  add_differences(h, neighbours_, [&](float* sum, auto&& pixels_at) {
+  compare_rows(h, neighbours_, [&](float* sum, auto&& pixels_at) {
     pixel_rows::add_differences(sum, pixels_at(0, 0), pixels_at(dx, dy), scales, neighbours_.width());
   });
   average_patches(patches_[h], neighbours_, first_ - dy);
@@ -113,7 +113,7 @@ void SimilarPixels::compare(std::size_t h, int dx, int dy) {
 void SimilarPixels::compare_pairs(std::size_t h, int dx, int dy) {
   const pixel_rows::DifferenceScales scales{1.0F / static_cast<float>(planes_.bands),
                                             kPairStrength * guide_.strength, guide_.noise};
-  add_differences(h, pairs_, [&](float* sum, auto&& pixels_at) {
+  compare_rows(h, pairs_, [&](float* sum, auto&& pixels_at) {
     pixel_rows::add_pair_differences(sum, pixels_at(0, 0), pixels_at(dx, dy), pixels_at(-dx, -dy), scales,
                                      pairs_.width());
   });
@@ -155,6 +155,19 @@ bool SimilarPixels::find_things(std::vector<float>& distances, int y, const Side
   return std::any_of(distances.begin(), distances.end(), [](float d) { return d < kNotAlike; });
 }
 
+void SimilarPixels::join(int y, const std::array<Side, 2>& sides) {
+  const std::size_t count = pairs_.width();
+  const auto copy = [count](std::vector<float>& to, const float* from) { to.assign(from, from + count); };
+  const auto precision_at = [&](const Side& side) {
+    return &planes_.precision[planes_.at(pairs_.x0 + side.dx, y + side.dy)];
+  };
+  copy(pair_things_, &row_things_[0][sides[0].at(pairs_.x0)]);
+  pixel_rows::raise(pair_things_.data(), &row_things_[1][sides[1].at(pairs_.x0)], count);
+  copy(pair_precision_, precision_at(sides[0]));
+  pixel_rows::lower(pair_precision_.data(), precision_at(sides[1]), count);
+  pair_weight_.resize(count);
+}
+
 void SimilarPixels::add_row(int y, int dx, int dy) {
   const int width = planes_.width;
   const std::array<Side, 2> sides{Side{dx, dy, std::max(0, -dx), std::min(width, width - dx)},
@@ -162,20 +175,7 @@ void SimilarPixels::add_row(int y, int dx, int dy) {
   std::array<bool, 2> any{};
   for (std::size_t s = 0; s < 2; ++s) any[s] = find_things(row_things_[s], y, sides[s]);
   const bool pairs = any[0] && any[1] && !pairs_.empty();
-  // Of the pixels of pairs in a row that begins at x0.
-  const auto in_row = [&](int x0) { return static_cast<std::size_t>(pairs_.x0 - x0); };
-  if (pairs) {
-    const auto copy = [&](std::vector<float>& to, const float* from) {
-      to.assign(from, from + pairs_.width());
-    };
-    copy(pair_things_, &row_things_[0][in_row(sides[0].x0)]);
-    pixel_rows::raise(pair_things_.data(), &row_things_[1][in_row(sides[1].x0)], pairs_.width());
-    // Opposite pixels must count alike.
-    copy(pair_precision_, &planes_.precision[planes_.at(pairs_.x0 + dx, y + dy)]);
-    pixel_rows::lower(pair_precision_.data(), &planes_.precision[planes_.at(pairs_.x0 - dx, y - dy)],
-                      pairs_.width());
-    pair_weight_.resize(pairs_.width());
-  }
+  if (pairs) join(y, sides);
   for (std::size_t h = 0; h < 2; ++h) {
     if (pairs)
       pixel_rows::weigh(pair_weight_.data(), &pair_patches_[1 - h][pairs_.at(pairs_.x0, y)],
@@ -189,7 +189,7 @@ void SimilarPixels::add_row(int y, int dx, int dy) {
       row_weight_.resize(side.width());
       pixel_rows::weigh(row_weight_.data(), &patches_[1 - h][patch], row_things_[s].data(), kNotAlike,
                         &planes_.precision[q], side.width());
-      if (pairs) pixel_rows::raise(&row_weight_[in_row(side.x0)], pair_weight_.data(), pairs_.width());
+      if (pairs) pixel_rows::raise(&row_weight_[side.at(pairs_.x0)], pair_weight_.data(), pairs_.width());
       add_values(h, planes_.at(side.x0, y) - planes_.at(0, first_), q, side.width());
     }
   }

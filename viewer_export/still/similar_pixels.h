@@ -80,6 +80,7 @@ class SimilarPixels {
   struct Side {
     int dx, dy, x0, x1;
     std::size_t width() const { return static_cast<std::size_t>(x1 - x0); }
+    std::size_t at(int x) const { return static_cast<std::size_t>(x - x0); }
   };
 
   void add_own();
@@ -89,6 +90,9 @@ class SimilarPixels {
   void add_row(int y, int dx, int dy);
   /// How far what the pixels of a row see is from what those on this side do; false if all too far.
   bool find_things(std::vector<float>& distances, int y, const Side& side);
+  /// What pairs of a row have in common: things as far away as the farther one's, and as many samples as the
+  /// one with fewer, since both must count alike.
+  void join(int y, const std::array<Side, 2>& sides);
   /// `count` pixels of the picture from q on to the sums from p on, with the weights of row_weight_.
   void add_values(std::size_t h, std::size_t p, std::size_t q, std::size_t count);
 
@@ -99,7 +103,7 @@ class SimilarPixels {
   /// For each band and row: add_row(sums of the row's pixels, pixels_at), where pixels_at(dx, dy) are those
   /// at an offset from them.
   template <class AddRow>
-  void add_differences(std::size_t h, const Area& area, AddRow&& add_row);
+  void compare_rows(std::size_t h, const Area& area, AddRow&& add_row);
   /// Means over patches, rows `from` .. last-1: along, then across. Added up anew for every pixel, so that
   /// they do not depend on where a stripe begins.
   void average_patches(std::vector<float>& patches, const Area& area, int from);
