@@ -131,8 +131,11 @@ SeenLight::Zone SeenLight::look(ZoneId zone) const {
   const double openness = std::accumulate(glance.open.begin(), glance.open.end(), 0.0) / kPoints;
   // Where they end on, however dark: where packets are few, many zones are dark that need not be.
   if (glance.far > kOpen) return {openness, 0};
-  add_direct(points, sampler(zone, kGlance), 1, glance);
-  if (is_dark_zone(zone, glance)) return {};
+  // What other surfaces send mostly says that a zone is not dark, without a shadow ray.
+  if (is_dark_zone(zone, glance)) {
+    add_direct(points, sampler(zone, kGlance), 1, glance);
+    if (is_dark_zone(zone, glance)) return {};
+  }
   const Look one = look_around(zone, points, sampler(zone, kOneLook));
   const Look other = look_around(zone, points, sampler(zone, kOtherLook));
   const float* reflectance = field_->room().zone_reflectance(zone);
