@@ -1,31 +1,13 @@
 #include "viewer_export/still/basic_estimate.h"
 
-#include <algorithm>
 #include <cstddef>
-
-#include <tbb/parallel_for.h>
-
-#include "viewer_export/still/pixel_rows.h"
 
 namespace reemit {
 namespace {
 
-/// Means of a plane over squares of 2 reach + 1 pixels to a side, as far as they are in the picture.
-std::vector<float> means_around(const std::vector<float>& plane, const StillPlanes& planes, int reach) {
-  std::vector<float> along(plane.size());
-  std::vector<float> means(plane.size());
-  const auto width = static_cast<std::size_t>(planes.width);
-  tbb::parallel_for(0, planes.height, [&](int y) {
-    pixel_rows::average_along(&along[planes.at(0, y)], &plane[planes.at(0, y)], reach, width);
-  });
-  tbb::parallel_for(0, planes.height, [&](int y) {
-    const int top = std::max(0, y - reach);
-    const int bottom = std::min(planes.height, y + reach + 1);
-    pixel_rows::average_across(&means[planes.at(0, y)], &along[planes.at(0, top)],
-                               static_cast<std::size_t>(bottom - top), width, width);
-  });
-  return means;
-}
+/// Standard deviation of the light that photons bring, over itself, in one half. Its 80 photons in a radius,
+/// half of kPhotonsInRadius, would have sqrt(4/3 / 80) = 0.13; where radii are the largest there are fewer.
+constexpr float kPhotonNoise = 0.16F;
 
 }  // namespace
 
@@ -43,21 +25,10 @@ BasicEstimate::BasicEstimate(const StillPlanes& planes, const StopToken& stop) {
                            variance_[at] = 2 * means.variance(b, p);
                          }
                      });
-  for (std::size_t b = 0; b < planes.bands; ++b) add_shared_noise(planes, b);
-}
-
-void BasicEstimate::add_shared_noise(const StillPlanes& planes, std::size_t band) {
-  constexpr int kReach = 16;
-  constexpr float kMost = 10;  // of a pixel: edges in strong noise stay
-  const std::size_t n = planes.pixels();
-  std::vector<float> ratios(n, 1.0F);
-  for (std::size_t p = 0; p < n; ++p) {
-    const std::size_t at = band * n + p;
-    const float apart = value_[0][at] - value_[1][at];
-    if (variance_[at] > 0) ratios[p] = std::min(kMost, 0.5F * apart * apart / variance_[at]);
+  for (std::size_t at = 0; at < planes.caustic.size(); ++at) {
+    const float noise = kPhotonNoise * planes.caustic[at];
+    variance_[at] += noise * noise;
   }
-  const std::vector<float> factors = means_around(ratios, planes, kReach);
-  for (std::size_t p = 0; p < n; ++p) variance_[band * n + p] *= std::max(1.0F, factors[p]);
 }
 
 PixelGuide BasicEstimate::guide() const {

@@ -9,7 +9,8 @@
 namespace reemit {
 
 /// A picture smoothed a little, which has so little noise left that it tells better than the pixels
-/// themselves what is alike: the basic estimate of [DFKE07].
+/// themselves what is alike: the basic estimate of [DFKE07]. The noise of photons, which neighbours share, is
+/// left in it and must not look like light: its variance holds it.
 class BasicEstimate {
  public:
   /// Runs in the arena of the caller; ends early when `stop` is requested.
@@ -19,10 +20,6 @@ class BasicEstimate {
   PixelGuide guide() const;
 
  private:
-  /// Makes the variances of a band as large as the halves say of the pixels around: noise that these share
-  /// (of photons) is left in the estimate, and must not look like light.
-  void add_shared_noise(const StillPlanes& planes, std::size_t band);
-
   std::array<std::vector<float>, 2> value_;  // of each half, as StillPlanes::irradiance
   std::vector<float> variance_;              // of a half
 };

@@ -164,7 +164,7 @@ TEST(Smoothing, takes_blotches_of_photons_out) {
     EXPECT_NEAR(noisy.image.direct[k] + noisy.image.indirect[k] + noisy.image.caustic[k],
                 noisy.image.radiance[k], 1e-6F * noisy.image.radiance[k]);
   }
-  // 0.45; by the pixels around each alone, 0.75.
+  // 0.43; by the pixels around each alone, 0.75.
   EXPECT_LT(left, 0.6 * before);
 }
 
@@ -224,7 +224,7 @@ TEST(Smoothing, gives_blotches_no_borders) {
   // Rms step from a pixel to the next.
   const double step = std::sqrt(squares / (kHeight * (kWidth - 1))) / noise_of_picture();
   RecordProperty("step", std::to_string(step));
-  // 0.05; 0.10 if what is alike is told without the noise that pixels share.
+  // 0.03; 0.10 if what is alike is told as if photons had no noise.
   EXPECT_LT(step, 0.07);
 }
 
