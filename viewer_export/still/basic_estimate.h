@@ -16,7 +16,7 @@ class BasicEstimate {
   /// Runs in the arena of the caller; ends early when `stop` is requested.
   BasicEstimate(const StillPlanes& planes, const StopToken& stop);
 
-  /// Of what it tells. It must outlive that.
+  /// What it tells. The estimate must outlive the guide.
   PixelGuide guide() const;
 
  private:
