@@ -115,11 +115,13 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
   try {
     StillPlanes planes(image, halves);
     SmoothedLayers smoothed(image, planes);
-    const BasicEstimate basic(planes, stop);
-    for_similar_pixels(planes, basic.guide(), SimilarPixels::Extent::kWide, kSmoothedRows, stop,
-                       [&](const SimilarPixels& means, int first, int last) {
-                         smoothed.take(means, planes, image, first, last);
-                       });
+    {
+      const BasicEstimate basic(planes, stop);
+      for_similar_pixels(planes, basic.guide(), SimilarPixels::Extent::kWide, kSmoothedRows, stop,
+                         [&](const SimilarPixels& means, int first, int last) {
+                           smoothed.take(means, planes, image, first, last);
+                         });
+    }
     if (stop.requested()) return;
     planes.irradiance = std::move(smoothed.irradiance);
     planes.direct = std::move(smoothed.direct);

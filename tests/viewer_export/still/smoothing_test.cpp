@@ -225,7 +225,7 @@ TEST(Smoothing, gives_blotches_no_borders) {
   const double step = std::sqrt(squares / (kHeight * (kWidth - 1))) / noise_of_picture();
   RecordProperty("step", std::to_string(step));
   // 0.03; 0.10 if what is alike is told as if photons had no noise.
-  EXPECT_LT(step, 0.07);
+  EXPECT_LT(step, 0.04);
 }
 
 TEST(Smoothing, keeps_the_border_of_a_shadow) {
