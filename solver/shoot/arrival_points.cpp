@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scenes/model/instruction_sets.h"
+
 namespace reemit {
 namespace {
 
@@ -14,12 +16,15 @@ constexpr int kSweepShift = 56;
 
 }  // namespace
 
-ArrivalPoints::ArrivalPoints(std::size_t zones, std::uint32_t packets) {
-  zones = std::max<std::size_t>(1, zones);
+ArrivalPoints::ArrivalPoints(const ZoneMesh& mesh, std::uint32_t packets) : mesh_(&mesh) {
+  const std::size_t zones = std::max<std::size_t>(1, mesh.zone_count());
   const std::size_t enough = std::max<std::size_t>(kEnoughPoints, packets / kMostSharing) / zones;
   per_zone_ = std::max<std::size_t>(1, std::min<std::size_t>(enough, packets / zones));
   written_.resize(zones * per_zone_);
   read_.resize(zones * per_zone_);
+  all_have_points_ = true;
+  for (std::size_t z = mesh.cell_zone_count(); z < mesh.zone_count(); ++z)
+    all_have_points_ = all_have_points_ && mesh.member_count(ZoneId(z)) <= kFractions;
 }
 
 void ArrivalPoints::begin(std::uint32_t sweep) {
@@ -30,6 +35,40 @@ void ArrivalPoints::begin(std::uint32_t sweep) {
   // Where the numbers start again, what stands in the table would look newer than what comes. It holds the
   // sweep before last, which nobody reads any more.
   if (sweep >= kSweepNumbers && number <= 2) std::fill(written_.begin(), written_.end(), 0);
+}
+
+REEMIT_FOR_INSTRUCTION_SETS
+void ArrivalPoints::find16(const TrianglePoints16& __restrict points, const std::uint32_t* __restrict zones,
+                           const std::uint32_t* __restrict bits, ArrivalLanes& __restrict arrived) const {
+  const auto first_group = static_cast<std::uint32_t>(mesh_->cell_zone_count());
+  const std::uint64_t per_zone = per_zone_;
+  const std::uint64_t sweep_key = sweep_key_;
+  alignas(64) std::uint32_t u[16];
+  alignas(64) std::uint32_t v[16];
+  std::uint32_t any_group = 0;
+  for (int lane = 0; lane < 16; ++lane) {
+    const std::uint32_t in_group = zones[lane] >= first_group && zones[lane] != ZoneMesh::kNone ? 1U : 0U;
+    any_group |= in_group;
+    const std::int32_t parts = in_group != 0 ? std::int32_t{kMemberFractions} : std::int32_t{kFractions};
+    const auto i = static_cast<std::int32_t>(points.u[lane] * static_cast<float>(parts));
+    const auto j = static_cast<std::int32_t>(points.v[lane] * static_cast<float>(parts));
+    u[lane] = static_cast<std::uint32_t>(i < 0 ? 0 : i > parts - 1 ? parts - 1 : i);
+    v[lane] = static_cast<std::uint32_t>(j < 0 ? 0 : j > parts - 1 ? parts - 1 : j);
+  }
+  for (int lane = 0; lane < 16; ++lane) {
+    const std::uint64_t zone = zones[lane] == ZoneMesh::kNone ? 0 : zones[lane];
+    arrived.place[lane] = zone * per_zone + (std::uint64_t{bits[lane]} * per_zone >> 32);
+    arrived.key[lane] =
+        sweep_key | std::uint64_t{bits[lane] & 0xffffU} << 40 | std::uint64_t{u[lane]} << 20 | v[lane];
+  }
+  if (any_group == 0) return;
+  for (int lane = 0; lane < 16; ++lane) {
+    if (zones[lane] < first_group || zones[lane] == ZoneMesh::kNone) continue;
+    const std::uint64_t member = mesh_->member(TriangleId(points.triangle[lane]), points.front[lane]);
+    const std::uint64_t point = member << 20 | std::uint64_t{u[lane]} << 10 | v[lane];
+    arrived.key[lane] =
+        has_points(ZoneId(zones[lane])) ? sweep_key | std::uint64_t{bits[lane] & 0xffffU} << 40 | point : 0;
+  }
 }
 
 }  // namespace reemit

@@ -19,36 +19,46 @@ struct MemberPoint {
   float u, v;
 };
 
+/// Where 16 packets met zones (ArrivalPoints::find16).
+struct alignas(64) ArrivalLanes {
+  std::uint64_t place[16];  ///< That the packet competes for.
+  std::uint64_t key[16];    ///< What it would write there.
+};
+
 /// Where the packets of a sweep met the zones: up to a few points of each, chosen by chance with equal odds
 /// for every packet, whichever thread brings it. In the next sweep the zone's packets leave from them, so
 /// that light stays in the part of the zone that it fell on. Points are rounded to 2^-20 of their base
 /// triangle, in groups, whose triangles are small, to 2^-10.
 class ArrivalPoints {
  public:
-  /// One point per zone, or more where there are few zones and many `packets`.
-  ArrivalPoints(std::size_t zones, std::uint32_t packets);
+  /// One point per zone, or more where there are few zones and many `packets`. The mesh must outlive it.
+  ArrivalPoints(const ZoneMesh& mesh, std::uint32_t packets);
 
   /// Groups of very many sides have none: packets leave them from anywhere.
-  static bool has_points(const ZoneMesh& mesh, ZoneId zone) {
-    return !mesh.is_group(zone) || mesh.member_count(zone) <= kFractions;
+  bool has_points(ZoneId zone) const {
+    return all_have_points_ || !mesh_->is_group(zone) || mesh_->member_count(zone) <= kFractions;
   }
 
   /// Points added from here on belong to `sweep`; those of the sweep before can be read. Sweeps count from 0.
   void begin(std::uint32_t sweep);
 
-  /// Which of a zone's places a packet competes for; `bits` are 32 random ones of this packet.
-  std::uint64_t* place(ZoneId zone, std::uint32_t bits) {
-    return &written_[zone.index() * per_zone_ + (std::uint64_t{bits} * per_zone_ >> 32)];
+  /// What 16 packets would write where that met the zones at points of their base triangles; `bits` are 32
+  /// random ones of each packet. Nothing of use where a zone is ZoneMesh::kNone or has no points.
+  void find16(const TrianglePoints16& points, const std::uint32_t* zones, const std::uint32_t* bits,
+              ArrivalLanes& arrived) const;
+  /// Asks for the memory that `add` will look at, before it is needed.
+  void ask_for(const ArrivalLanes& arrived, int lane) const {
+    __builtin_prefetch(&written_[arrived.place[lane]], 1);
   }
-  /// The packet met the zone at (u,v) of its base triangle. Any thread.
-  void add(std::uint64_t* place, std::uint32_t bits, float u, float v) const {
-    put(place, bits, std::uint64_t{fraction(u, kFractions)} << 20 | fraction(v, kFractions));
-  }
-  /// The packet met a member of a group there.
-  void add_in_group(std::uint64_t* place, std::uint32_t bits, std::uint32_t member, float u, float v) const {
-    put(place, bits,
-        std::uint64_t{member} << 20 | std::uint64_t{fraction(u, kMemberFractions)} << 10 |
-            fraction(v, kMemberFractions));
+  /// Adds the packet of a lane. Any thread.
+  void add(const ArrivalLanes& arrived, int lane) {
+    const std::atomic_ref<std::uint64_t> slot(written_[arrived.place[lane]]);
+    // The order of the keys decides, not that of the threads: a sweep's points hide older ones, and among
+    // themselves the largest random number wins.
+    const std::uint64_t key = arrived.key[lane];
+    std::uint64_t seen = slot.load(std::memory_order_relaxed);
+    while (seen < key && !slot.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
+    }
   }
 
   /// The points of the sweep before in one zone, dealt out evenly to the packets that it sends.
@@ -95,23 +105,11 @@ class ArrivalPoints {
  private:
   static constexpr std::uint32_t kFractions = 1U << 20;
   static constexpr std::uint32_t kMemberFractions = 1U << 10;
-  static std::uint32_t fraction(float x, std::uint32_t parts) {
-    return static_cast<std::uint32_t>(
-        std::clamp(x * static_cast<float>(parts), 0.0F, static_cast<float>(parts - 1)));
-  }
   static float coordinate(std::uint64_t low_bits, std::uint32_t parts) {
     return 1.0F / static_cast<float>(parts) * static_cast<float>(low_bits & (parts - 1));
   }
-  void put(std::uint64_t* place, std::uint32_t bits, std::uint64_t point) const {
-    const std::atomic_ref<std::uint64_t> slot(*place);
-    // The order of the keys decides, not that of the threads: a sweep's points hide older ones, and among
-    // themselves the largest random number wins.
-    const std::uint64_t key = sweep_key_ | std::uint64_t{bits & 0xffffU} << 40 | point;
-    std::uint64_t seen = slot.load(std::memory_order_relaxed);
-    while (seen < key && !slot.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-    }
-  }
-
+  const ZoneMesh* mesh_;
+  bool all_have_points_;
   std::size_t per_zone_;
   std::vector<std::uint64_t> written_;  // [zone * per_zone + place], of this sweep
   std::vector<std::uint64_t> read_;     // of the sweep before

@@ -122,7 +122,7 @@ void FlightCursor::enter_source(std::size_t source) {
 }
 
 bool FlightCursor::put_arrivals(ZoneId zone, std::uint32_t packet, int first, int last) {
-  if (!ArrivalPoints::has_points(transport_.mesh(), zone)) return false;
+  if (!arrivals_->has_points(zone)) return false;
   if (transport_.mesh().is_group(zone)) return put_arrivals_in_group(zone, packet, first, last);
   const auto triangle = static_cast<std::uint32_t>(transport_.mesh().zone_triangle(zone).index());
   transport_.put_side(triangle, transport_.mesh().zone_is_front(zone), lanes_, first, last);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "solver/shoot/packet_room.h"
@@ -78,6 +79,13 @@ struct PacketBlock {
   std::uint32_t id[16] = {};
   SpecularWay way[16] = {};
   std::vector<std::int64_t> power;  ///< [lane * channels + channel]
+
+  /// Makes it one of packets first .. first+n-1, n <= 16.
+  void number(std::uint32_t first, int n) {
+    count = n;
+    std::iota(id, id + 16, first);
+  }
+  std::int64_t* power_of(int lane) { return &power[static_cast<std::size_t>(lane) * (power.size() / 16)]; }
 };
 
 /// Packets that wait until there are enough for a block: those whose rays ended in doubt

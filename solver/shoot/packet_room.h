@@ -150,6 +150,12 @@ class PacketRoom {
   void zones_of(const Hit16& hits, std::uint32_t* zone) const { mesh_->zones_at16(hits.points(), zone); }
 
  private:
+  /// Packets of walks have a lane each, for which a loop takes several times as long.
+  template <class Value>
+  static void fill(Value* lanes, int first, int last, Value value) {
+    lanes[first] = value;
+    for (int lane = first + 1; lane < last; ++lane) lanes[lane] = value;
+  }
   /// What the zones on a side of a flat triangle have in common.
   void put_flat_side(std::uint32_t triangle, bool front, ZoneLanes& lanes, int first, int last) const {
     const std::uint32_t bits = lane_bits(first, last);
@@ -158,17 +164,17 @@ class PacketRoom {
     lanes.feet &= ~bits;
     if (p.is_foot) {
       lanes.feet |= bits;
-      std::fill(lanes.zone + first, lanes.zone + last, triangle);
+      fill(lanes.zone, first, last, triangle);
     }
     const auto number = static_cast<std::uint32_t>(side_of(TriangleId(triangle), front).index());
     if (lanes.of_all == number) return;
     lanes.of_all = first == 0 && last == 16 ? number : ZoneMesh::kNone;
     const float side = front ? 1.0F : -1.0F;
     for (int k = 0; k < 3; ++k) {
-      std::fill(lanes.middle[k] + first, lanes.middle[k] + last, p.middle[k]);
-      std::fill(lanes.tangent[k] + first, lanes.tangent[k] + last, p.frame.tangent[k]);
-      std::fill(lanes.bitangent[k] + first, lanes.bitangent[k] + last, p.frame.bitangent[k]);
-      std::fill(lanes.normal[k] + first, lanes.normal[k] + last, side * p.frame.normal[k]);
+      fill(lanes.middle[k], first, last, p.middle[k]);
+      fill(lanes.tangent[k], first, last, p.frame.tangent[k]);
+      fill(lanes.bitangent[k], first, last, p.frame.bitangent[k]);
+      fill(lanes.normal[k], first, last, side * p.frame.normal[k]);
     }
   }
 

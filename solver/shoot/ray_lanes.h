@@ -1,4 +1,5 @@
 #pragma once
+#include <bit>
 #include <cstdint>
 
 #include "scenes/model/vec.h"
@@ -30,6 +31,12 @@ struct alignas(64) UniformLanes {
 /// Lanes first .. last-1 as bits.
 inline std::uint32_t lane_bits(int first, int last) {
   return ((1U << last) - 1) & ~((1U << first) - 1);
+}
+
+/// Calls `visit(lane)` for every bit of `lanes`.
+template <class Visit>
+void for_lanes(std::uint32_t lanes, const Visit& visit) {
+  for (; lanes != 0; lanes &= lanes - 1) visit(std::countr_zero(lanes));
 }
 
 /// Makes 16 rays from uniform points of the zones (u[0], u[1]) in cosine-distributed directions (u[2], u[3]).

@@ -2,7 +2,6 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <numeric>
 #include <utility>
 
 #include <tbb/blocked_range.h>
@@ -10,8 +9,7 @@
 
 #include "solver/shoot/flight.h"
 #include "solver/shoot/packet_batch.h"
-#include "solver/shoot/packet_books.h"
-#include "solver/shoot/specular_packets.h"
+#include "solver/shoot/packet_tracer.h"
 
 namespace reemit {
 namespace {
@@ -66,13 +64,8 @@ class WalkTask {
         rng_(task.settings.seed, RngPurpose::kReflection),
         from_hits_(task.settings.reemission == Reemission::kFromHits),
         stop_(task.stop),
-        observer_(task.ray_observer),
         books_(books),
-        local_(books),
-        specular_(task, books),
-        doubtful_(channels_),
-        carried_(channels_),
-        again_(channels_),
+        packets_(task, books),
         zones_(zones),
         absorbed_(absorbed),
         shared_(shared),
@@ -96,7 +89,7 @@ class WalkTask {
     return true;
   }
 
-  std::uint64_t rays() const { return ray_count_; }
+  std::uint64_t rays() const { return packets_.rays(); }
 
  private:
   bool stop_requested() const { return stop_ != nullptr && stop_->requested(); }
@@ -105,10 +98,9 @@ class WalkTask {
     waiting_.clear();
     FlightCursor cursor(transport_, flight, begin);
     for (std::uint32_t first = begin; first < end; first += 16) {
-      block_.count = static_cast<int>(std::min<std::uint32_t>(16, end - first));
+      block_.number(first, static_cast<int>(std::min<std::uint32_t>(16, end - first)));
       const int behind = cursor.start16(first, block_.count, numbers, block_.rays, block_.power.data());
       if (behind > 0) count_event(books_.events.starts_behind, static_cast<std::uint64_t>(behind));
-      std::iota(block_.id, block_.id + block_.count, first);
       trace(0);
     }
     finish(0);
@@ -143,31 +135,10 @@ class WalkTask {
 
   /// Traces block_, on its way after so many bounces.
   void trace(std::uint32_t bounce) {
-    if (observer_ != nullptr) (*observer_)({block_.rays, block_.count, block_.id, bounce});
-    ray_count_ += static_cast<std::uint64_t>(block_.count);
-    arrive(block_, bounce, false);
-    if (doubtful_.count() >= 16) look_again(bounce);
-    if (carried_.count() >= 16) trace_carried(bounce);
+    packets_.trace(block_, bounce, [&](const PacketArrivals& arrived) { arrive(arrived, bounce); });
   }
-
-  void look_again(std::uint32_t bounce) {
-    doubtful_.take(again_);
-    arrive(again_, bounce, true);
-  }
-
-  void trace_carried(std::uint32_t bounce) {
-    carried_.take(again_);
-    if (observer_ != nullptr) (*observer_)({again_.rays, again_.count, again_.id, bounce});
-    ray_count_ += static_cast<std::uint64_t>(again_.count);
-    arrive(again_, bounce, false);
-    if (doubtful_.count() >= 16) look_again(bounce);
-  }
-
   void finish(std::uint32_t bounce) {
-    while (doubtful_.count() + carried_.count() > 0) {
-      if (doubtful_.count() > 0) look_again(bounce);
-      if (carried_.count() > 0) trace_carried(bounce);
-    }
+    packets_.finish(bounce, [&](const PacketArrivals& arrived) { arrive(arrived, bounce); });
   }
 
   /// Where the light of a packet is booked that came on a way of this part after so many bounces.
@@ -176,62 +147,40 @@ class WalkTask {
     return part == LightPart::kCaustic ? zones_.caustic : zones_.direct;
   }
 
-  /// Traces a block, books where each packet comes to, and keeps those that survive.
-  void arrive(PacketBlock& block, std::uint32_t bounce, bool second_look) {
-    transport_.rays().closest16(block.rays, block.count, hits_);
-    std::uint32_t zones[16];
-    transport_.zones_of(hits_, zones);
-    const std::vector<std::int64_t>& incident = account_of(LightPart::kDirect, bounce);
-    // With many zones the books are larger than the caches.
-    for (int lane = 0; lane < block.count; ++lane)
-      if (zones[lane] != ZoneMesh::kNone) __builtin_prefetch(&incident[zones[lane] * values_], 1);
-    BitLanes bits;
-    specular_.draw_bits(rng_, block, bounce, bits);
-    const std::uint32_t specular = specular_.any() ? specular_.lanes(block, hits_) : 0;
+  /// Books where each packet comes to, and keeps those that survive.
+  void arrive(const PacketArrivals& arrived, std::uint32_t bounce) {
+    const PacketBlock& block = arrived.block;
     // The compiler cannot know that booking leaves the members of this object alone.
     const std::size_t values = values_;
-    for (int lane = 0; lane < block.count; ++lane) {
-      std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * values];
-      const ZoneId zone(zones[lane]);
-      if (!second_look && !transport_.rays().has_left(hits_.triangle[lane]) &&
-          (!zone.valid() || transport_.rays().is_at_edge(hits_, lane))) {
-        doubtful_.add_doubtful(transport_.rays(), block, hits_, lane);
-        local_.count_second_look();
-        continue;
-      }
-      if (hits_.triangle[lane] == RayTracer::kMiss) {
-        for (std::size_t c = 0; c < values; ++c)
-          local_.escape(block.rays.dx[lane], block.rays.dy[lane], block.rays.dz[lane], c, quanta[c]);
-        continue;
-      }
-      const TriangleId met(hits_.triangle[lane]);
-      const SurfaceId surface = transport_.surface_model().surface(met, hits_.front[lane]);
-      if (!zone.valid()) {
-        count_event(books_.events.back_hits);
-        for (std::size_t c = 0; c < values; ++c)
-          book(books_.absorbed_on_backs[surface.index() * values + c], quanta[c]);
-        continue;
-      }
-      const bool is_specular = (specular >> lane & 1U) != 0;
-      if (is_specular) specular_.attenuate(block.way[lane], hits_, lane, quanta);
-      std::vector<std::int64_t>& part = account_of(block.way[lane].part, bounce);
-      for (std::size_t c = 0; c < values; ++c) book(part[zone.index() * values + c], quanta[c], shared_);
-      reflect(zone, surface, block, lane, bounce, is_specular, bits);
-    }
+    // With many zones the books are larger than the caches.
+    const std::vector<std::int64_t>& incident = account_of(LightPart::kDirect, bounce);
+    for_lanes(arrived.in_zones,
+              [&](int lane) { __builtin_prefetch(&incident[arrived.zones[lane] * values], 1); });
+    BitLanes bits;
+    packets_.specular().draw_bits(rng_, block, bounce, bits);
+    for_lanes(arrived.in_zones, [&](int lane) {
+      std::int64_t* account = &account_of(block.way[lane].part, bounce)[arrived.zones[lane] * values];
+      const std::int64_t* quanta = &block.power[static_cast<std::size_t>(lane) * values];
+      for (std::size_t c = 0; c < values; ++c) book(account[c], quanta[c], shared_);
+    });
+    for_lanes(arrived.in_zones, [&](int lane) { reflect(arrived, lane, bounce, bits); });
   }
 
   /// Absorbs a packet, scatters it, or sends it on as a ray.
-  void reflect(ZoneId zone, SurfaceId surface, const PacketBlock& block, int lane, std::uint32_t bounce,
-               bool is_specular, const BitLanes& bits) {
+  void reflect(const PacketArrivals& arrived, int lane, std::uint32_t bounce, const BitLanes& bits) {
+    const PacketBlock& block = arrived.block;
+    const Hit16& hits = arrived.hits;
+    const ZoneId zone(arrived.zones[lane]);
     const auto k = static_cast<std::size_t>(lane);
     const std::int64_t* quanta = &block.power[k * values_];
     const SurfaceModel& surfaces = transport_.surface_model();
-    const TriangleId met(hits_.triangle[lane]);
-    const double* rho = surfaces.reflectance(zone, met, hits_.front[lane]);
-    double survival = surfaces.largest_reflectance(zone, met, hits_.front[lane]);
-    std::int64_t* absorbed = &absorbed_[surface.index() * values_];
+    const TriangleId met(hits.triangle[lane]);
+    const double* rho = surfaces.reflectance(zone, met, hits.front[lane]);
+    double survival = surfaces.largest_reflectance(zone, met, hits.front[lane]);
+    std::int64_t* absorbed = &absorbed_[surfaces.surface(met, hits.front[lane]).index() * values_];
     const float u = low_bytes_to_unit(bits, k);
-    const double on = is_specular ? static_cast<double>(specular_.chances(hits_, lane)) : 0;
+    const bool is_specular = (arrived.specular >> lane & 1U) != 0;
+    const double on = is_specular ? static_cast<double>(packets_.specular().chances(hits, lane)) : 0;
     if (survival + on > 1) {
       // Powers that survive grow by as much as the odds of all ways are too large.
       if (survival + on > kUsualRoulette) count_event(books_.events.roulette_jumps);
@@ -240,15 +189,15 @@ class WalkTask {
     if (!(u < survival)) {
       for (std::size_t c = 0; c < values_; ++c) absorbed[c] += quanta[c];
       if (on > 0)
-        specular_.carry_on(block, hits_, lane, bounce, u - static_cast<float>(survival),
-                           1 - static_cast<float>(survival), carried_);
+        packets_.specular().carry_on(block, hits, lane, bounce, u - static_cast<float>(survival),
+                                     1 - static_cast<float>(survival), packets_.carried());
       return;
     }
     waiting_.packets.push_back(
-        {hits_.triangle[lane],
-         hits_.u[lane],
-         hits_.v[lane],
-         hits_.front[lane],
+        {hits.triangle[lane],
+         hits.u[lane],
+         hits.v[lane],
+         hits.front[lane],
          block.id[lane],
          {CounterRng::to_unit(bits.word[0][k]), CounterRng::to_unit(bits.word[1][k]),
           CounterRng::to_unit(bits.word[2][k]), CounterRng::to_unit(bits.word[3][k])}});
@@ -270,20 +219,13 @@ class WalkTask {
   CounterRng rng_;
   bool from_hits_;
   const StopToken* stop_;
-  const RayObserver* observer_;
   BatchBooks& books_;
-  LocalBooks local_;
-  SpecularPackets specular_;
-  WaitingPackets doubtful_;
-  WaitingPackets carried_;
-  PacketBlock again_;
+  PacketTracer packets_;
   WalkAccounts& zones_;
   std::vector<std::int64_t>& absorbed_;  // of this thread alone
   bool shared_;
-  std::uint64_t ray_count_ = 0;
   ZoneLanes lanes_{};
   PacketBlock block_;
-  Hit16 hits_{};
   ScatteredPackets waiting_;
   ScatteredPackets leaving_;
 };
