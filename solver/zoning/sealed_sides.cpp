@@ -88,22 +88,34 @@ class Reach {
     for (const PunctualLight& light : lights_before_faces(scene, rays_)) {
       const PunctualEmitter emitter = make_punctual_emitter(light, rays_);
       if (is_at_infinity(emitter)) is_outside_lit_ = true;
-      for (std::uint32_t k = 0; k < kRaysPerLight; ++k) {
-        const std::array<float, 4> u = rng_.uniform4(k, kNothing, 0);
-        const LightRay start = start_light_ray(emitter, u[0], u[1], u[2], u[3]);
-        join(static_cast<std::uint32_t>(light_), seen(start.origin, start.direction));
+      std::uint32_t met[16];
+      for (std::uint32_t first = 0; first < kRaysPerLight; first += 16) {
+        Ray16 rays;
+        for (std::uint32_t k = 0; k < 16; ++k) {
+          const std::array<float, 4> u = rng_.uniform4(first + k, kNothing, 0);
+          const LightRay start = start_light_ray(emitter, u[0], u[1], u[2], u[3]);
+          rays.set(static_cast<int>(k), start.origin, start.direction);
+        }
+        look(rays, 16, met);
+        for (const std::uint32_t side : met) join(static_cast<std::uint32_t>(light_), side);
       }
     }
   }
 
-  /// The side that a ray meets.
-  std::uint32_t seen(const Vec3f& origin, const Vec3f& direction) const {
-    Hit hit;
-    if (!rays_.closest(origin, direction, hit)) return kOutside;
-    if (!mesh_.has_zones(hit.triangle, hit.front)) return kNothing;
-    const auto t = static_cast<std::uint32_t>(hit.triangle.index());
-    if (rays_.is_at_edge(t, hit.u, hit.v)) return kNothing;
-    return static_cast<std::uint32_t>(side_of(hit.triangle, hit.front).index());
+  /// The sides that the first `count` of 16 rays meet.
+  void look(const Ray16& rays, int count, std::uint32_t* met) const {
+    Hit16 hits;
+    rays_.closest16(rays, count, hits);
+    rays_.look_again16(rays, count, hits);
+    for (int lane = 0; lane < count; ++lane) {
+      const TriangleId t(hits.triangle[lane]);
+      if (hits.triangle[lane] == RayTracer::kMiss)
+        met[lane] = kOutside;
+      else if (!mesh_.has_zones(t, hits.front[lane]) || rays_.is_at_edge(hits, lane))
+        met[lane] = kNothing;
+      else
+        met[lane] = static_cast<std::uint32_t>(side_of(t, hits.front[lane]).index());
+    }
   }
 
   void join(std::uint32_t from, std::uint32_t to) {
@@ -133,22 +145,30 @@ class Reach {
   /// Rays number `first` to `first` + `count` - 1 of each of these sides.
   void join_seen(const std::vector<std::uint32_t>& sides, std::uint32_t first, std::uint32_t count) {
     std::vector<std::uint32_t> met(sides.size() * count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, met.size(), 1024), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i)
-        met[i] = met_by(sides[i / count], first + static_cast<std::uint32_t>(i % count));
+    const std::size_t blocks = (met.size() + 15) / 16;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 64), [&](const auto& range) {
+      Ray16 rays;
+      for (std::size_t block = range.begin(); block != range.end(); ++block) {
+        const std::size_t begin = 16 * block;
+        const int lanes = static_cast<int>(std::min<std::size_t>(16, met.size() - begin));
+        for (int lane = 0; lane < lanes; ++lane) {
+          const std::size_t i = begin + static_cast<std::size_t>(lane);
+          start(sides[i / count], first + static_cast<std::uint32_t>(i % count), rays, lane);
+        }
+        look(rays, lanes, &met[begin]);
+      }
     });
     for (std::size_t i = 0; i < met.size(); ++i) join(sides[i / count], met[i]);
   }
 
-  /// What ray number `round` of a side meets.
-  std::uint32_t met_by(std::uint32_t side, std::uint32_t round) const {
+  /// Ray number `round` of a side.
+  void start(std::uint32_t side, std::uint32_t round, Ray16& rays, int lane) const {
     const std::array<float, 4> u = rng_.uniform4(side, round, 0);
     auto [a, b] = sample_triangle(u[0], u[1]);
     a = kMargin + (1 - 3 * kMargin) * a;
     b = kMargin + (1 - 3 * kMargin) * b;
     const SurfacePoint x = surface_point(rays_, triangle_of(SideId(side)), a, b, is_front(SideId(side)));
-    const Vec3f direction = Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3]));
-    return seen(ray_origin(rays_, x), direction);
+    rays.set(lane, ray_origin(rays_, x), Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3])));
   }
 
   const ZoneMesh& mesh_;
