@@ -11,6 +11,7 @@ inline constexpr int kSobolDimensions = 8;
 /// Bits of an unscrambled point from last to first. Pre: 0 <= dimension < kSobolDimensions.
 std::uint32_t reversed_sobol_bits(std::uint32_t index, int dimension);
 
+/// Bit k becomes bit 31 - k.
 constexpr std::uint32_t reversed_bits(std::uint32_t v) {
   v = ((v >> 1) & 0x55555555U) | ((v & 0x55555555U) << 1);
   v = ((v >> 2) & 0x33333333U) | ((v & 0x33333333U) << 2);

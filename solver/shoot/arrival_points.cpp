@@ -45,29 +45,28 @@ void ArrivalPoints::find16(const TrianglePoints16& __restrict points, const std:
   const std::uint64_t sweep_key = sweep_key_;
   alignas(64) std::uint32_t u[16];
   alignas(64) std::uint32_t v[16];
+  alignas(64) std::uint32_t in_parts[16];
   std::uint32_t any_group = 0;
   for (int lane = 0; lane < 16; ++lane) {
-    const std::uint32_t in_group = zones[lane] >= first_group && zones[lane] != ZoneMesh::kNone ? 1U : 0U;
-    any_group |= in_group;
-    const std::int32_t parts = in_group != 0 ? std::int32_t{kMemberFractions} : std::int32_t{kFractions};
+    const bool in_group = (zones[lane] >= first_group) & (zones[lane] != ZoneMesh::kNone);
+    any_group |= in_group ? 1U : 0U;
+    const std::int32_t parts = in_group ? std::int32_t{kMemberFractions} : std::int32_t{kFractions};
     const auto i = static_cast<std::int32_t>(points.u[lane] * static_cast<float>(parts));
     const auto j = static_cast<std::int32_t>(points.v[lane] * static_cast<float>(parts));
     u[lane] = static_cast<std::uint32_t>(i < 0 ? 0 : i > parts - 1 ? parts - 1 : i);
     v[lane] = static_cast<std::uint32_t>(j < 0 ? 0 : j > parts - 1 ? parts - 1 : j);
+    in_parts[lane] = static_cast<std::uint32_t>(parts);
   }
   for (int lane = 0; lane < 16; ++lane) {
     const std::uint64_t zone = zones[lane] == ZoneMesh::kNone ? 0 : zones[lane];
     arrived.place[lane] = zone * per_zone + (std::uint64_t{bits[lane]} * per_zone >> 32);
-    arrived.key[lane] =
-        sweep_key | std::uint64_t{bits[lane] & 0xffffU} << 40 | std::uint64_t{u[lane]} << 20 | v[lane];
+    arrived.key[lane] = sweep_key | std::uint64_t{bits[lane] & 0xffffU} << 40 |
+                        std::uint64_t{u[lane]} * in_parts[lane] | v[lane];
   }
-  if (any_group == 0) return;
-  for (int lane = 0; lane < 16; ++lane) {
-    if (zones[lane] < first_group || zones[lane] == ZoneMesh::kNone) continue;
+  for (int lane = 0; any_group != 0 && lane < 16; ++lane) {
+    if (in_parts[lane] != kMemberFractions) continue;
     const std::uint64_t member = mesh_->member(TriangleId(points.triangle[lane]), points.front[lane]);
-    const std::uint64_t point = member << 20 | std::uint64_t{u[lane]} << 10 | v[lane];
-    arrived.key[lane] =
-        has_points(ZoneId(zones[lane])) ? sweep_key | std::uint64_t{bits[lane] & 0xffffU} << 40 | point : 0;
+    arrived.key[lane] = has_points(ZoneId(zones[lane])) ? arrived.key[lane] | member << 20 : 0;
   }
 }
 

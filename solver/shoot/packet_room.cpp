@@ -1,5 +1,8 @@
 #include "solver/shoot/packet_room.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "solver/emit/light_places.h"
 #include "solver/shoot/curved_lanes.h"
 #include "solver/trace/surface_point.h"
@@ -39,6 +42,36 @@ std::vector<std::uint8_t> PacketRoom::needs_of_zones() const {
         sky->need(rays_->point(x.triangle, u, v), side_normal(*rays_, x.triangle, u, v, x.front)));
   }
   return needs;
+}
+
+void PacketRoom::put_zone(ZoneId z, ZoneLanes& lanes, int first, int last) const {
+  const TriangleId t = mesh_->zone_triangle(z);
+  if (t.index() >= mesh_->flat_count() || mesh_->is_group(z)) {
+    const std::uint32_t bits = lane_bits(first, last);
+    lanes.one_by_one |= bits;
+    lanes.points &= ~bits;
+    lanes.feet &= ~bits;
+    std::fill(lanes.zone + first, lanes.zone + last, static_cast<std::uint32_t>(z.index()));
+    return;
+  }
+  const TrianglePatch& p = patches_[t.index()];
+  const SideCell zone = mesh_->zone_cell(z);
+  put_flat_side(static_cast<std::uint32_t>(t.index()), zone.front, lanes, first, last);
+  lanes.without_edges &= ~lane_bits(first, last);
+  const auto& [from, a, b] = zone.corners.at;
+  // Of the grid of its corners, in edges of the cells that the triangle is divided into.
+  const float size = static_cast<float>(p.divisions) / static_cast<float>(zone.corners.divisions);
+  const auto along = [&](const GridPoint& to, const GridPoint& of) {
+    return std::pair(size * static_cast<float>(to.i - of.i), size * static_cast<float>(to.j - of.j));
+  };
+  const auto [i, j] = along(from, {0, 0});
+  const auto [i1, j1] = along(a, from);
+  const auto [i2, j2] = along(b, from);
+  for (int k = 0; k < 3; ++k) {
+    std::fill(lanes.corner[k] + first, lanes.corner[k] + last, p.corner[k] + i * p.edge1[k] + j * p.edge2[k]);
+    std::fill(lanes.edge1[k] + first, lanes.edge1[k] + last, i1 * p.edge1[k] + j1 * p.edge2[k]);
+    std::fill(lanes.edge2[k] + first, lanes.edge2[k] + last, i2 * p.edge1[k] + j2 * p.edge2[k]);
+  }
 }
 
 bool PacketRoom::start_from(ZoneId z, float u0, float u1, const Vec3f& local, Ray16& rays, int lane) const {

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "mesh/pieces/texture_split.h"
+#include "scenes/model/colour.h"
 #include "scenes/model/colour_spectra.h"
 #include "solver/texture/texture_lookup.h"
 
@@ -166,9 +167,10 @@ void RoomTextures::in_bands(const Rgb& rgb, const TexelSpectra& spectra, Values&
   if (kind_ == BandKind::kRgb) {
     std::copy(rgb.begin(), rgb.end(), values.begin());
   } else if (kind_ == BandKind::kGrey) {
-    // Luminance of Rec.709 primaries; of grey the same.
+    // Of grey its own value, to the last bit.
+    static const Eigen::Array3f weights = rec709_luminance_weights().cast<float>();
     const bool is_grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
-    values[0] = is_grey ? rgb[0] : 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
+    values[0] = is_grey ? rgb[0] : weights[0] * rgb[0] + weights[1] * rgb[1] + weights[2] * rgb[2];
   } else {
     Rgb tinted;
     for (std::size_t c = 0; c < 3; ++c) tinted[c] = rgb[c] * spectra.tint[static_cast<Eigen::Index>(c)];
