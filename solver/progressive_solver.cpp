@@ -191,8 +191,10 @@ class ProgressiveSolver::Run {
     return solution_;
   }
 
-  Solution finish(const ProgressCallback& progress, Examination examination) {
-    if (room_.is_dark()) return std::move(solution_);
+  const Room& room() const { return room_.room; }
+
+  void end(const ProgressCallback& progress, Examination examination) {
+    if (room_.is_dark()) return;
     if (record().stopped == StopReason::kUnderWay) end_batches(StopReason::kInterrupted);
     arena_.execute([&] {
       gather_what_is_small(room_.room, direct_ && direct_->is_for(last_weight()), schedule_, interrupt_,
@@ -202,8 +204,9 @@ class ProgressiveSolver::Run {
       record().seconds = seconds_since(begin_);
     });
     if (examination == Examination::kWhole) look_for_lost_light(room_, interrupt_, solution_);
-    return std::move(solution_);
   }
+
+  Solution hand_over() { return std::move(solution_); }
 
  private:
   SolveRecord& record() { return solution_.record; }
@@ -372,8 +375,15 @@ SolveProgress ProgressiveSolver::progress() const {
 const Solution& ProgressiveSolver::checkpoint() {
   return run_->checkpoint();
 }
+void ProgressiveSolver::end(const ProgressCallback& progress, Examination examination) {
+  run_->end(progress, examination);
+}
 Solution ProgressiveSolver::finish(const ProgressCallback& progress, Examination examination) {
-  return run_->finish(progress, examination);
+  run_->end(progress, examination);
+  return run_->hand_over();
+}
+const Room& ProgressiveSolver::room() const {
+  return run_->room();
 }
 
 std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution) {

@@ -7,6 +7,7 @@
 #include "mesh/build_mesh.h"
 #include "scenes/model/scene.h"
 #include "scenes/model/work_watch.h"
+#include "solver/room/room.h"
 #include "solver/solution/solution.h"
 #include "solver/solution/solver_settings.h"
 
@@ -67,10 +68,13 @@ class ProgressiveSolver {
   const Solution& solution() const;
   /// The same with all that the record says about its noise, ready to be saved.
   const Solution& checkpoint();
-  /// Ends the run and hands over its solution, with light on zones too small for packets. An interrupt cuts
-  /// the examination short: what is not known then is empty in SolveRecord, and Solution::light_warnings says
-  /// so of lost light. Once, as the last call.
+  /// Ends the run, with light on zones too small for packets. An interrupt cuts the examination short: what
+  /// is not known then is empty in SolveRecord, and Solution::light_warnings says so of lost light. Once.
+  void end(const ProgressCallback& progress = {}, Examination examination = Examination::kWhole);
+  /// The same, and hands over the solution. As the last call.
   Solution finish(const ProgressCallback& progress = {}, Examination examination = Examination::kWhole);
+  /// The room as rays meet it, with the zones of the solution.
+  const Room& room() const;
 
  private:
   class Run;

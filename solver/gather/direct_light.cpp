@@ -186,7 +186,7 @@ void DirectLight::add_samples(const SurfacePoint& x, const SobolSequence& sequen
     return std::array<float, kDimensions>{sequence.sample(index, 0), sequence.sample(index, 1),
                                           sequence.sample(index, 2)};
   };
-  estimate_all(x, count, numbers, [&](const Arrival& light) {
+  estimate_all(x, count, numbers, [&](int, const Arrival& light) {
     if (!light.arrives()) return;
     for (std::size_t b = 0; b < band_count(); ++b) {
       const double e = static_cast<double>(light.factor) * static_cast<double>(light.strength_in(b)) *

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -53,7 +54,14 @@ class DirectLight {
   template <class Numbers>
   void add_samples(const SurfacePoint& x, int count, const Numbers& numbers, const float* weight,
                    float* sum) const {
-    estimate_all(x, count, numbers, [&](const Arrival& light) { add(light, weight, sum); });
+    add_samples(x, count, numbers, weight, [&](int) { return sum; });
+  }
+  /// The same for samples that have different sums: `sum_of(i)`.
+  template <class Numbers, class SumOf>
+  requires std::invocable<SumOf, int>
+  void add_samples(const SurfacePoint& x, int count, const Numbers& numbers, const float* weight,
+                   const SumOf& sum_of) const {
+    estimate_all(x, count, numbers, [&](int i, const Arrival& light) { add(light, weight, sum_of(i)); });
   }
 
   /// Whether a sample weighs all luminaires for its point; weights for many points near each other can then
@@ -119,7 +127,7 @@ class DirectLight {
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
                    const std::array<float, kDimensions>& u) const;
-  /// Calls back with each of `count` estimates at one point.
+  /// Calls back with the number and the estimate of each of `count` samples at one point.
   template <class Numbers, class CallBack>
   void estimate_all(const SurfacePoint& x, int count, const Numbers& numbers,
                     const CallBack& call_back) const {
@@ -130,7 +138,7 @@ class DirectLight {
       const std::array<float, kDimensions> u = numbers(i);
       if (!choice || selection_ == Selection::kSpatial)  // the tree takes a number for each
         choice.emplace(table_, selection_, origin, x.normal, u[2]);
-      call_back(estimate(x, origin, *choice, u));
+      call_back(i, estimate(x, origin, *choice, u));
     }
   }
   void add(const Arrival& light, const float* weight, float* sum) const;

@@ -8,7 +8,7 @@
 namespace reemit {
 
 SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomTextures& textures,
-                           double metres_per_unit)
+                           double metres_per_unit, TextureMeans means)
     : textures_(&textures),
       metres_per_unit_(static_cast<float>(metres_per_unit)),
       bands_(scene.bands.count()),
@@ -57,7 +57,7 @@ SurfaceModel::SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomT
                       .specular = specular.exists() && back,
                       .absorbs_before = specular.absorbs_inside()});
   }
-  if (!textures.empty()) add_zone_rows(mesh);
+  if (!textures.empty() && means == TextureMeans::kFound) add_zone_rows(mesh);
 }
 
 // The row of two surfaces whose faces lie back to back. Neither emits nor is specular (may_be_back_to_back).

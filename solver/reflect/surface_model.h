@@ -12,6 +12,7 @@
 #include "solver/reflect/lobe.h"
 #include "solver/reflect/specular.h"
 #include "solver/texture/room_textures.h"
+#include "solver/texture/zone_means.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
@@ -26,8 +27,8 @@ class SurfaceModel {
   using PointValues = RoomTextures::Values;
 
   /// `metres_per_unit`: of the space of the rays (RayTracer::metres_per_unit). The textures must outlive it.
-  SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomTextures& textures,
-               double metres_per_unit);
+  SurfaceModel(const Scene& scene, const ZoneMesh& mesh, const RoomTextures& textures, double metres_per_unit,
+               TextureMeans means = TextureMeans::kFound);
 
   std::size_t band_count() const { return bands_; }
   std::size_t surface_count() const { return surface_count_; }

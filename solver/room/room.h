@@ -14,16 +14,16 @@ namespace reemit {
 /// light. Does not change but by believe_misses. Const members may be called from any thread.
 class Room {
  public:
-  /// Builds the tree for rays. Scene and mesh must outlive the room.
-  Room(const Scene& scene, const ZoneMesh& mesh)
+  /// Builds the tree for rays. Scene and mesh must outlive the room. `means`: of textures, over its zones.
+  Room(const Scene& scene, const ZoneMesh& mesh, TextureMeans means = TextureMeans::kFound)
       : scene_(&scene),
         mesh_(&mesh),
         textures_(scene, mesh),
         rays_(mesh, textures_),
-        surfaces_(scene, mesh, textures_, rays_.metres_per_unit()),
+        surfaces_(scene, mesh, textures_, rays_.metres_per_unit(), means),
         sky_(make_sky_light(scene, mesh, rays_, surfaces_)) {}
-  Room(const Scene&&, const ZoneMesh&) = delete;
-  Room(const Scene&, const ZoneMesh&&) = delete;
+  Room(const Scene&&, const ZoneMesh&, TextureMeans = {}) = delete;
+  Room(const Scene&, const ZoneMesh&&, TextureMeans = {}) = delete;
   Room(const Room&) = delete;
   Room& operator=(const Room&) = delete;
 

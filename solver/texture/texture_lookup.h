@@ -9,6 +9,7 @@ namespace reemit {
 
 /// The texel of a row of `size` that stands for number i, which may lie beyond its ends.
 inline int wrapped(int i, int size, TextureWrap wrap) {
+  if (i >= 0 && i < size) return i;
   if (wrap == TextureWrap::kClamp) return std::clamp(i, 0, size - 1);
   const int period = wrap == TextureWrap::kMirror ? 2 * size : size;
   int k = i % period;

@@ -35,46 +35,75 @@ double longest_edge(const ZoneMesh& mesh, const SideCell& cell) {
   return edge;
 }
 
-CellMeans means_of(const RoomTextures& textures, const ZoneMesh& mesh, const SideCell& cell,
-                   std::size_t bands) {
-  const SurfaceId surface = mesh.triangle(cell.triangle).surface;
-  const bool varies = textures.varies_reflectance(surface) && (cell.front || textures.varies_back(surface));
-  const bool glows = textures.varies_emission(surface);
-  const bool is_cut_out = textures.is_cut_out(surface) && !mesh.triangle(cell.triangle).is_curved();
-  const double edge = longest_edge(mesh, cell);
-  const double texel = textures.texel_size(cell.triangle);
-  const int n = static_cast<int>(std::clamp<double>(std::ceil(8 * edge / texel), 4, kMostMeanDivisions));
-  // What each point stands for, where there are too few of them.
-  const double spot = edge / n > 0.5 * texel ? edge / n : 0;
-  CellMeans sum;
-  if (varies) sum.reflectance.assign(bands, 0.0);
-  if (varies) sum.plain.assign(bands, 0.0);
-  if (glows) sum.radiance.assign(bands, 0.0);
-  RoomTextures::Values values;
+/// The middles of the n x n parts of a cell.
+std::vector<InCell> middles_of_parts(int n) {
+  std::vector<InCell> middles;
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n * n); ++k) {
     const auto corner = grid_cell(static_cast<std::uint32_t>(n), k).corners();
-    const SidePoint at = cell_point(cell, static_cast<float>((corner[0].u + corner[1].u + corner[2].u) / 3),
-                                    static_cast<float>((corner[0].v + corner[1].v + corner[2].v) / 3));
-    const auto u = static_cast<float>(at.at.u);
-    const auto v = static_cast<float>(at.at.v);
-    const double solid = is_cut_out ? static_cast<double>(textures.opacity(cell.triangle, u, v)) : 1;
-    sum.solid += solid;
-    if (varies) {
-      textures.reflectance(cell.triangle, u, v, static_cast<float>(spot), values);
-      add(values, solid, sum.reflectance);
-      add(values, 1, sum.plain);
-    }
-    if (glows) {
-      textures.radiance(cell.triangle, u, v, static_cast<float>(spot), values);
-      add(values, solid, sum.radiance);
-    }
+    middles.push_back({static_cast<float>((corner[0].u + corner[1].u + corner[2].u) / 3),
+                       static_cast<float>((corner[0].v + corner[1].v + corner[2].v) / 3)});
   }
-  const double points = static_cast<double>(n) * n;
-  sum.solid /= points;
-  for (std::vector<double>* values_sum : {&sum.reflectance, &sum.plain, &sum.radiance})
-    for (double& x : *values_sum) x /= points;
-  return sum;
+  return middles;
 }
+
+/// Takes means over cells. One per thread.
+class CellReader {
+ public:
+  CellReader(const RoomTextures& textures, const ZoneMesh& mesh, std::size_t bands)
+      : textures_(textures), mesh_(mesh), bands_(bands) {}
+
+  CellMeans means_of(const SideCell& cell) {
+    const SurfaceId surface = mesh_.triangle(cell.triangle).surface;
+    const bool varies =
+        textures_.varies_reflectance(surface) && (cell.front || textures_.varies_back(surface));
+    const bool glows = textures_.varies_emission(surface);
+    const bool is_cut_out = textures_.is_cut_out(surface) && !mesh_.triangle(cell.triangle).is_curved();
+    const double edge = longest_edge(mesh_, cell);
+    const double texel = textures_.texel_size(cell.triangle);
+    const int n = static_cast<int>(std::clamp<double>(std::ceil(8 * edge / texel), 4, kMostMeanDivisions));
+    // What each point stands for, where there are too few of them.
+    const auto spot = static_cast<float>(edge / n > 0.5 * texel ? edge / n : 0);
+    CellMeans sum;
+    if (varies) sum.reflectance.assign(bands_, 0.0);
+    if (varies && is_cut_out) sum.plain.assign(bands_, 0.0);
+    if (glows) sum.radiance.assign(bands_, 0.0);
+    for (const InCell& middle : middles(n)) {
+      const SidePoint at = cell_point(cell, middle.a, middle.b);
+      const auto u = static_cast<float>(at.at.u);
+      const auto v = static_cast<float>(at.at.v);
+      const double solid = is_cut_out ? static_cast<double>(textures_.opacity(cell.triangle, u, v)) : 1;
+      sum.solid += solid;
+      if (varies) {
+        textures_.reflectance(cell.triangle, u, v, spot, values_);
+        add(values_, solid, sum.reflectance);
+        add(values_, 1, sum.plain);
+      }
+      if (glows) {
+        textures_.radiance(cell.triangle, u, v, spot, values_);
+        add(values_, solid, sum.radiance);
+      }
+    }
+    if (!is_cut_out) sum.plain = sum.reflectance;
+    const double points = static_cast<double>(n) * n;
+    sum.solid /= points;
+    for (std::vector<double>* values_sum : {&sum.reflectance, &sum.plain, &sum.radiance})
+      for (double& x : *values_sum) x /= points;
+    return sum;
+  }
+
+ private:
+  const std::vector<InCell>& middles(int n) {
+    std::vector<InCell>& of = middles_[static_cast<std::size_t>(n)];
+    if (of.empty()) of = middles_of_parts(n);
+    return of;
+  }
+
+  const RoomTextures& textures_;
+  const ZoneMesh& mesh_;
+  std::size_t bands_;
+  RoomTextures::Values values_;
+  std::array<std::vector<InCell>, kMostMeanDivisions + 1> middles_;
+};
 
 /// Adds a cell of this area to a zone, whose row of the sums begins at `first`.
 void add(const std::vector<double>& means, double area, std::size_t first, std::vector<double>& sums) {
@@ -112,8 +141,9 @@ ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh
   for (std::size_t first = 0; first < textured.size(); first += kCellsInTurn) {
     std::vector<CellMeans> means(std::min(kCellsInTurn, textured.size() - first));
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, means.size(), 64), [&](const auto& range) {
+      CellReader reader(textures, mesh, bands);
       for (std::size_t k = range.begin(); k != range.end(); ++k)
-        means[k] = means_of(textures, mesh, cells.cell(textured[first + k]), bands);
+        means[k] = reader.means_of(cells.cell(textured[first + k]));
     });
     for (std::size_t k = 0; k < means.size(); ++k) {
       const std::size_t z = cells.zone(textured[first + k]).index();

@@ -13,6 +13,10 @@ struct ZoneTextureMeans {
   std::vector<float> solid;         ///< Share that is there, by zone, above 0; empty without cut-outs.
 };
 
+/// Whether a room finds the means of its textures over zones, which takes a look at every texel; where they
+/// are left out, nothing may be asked that depends on a zone.
+enum class TextureMeans { kFound, kLeftOut };
+
 /// A cell is cut into no more than this squared parts to take its mean.
 inline constexpr int kMostMeanDivisions = 32;
 

@@ -97,7 +97,8 @@ MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const W
   constexpr double kSolved = 0.75;
   constexpr double kGrouped = 0.9;
   MeshResult result = build_mesh(scene, settings, watch.part(0, kMeshed));
-  const std::vector<SideUse> uses = uses_of_sides(Room(scene, result.mesh), watch.part(kMeshed, kSealed));
+  const std::vector<SideUse> uses =
+      uses_of_sides(Room(scene, result.mesh, TextureMeans::kLeftOut), watch.part(kMeshed, kSealed));
   const double area = open_area(result.mesh, uses);
   if (!(area > 0)) return result;  // there is no light
   const double zone_area = wanted_zone_area(settings, area);

@@ -34,17 +34,14 @@ Scene dimmed(Scene scene) {
   return scene;
 }
 
-Solution solve_pilot(const Scene& scene, MeshResult mesh, const WorkWatch& watch) {
+SolverSettings pilot_settings() {
   SolverSettings settings;
   settings.packets = kPackets;
   settings.batch_packets = kPackets / static_cast<std::uint64_t>(settings.smallest_batch_count);
   settings.gather_small_zones = false;
   settings.stop_share = 1e-3;
   settings.seed = kPilotSeed;
-  const std::atomic<bool> never{false};
-  ProgressiveSolver solver(scene, new_solution(scene, std::move(mesh), settings), never, watch.part(0, 0.5));
-  while (solver.step()) watch.at(0.5 + 0.5 * solver.progress().fraction);
-  return solver.finish({}, Examination::kNone);
+  return settings;
 }
 
 /// What light on a cell counts for: under a sky that on outsides, which is much brighter, less than that
@@ -97,20 +94,26 @@ LightSpread spread_of(std::span<const SeenPoint> points) {
 }
 
 PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& watch)
-    : pilot_scene_(dimmed(scene)), solution_(solve_pilot(pilot_scene_, std::move(mesh), watch)) {
-  room_.emplace(pilot_scene_, solution_.mesh);
-  field_.emplace(*room_, solution_, kHalves);
-  direct_.emplace(*room_);
-  gather_.emplace(*field_, *direct_,
-                  GatherSettings{.close_hit = 0, .continue_uneven = false, .seed = kPilotSeed});
-  const std::vector<double> means = mean_radiances(*field_);
+    : pilot_scene_(dimmed(scene)),
+      solver_(pilot_scene_, new_solution(pilot_scene_, std::move(mesh), pilot_settings()), never_,
+              watch.part(0, 0.5)),
+      field_(room(), solve(solver_, watch.part(0.5, 1)), kHalves),
+      direct_(room()),
+      gather_(field_, direct_, GatherSettings{.close_hit = 0, .continue_uneven = false, .seed = kPilotSeed}) {
+  const std::vector<double> means = mean_radiances(field_);
   mean_ = std::accumulate(means.begin(), means.end(), 0.0);
   for (const double m : means)
     band_weight_.push_back(m > 0 ? static_cast<float>(mean_ / (static_cast<double>(means.size()) * m))
                                  : 0.0F);
 }
 
-PilotLight::Looker::Looker(const PilotLight& pilot) : pilot_(&pilot), batch_(*pilot.gather_) {}
+const Solution& PilotLight::solve(ProgressiveSolver& solver, const WorkWatch& watch) {
+  while (solver.step()) watch.at(solver.progress().fraction);
+  solver.end({}, Examination::kNone);
+  return solver.solution();
+}
+
+PilotLight::Looker::Looker(const PilotLight& pilot) : pilot_(&pilot), batch_(pilot.gather_) {}
 
 LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& effort) {
   LightSpread light;
@@ -163,27 +166,43 @@ void PilotLight::Looker::send_rays(const SideCell& cell, std::span<const SeenPoi
         lambert_reflected_radiance(weight * reflectance[b], 1.0F / static_cast<float>(effort.shadows));
     ray_weight_[b] = weight * reflectance[b] / static_cast<float>(effort.gathers);
   }
+  draw_numbers(side_of(cell.triangle, cell.front), effort);
   const std::uint64_t key = key_of(cell);
-  const PointSampler rays(kPilotSeed, RngPurpose::kPilotLight, side_of(cell.triangle, cell.front).index(), 1,
-                          std::countr_zero(unsigned{kHalves}));
   for (int i = 0; i < effort.points; ++i) {
     const InCell& place = places[static_cast<std::size_t>(i)].at;
     const SidePoint at = cell_point(cell, place.a, place.b);
     const SurfacePoint x = surface_point(room.rays(), at.triangle, static_cast<float>(at.at.u),
                                          static_cast<float>(at.at.v), at.front);
-    // The same rays from every point of the side, so that their noise is the same and only differences of the
-    // light are left.
+    pilot_->direct_.add_samples(
+        x, kHalves * effort.shadows, [&](int ray) { return light_[static_cast<std::size_t>(ray)]; },
+        direct_weight_.data(),
+        [&](int ray) { return found + static_cast<std::size_t>(ray / effort.shadows) * bands; });
     for (int half = 0; half < kHalves; ++half, found += bands) {
-      const auto shadow = [&](int ray) { return rays.light(half, ray, effort.shadows); };
-      pilot_->direct_->add_samples(x, effort.shadows, shadow, direct_weight_.data(), found);
-      const auto part =
-          static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_->parts());
-      for (int ray = 0; ray < effort.gathers; ++ray) {
-        const std::array<float, 2> d = rays.hemisphere(half, ray, effort.gathers);
-        const auto path = static_cast<std::uint32_t>((i * kHalves + half) * effort.gathers + ray);
+      const auto part = static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_.parts());
+      for (int ray = half * effort.gathers; ray < (half + 1) * effort.gathers; ++ray) {
+        const std::array<float, 2>& d = hemisphere_[static_cast<std::size_t>(ray)];
+        const auto path = static_cast<std::uint32_t>(i * kHalves * effort.gathers + ray);
         batch_.add(x, d[0], d[1], {key, part, path, part}, ray_weight_.data(), found);
       }
     }
+  }
+}
+
+// The same rays from every point of the side, so that their noise is the same and only differences of the
+// light are left.
+void PilotLight::Looker::draw_numbers(SideId side, const LookEffort& effort) {
+  const auto shadows = static_cast<std::size_t>(kHalves * effort.shadows);
+  const auto gathers = static_cast<std::size_t>(kHalves * effort.gathers);
+  if (side == side_ && light_.size() == shadows && hemisphere_.size() == gathers) return;
+  side_ = side;
+  const PointSampler rays(kPilotSeed, RngPurpose::kPilotLight, side.index(), 1,
+                          std::countr_zero(unsigned{kHalves}));
+  light_.clear();
+  hemisphere_.clear();
+  for (int half = 0; half < kHalves; ++half) {
+    for (int ray = 0; ray < effort.shadows; ++ray) light_.push_back(rays.light(half, ray, effort.shadows));
+    for (int ray = 0; ray < effort.gathers; ++ray)
+      hemisphere_.push_back(rays.hemisphere(half, ray, effort.gathers));
   }
 }
 

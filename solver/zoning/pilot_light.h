@@ -1,6 +1,7 @@
 #pragma once
+#include <array>
+#include <atomic>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,7 +9,7 @@
 #include "scenes/model/work_watch.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/light_spread.h"
-#include "solver/solution/solution.h"
+#include "solver/progressive_solver.h"
 
 namespace reemit {
 
@@ -41,8 +42,8 @@ class PilotLight {
   PilotLight(const PilotLight&) = delete;
   PilotLight& operator=(const PilotLight&) = delete;
 
-  const ZoneMesh& mesh() const { return room_->mesh(); }
-  const Room& room() const { return *room_; }
+  const ZoneMesh& mesh() const { return room().mesh(); }
+  const Room& room() const { return solver_.room(); }
   /// Reflected radiance averaged over all area that is not sealed [W/(m2 sr)]; 0 in a room without light.
   double mean() const { return mean_; }
 
@@ -66,24 +67,32 @@ class PilotLight {
     /// Adds to `found` by point, half and band.
     void send_rays(const SideCell& cell, std::span<const SeenPoint> places, const LookEffort& effort,
                    float* found);
+    /// Finds the numbers of the rays from points of this side, unless those of the last cell are the same.
+    void draw_numbers(SideId side, const LookEffort& effort);
     /// Puts together what was found at these points.
     void add_up(const SideCell& cell, std::span<SeenPoint> points, const float* found) const;
 
     const PilotLight* pilot_;
     GatherBatch batch_;
-    std::vector<float> direct_weight_;  // by band
-    std::vector<float> ray_weight_;     // by band
-    std::vector<float> found_;          // by cell, point, half and band
+    SideId side_;                                   // that the numbers are of
+    std::vector<std::array<float, 3>> light_;       // numbers of shadow rays, by half and ray
+    std::vector<std::array<float, 2>> hemisphere_;  // of gather rays, likewise
+    std::vector<float> direct_weight_;              // by band
+    std::vector<float> ray_weight_;                 // by band
+    std::vector<float> found_;                      // by cell, point, half and band
     std::vector<SeenPoint> points_;
   };
 
  private:
+  /// Adds batches until there are enough.
+  static const Solution& solve(ProgressiveSolver& solver, const WorkWatch& watch);
+
   Scene pilot_scene_;
-  Solution solution_;
-  std::optional<Room> room_;
-  std::optional<RadianceField> field_;
-  std::optional<DirectLight> direct_;
-  std::optional<HemisphereGather> gather_;
+  std::atomic<bool> never_ = false;
+  ProgressiveSolver solver_;
+  RadianceField field_;
+  DirectLight direct_;
+  HemisphereGather gather_;
   double mean_ = 0;
   std::vector<float> band_weight_;  ///< Makes the bands' means alike, with the same sum.
 };

@@ -11,7 +11,7 @@ namespace reemit {
 /// solids, faces between things that touch, voids without a luminaire. Rays from points all over the sides
 /// join each side with what it sees; what no chain of such rays joins with a luminaire, or with the outside
 /// if light comes from there, is sealed. Sides without zones are 0. The same for any number of threads.
-/// Throws Interrupted when `watch` ends it.
+/// Means of textures may have been left out of the room. Throws Interrupted when `watch` ends it.
 std::vector<std::uint8_t> sealed_sides(const Room& room, const WorkWatch& watch = {});
 
 }  // namespace reemit
