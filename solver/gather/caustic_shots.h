@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "scenes/model/stop_token.h"
-#include "solver/gather/caustic_photons.h"
+#include "solver/gather/caustic_shooter.h"
 #include "solver/solution/gather_plan.h"
 
 namespace reemit {

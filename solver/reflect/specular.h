@@ -81,6 +81,8 @@ class SpecularSurface {
   bool is_rough() const { return rough_mirror_ || rough_across_; }
   /// By band, the share that is let through into all directions.
   const std::vector<float>& diffuse_transmittance() const { return diffuse_; }
+  /// Whether anything goes on but by lobes that are wide (SpecularStep::is_wide).
+  bool sends_narrowly() const { return (reflects_ && !wide_mirror_) || (transmits_ && !wide_across_); }
   /// Ways on are drawn with two numbers besides that which chooses one.
   bool is_spread() const { return is_rough() || diffuses_; }
   /// Whether light that DirectLight finds is spread on a way: by the reflected lobe, by that of a thin sheet,

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "mesh/zones/hairlines.h"
-#include "solver/trace/embree_tree.h"
+#include "solver/trace/embree_queries.h"
 
 namespace reemit {
 namespace {
@@ -16,36 +16,6 @@ namespace {
 constexpr float kEdgeWidth = 2e-6F;
 /// By how much rays are turned for the second look.
 constexpr float kTurn = 3e-6F;
-
-void intersect1(RTCScene scene, RTCRayHit& ray) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(scene, &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &ray);
-#endif
-}
-
-void intersect16(const int* valid, RTCScene scene, RTCRayHit16& rays) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect16(valid, scene, &rays);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect16(valid, scene, &context, &rays);
-#endif
-}
-
-void occluded1(RTCScene scene, RTCRay& ray) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(scene, &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene, &context, &ray);
-#endif
-}
 
 RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float far, std::uint32_t key) {
   RTCRay ray{};
@@ -105,8 +75,6 @@ RayTracer::RayTracer(const ZoneMesh& mesh, const RoomTextures& textures)
     for (const std::uint32_t v : base.triangles[t].vertex) corners_.push_back(normalised(base.vertices[v]));
     faces_.push_back({mesh.triangle_normal(TriangleId(t)).cast<float>(), -kInfinity});
   }
-  Eigen::Affine3d to_normalised = Eigen::Affine3d::Identity();
-  to_normalised.scale(1 / metres_per_unit_).translate(-centre_);
   if (faces_.empty()) faces_.push_back({Vec3f::Zero(), -kInfinity});
   for (std::size_t t = 0; t < flat_count_; ++t)
     for (int k = 0; k < 3; ++k) {
@@ -116,7 +84,7 @@ RayTracer::RayTracer(const ZoneMesh& mesh, const RoomTextures& textures)
     }
   std::vector<CurvedShape> shapes;
   for (const CurvedShape& shape : base.shapes) {
-    shapes.push_back(transformed(shape, to_normalised));
+    shapes.push_back(normalised(shape));
     shapes_.emplace_back(shapes.back());
   }
   for (std::size_t t = flat_count_; t < base.triangles.size(); ++t)
@@ -130,6 +98,12 @@ RayTracer::RayTracer(const ZoneMesh& mesh, const RoomTextures& textures)
   embree_->add_triangles(vertices, flat, feet_.triangles(), cut_outs_);
   if (!shapes.empty()) embree_->add_shapes(shapes);
   embree_->commit();
+}
+
+CurvedShape RayTracer::normalised(const CurvedShape& shape) const {
+  Eigen::Affine3d to_normalised = Eigen::Affine3d::Identity();
+  to_normalised.scale(1 / metres_per_unit_).translate(-centre_);
+  return transformed(shape, to_normalised);
 }
 
 Vec3 RayTracer::curved_point(TriangleId t, float u, float v) const {

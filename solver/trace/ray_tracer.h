@@ -51,6 +51,7 @@ class RayTracer {
   const Vec3& centre() const { return centre_; }  ///< The origin of the normalised space [m].
   Vec3 normalised_double(const Vec3& point) const { return (point - centre_) / metres_per_unit_; }
   Vec3f normalised(const Vec3& point) const { return normalised_double(point).cast<float>(); }
+  CurvedShape normalised(const CurvedShape& shape) const;
   Vec3 in_room(const Vec3f& point) const { return point.cast<double>() * metres_per_unit_ + centre_; }
 
   Vec3f corner(TriangleId t, int k) const { return corners_[3 * t.index() + static_cast<std::size_t>(k)]; }
