@@ -50,8 +50,8 @@ CausticShots shoot_all(const CausticShooter& shooter, std::vector<CausticShooter
   tbb::parallel_for(std::size_t{0}, CausticShots::kParts, [&](std::size_t p) {
     shots.parts[p] = shoot_part(shooter, shots.packets, p,
                                 {.brought = brings != nullptr ? &(*brings)[p] : nullptr, .stop = stop});
-    radii.set(shots.parts[p], stop);
   });
+  radii.set(shots.parts, stop);
   return shots;
 }
 

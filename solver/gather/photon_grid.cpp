@@ -34,11 +34,4 @@ PhotonGrid::PhotonGrid(const std::vector<Vec3f>& places, const std::vector<std::
   }
 }
 
-std::vector<std::uint32_t> PhotonGrid::numbers() const {
-  std::vector<std::uint32_t> numbers(points_.size());
-  std::transform(points_.begin(), points_.end(), numbers.begin(),
-                 [](const Point& point) { return point.number; });
-  return numbers;
-}
-
 }  // namespace reemit

@@ -18,21 +18,15 @@ class PhotonGrid {
   /// be asked for.
   PhotonGrid(const std::vector<Vec3f>& places, const std::vector<std::uint32_t>& numbers, float cell);
 
-  /// Of all points, cell by cell: neighbours are close to each other.
-  std::vector<std::uint32_t> numbers() const;
-
   /// Calls use(point number, squared distance) for every point within `radius` <= cell/2 of a place, in the
   /// same order each time.
   template <class Use>
   void visit(const Vec3f& place, float radius, const Use& use) const {
     visit_some(place, radius, std::numeric_limits<std::uint32_t>::max(),
-               [&use](std::uint32_t number, float d2, float) {
-                 use(number, d2);
-                 return true;
-               });
+               [&use](std::uint32_t number, float d2, float) { use(number, d2); });
   }
-  /// The same of at most `most` points of each cell, those that came first, as long as use(point number,
-  /// squared distance, points of the cell for each that is looked at) returns true.
+  /// The same of at most `most` points of each cell, those that came first: use(point number, squared
+  /// distance, points of the cell for each that is looked at).
   template <class Use>
   void visit_some(const Vec3f& place, float radius, std::uint32_t most, const Use& use) const {
     if (table_.empty()) return;
@@ -49,9 +43,8 @@ class PhotonGrid {
         const std::uint32_t looked_at = std::min(all, most);
         const float scale = static_cast<float>(all) / static_cast<float>(looked_at);
         for (std::uint32_t i = table_[slot].begin; i < table_[slot].begin + looked_at; ++i)
-          if (const float d2 = (points_[i].place - place).squaredNorm();
-              d2 < r2 && !use(points_[i].number, d2, scale))
-            return;
+          if (const float d2 = (points_[i].place - place).squaredNorm(); d2 < r2)
+            use(points_[i].number, d2, scale);
         break;
       }
     }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "scenes/model/stop_token.h"
 #include "solver/gather/caustic_photons.h"
@@ -32,8 +33,9 @@ class PhotonRadii {
   /// `share`: packets of the pilot over those of all parts together.
   PhotonRadii(CausticPhotons pilot, float share);
 
-  /// Sets CausticPhotons::radius_codes. When `stop` (may be null) is requested some may be those of others.
-  void set(CausticPhotons& photons, const StopToken* stop) const;
+  /// Sets CausticPhotons::radius_codes of all parts. When `stop` (may be null) is requested some may be those
+  /// of others.
+  void set(std::span<CausticPhotons> parts, const StopToken* stop) const;
 
  private:
   /// `levels`: with photons enough at a place nearby, from the largest on; becomes that of this place.
