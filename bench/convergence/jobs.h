@@ -34,6 +34,7 @@ struct StudiedRoom {
   double vertex_zone_area = 0;    ///< Largest zone area of the mesh whose vertices are wanted [m2].
   int vertex_stride = 7;          ///< Every so manyeth vertex is compared with the reference.
   bool stills_only = false;
+  bool longer_stills = false;  ///< Smoothed ones go a level further.
 };
 
 /// The rooms that are there; what is missing is noted in `table`.

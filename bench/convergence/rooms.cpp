@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -111,6 +112,8 @@ std::vector<StudiedRoom> find_rooms(const Options& options, Table& table) {
       room->tile_stride = 8;
       room->reference_samples = 2048;
       room->path_samples = {8, 32, 128};
+      room->longer_stills = name == std::string_view("modern_hall");
+      if (room->longer_stills) room->reference_samples = 8192;
     }
   return rooms;
 }

@@ -43,21 +43,25 @@ struct StillMethod {
   std::vector<StillEffort> efforts;
 };
 
+std::vector<StillEffort> smoothed_efforts(const StudiedRoom& room) {
+  std::vector<StillEffort> efforts{
+      {1U << 18, 2}, {1U << 19, 4}, {1U << 20, 8}, {1U << 21, 16}, {1U << 22, 32}};
+  if (room.longer_stills) efforts.push_back({1U << 23, 96});
+  return efforts;
+}
+
 /// Path tracing is shared out by room: its paths cost ten times as much in one as in another.
-std::vector<StillMethod> still_methods(const std::vector<int>& path_samples) {
+std::vector<StillMethod> still_methods(const StudiedRoom& room) {
   std::vector<StillMethod> methods{
       {"zones", Integrator::kZones, false, {{1U << 15, 8}, {1U << 17, 8}, {1U << 19, 16}, {1U << 21, 16}}},
       {"gather",
        Integrator::kGather,
        false,
        {{1U << 18, 4}, {1U << 20, 16}, {1U << 21, 64}, {1U << 22, 128}}},
-      {kSmoothed,
-       Integrator::kGather,
-       true,
-       {{1U << 18, 2}, {1U << 19, 4}, {1U << 20, 8}, {1U << 21, 16}, {1U << 22, 32}}},
+      {kSmoothed, Integrator::kGather, true, smoothed_efforts(room)},
       {"refined", Integrator::kGather, true, {{1U << 20, 0, 0.06}, {1U << 21, 0, 0.03}, {1U << 22, 0, 0.02}}},
       {"path", Integrator::kPath, false, {}}};
-  for (const int samples : path_samples) methods.back().efforts.push_back({0, samples});
+  for (const int samples : room.path_samples) methods.back().efforts.push_back({0, samples});
   return methods;
 }
 
@@ -146,7 +150,7 @@ class StillCurves {
         table_(table),
         mesh_(build_zones(room.scene)),
         tiles_(chosen_tiles(room)),
-        methods_(still_methods(room.path_samples)) {
+        methods_(still_methods(room)) {
     norm_.floor_share = StillSettings{}.error_floor;
     const int samples = reference_samples(room, options);
     reference_ = cache.get(

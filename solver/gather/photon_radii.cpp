@@ -30,12 +30,6 @@ std::uint8_t code_of_radius(float radius) {
   return static_cast<std::uint8_t>(std::clamp(code, 0.0F, 255.0F));
 }
 
-std::vector<std::uint32_t> numbers_below(std::size_t end) {
-  std::vector<std::uint32_t> numbers(end);
-  std::iota(numbers.begin(), numbers.end(), 0U);
-  return numbers;
-}
-
 /// Bits of a number of 21 bits at every third place.
 std::uint64_t spread_bits(std::uint64_t x) {
   x = (x | x << 32) & 0x1f00000000ffff;
@@ -45,23 +39,16 @@ std::uint64_t spread_bits(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249;
 }
 
-/// Numbers of places in [-1,1]^3 in Morton order, in which those close to each other mostly follow each
-/// other.
-std::vector<std::uint32_t> in_morton_order(const std::vector<Vec3f>& places) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      constexpr float kCells = 1 << 20;
-      const float cell = std::clamp((places[i][axis] + 1) * (kCells / 2), 0.0F, kCells);
-      code |= spread_bits(static_cast<std::uint64_t>(cell)) << axis;
-    }
-    order[i] = {code, static_cast<std::uint32_t>(i)};
-  });
-  tbb::parallel_sort(order);
-  std::vector<std::uint32_t> numbers;
-  for (const auto& [code, number] : order) numbers.push_back(number);
-  return numbers;
+/// Number of the cell that holds a place in [-1,1]^3; places whose numbers follow each other mostly lie close
+/// to each other.
+std::uint64_t morton_number(const Vec3f& place) {
+  constexpr float kCells = 1 << 20;
+  std::uint64_t number = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float cell = std::clamp((place[axis] + 1) * (kCells / 2), 0.0F, kCells);
+    number |= spread_bits(static_cast<std::uint64_t>(cell)) << axis;
+  }
+  return number;
 }
 
 }  // namespace
@@ -78,52 +65,62 @@ std::size_t level_of_radius(float radius) {
 
 PhotonRadii::PhotonRadii(CausticPhotons pilot, float share)
     : pilot_(std::move(pilot)), enough_(share * kPhotonsInRadius) {
-  const std::vector<std::uint32_t> all = numbers_below(pilot_.size());
+  std::vector<std::uint32_t> all(pilot_.size());
+  std::iota(all.begin(), all.end(), 0U);
   tbb::parallel_for(std::size_t{0}, kRadiusLevels, [&](std::size_t level) {
     grids_[level] = PhotonGrid(pilot_.places, all, 2 * radius_of_level(level));
   });
 }
 
-void PhotonRadii::set(std::span<CausticPhotons> parts, const StopToken* stop) const {
-  struct Place {
-    std::uint32_t part, photon;
+/// Finds the radii of photons that lie close to each other, one after the other.
+class PhotonRadii::Neighbours {
+ public:
+  Neighbours(const PhotonRadii& radii, std::span<const CausticPhotons> parts)
+      : radii_(radii), parts_(parts) {}
+
+  std::uint8_t code_of(const Photon& photon) {
+    const Vec3f& normal = parts_[photon.part].normals[photon.number];
+    const Vec3f& place = parts_[photon.part].places[photon.number];
+    const auto same = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
+      const CausticPhotons& part = parts_[known.photon.part];
+      return (part.places[known.photon.number] - place).squaredNorm() < known.reach * known.reach &&
+             part.is_on_face(known.photon.number, normal, place, known.reach);
+    });
+    if (same != known_.end()) return same->code;
+    const float radius = radii_.radius_at(normal, place, levels_);
+    known_.push_back({photon, kSameRadius * radius, code_of_radius(radius)});
+    return known_.back().code;
+  }
+
+ private:
+  struct Known {
+    Photon photon;
+    float reach;  // within which others have its radius
+    std::uint8_t code;
   };
-  std::vector<Place> all;
-  std::vector<Vec3f> places;
+
+  const PhotonRadii& radii_;
+  std::span<const CausticPhotons> parts_;
+  std::size_t levels_ = 0;
+  std::vector<Known> known_;
+};
+
+void PhotonRadii::set(std::span<CausticPhotons> parts, const StopToken* stop) const {
+  std::vector<std::pair<std::uint64_t, Photon>> order;
   for (std::uint32_t p = 0; p < parts.size(); ++p) {
     parts[p].radius_codes.assign(parts[p].size(), 0);
-    places.insert(places.end(), parts[p].places.begin(), parts[p].places.end());
-    for (std::uint32_t i = 0; i < parts[p].size(); ++i) all.push_back({p, i});
+    for (std::uint32_t i = 0; i < parts[p].size(); ++i)
+      order.push_back({morton_number(parts[p].places[i]), {p, i}});
   }
-  const std::vector<std::uint32_t> order = in_morton_order(places);
+  tbb::parallel_sort(order);
   const std::size_t blocks = (order.size() + kNeighbours - 1) / kNeighbours;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-    struct Known {
-      Place at;
-      float reach;  // of its radius
-      std::uint8_t code;
-    };
-    std::vector<Known> known;
-    std::size_t levels = 0;
+    Neighbours neighbours(*this, parts);
     const std::size_t end = std::min(order.size(), (block + 1) * kNeighbours);
     for (std::size_t k = block * kNeighbours; k < end; ++k) {
       if (stop != nullptr && stop->requested()) return;
-      const Place at = all[order[k]];
-      CausticPhotons& photons = parts[at.part];
-      const Vec3f& normal = photons.normals[at.photon];
-      const Vec3f& place = photons.places[at.photon];
-      const auto found = std::find_if(known.begin(), known.end(), [&](const Known& other) {
-        const CausticPhotons& those = parts[other.at.part];
-        return (those.places[other.at.photon] - place).squaredNorm() < other.reach * other.reach &&
-               those.is_on_face(other.at.photon, normal, place, other.reach);
-      });
-      if (found == known.end()) {
-        const float radius = radius_at(normal, place, levels);
-        known.push_back({at, kSameRadius * radius, code_of_radius(radius)});
-        photons.radius_codes[at.photon] = known.back().code;
-      } else {
-        photons.radius_codes[at.photon] = found->code;
-      }
+      const Photon photon = order[k].second;
+      parts[photon.part].radius_codes[photon.number] = neighbours.code_of(photon);
     }
   });
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,6 +39,12 @@ class PhotonRadii {
   void set(std::span<CausticPhotons> parts, const StopToken* stop) const;
 
  private:
+  /// One of some parts.
+  struct Photon {
+    std::uint32_t part, number;
+    auto operator<=>(const Photon&) const = default;
+  };
+  class Neighbours;
   /// `levels`: with photons enough at a place nearby, from the largest on; becomes that of this place.
   float radius_at(const Vec3f& normal, const Vec3f& place, std::size_t& levels) const;
 

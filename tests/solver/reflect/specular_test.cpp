@@ -91,6 +91,27 @@ TEST(SpecularSurface, MostSharesAreNeverLessThanTheShares) {
   EXPECT_GT(told, 10'000) << "the bound says little";
 }
 
+TEST(SpecularSurface, SendsNarrowlyUnlessAllThatGoesOnIsWide) {
+  const auto sends_narrowly = [](const NonDiffusePart& part) {
+    return SpecularSurface(material_of(0.2, part), 1).sends_narrowly();
+  };
+  EXPECT_FALSE(sends_narrowly({}));
+  EXPECT_TRUE(sends_narrowly(mirror(0.5)));
+  EXPECT_TRUE(sends_narrowly(glass(1.5, true)));
+  NonDiffusePart gloss = mirror(0.3);
+  gloss.roughness = 0.9 * SpecularSurface::kWide;
+  EXPECT_TRUE(sends_narrowly(gloss));
+  gloss.roughness = 1.1 * SpecularSurface::kWide;
+  EXPECT_FALSE(sends_narrowly(gloss));
+  gloss.diffuse_transmittance = Spectrum::Constant(1, 0.2);
+  EXPECT_FALSE(sends_narrowly(gloss)) << "into all directions is wide";
+  NonDiffusePart sheet = gloss;
+  sheet.specular_transmittance = Spectrum::Constant(1, 0.2);
+  EXPECT_TRUE(sends_narrowly(sheet)) << "what goes straight through is not";
+  sheet.transmission_roughness = 0.5;
+  EXPECT_FALSE(sends_narrowly(sheet));
+}
+
 TEST(Fresnel, OfASurfaceOfGlass) {
   // Closed form, n = 1.5.
   const std::array<std::array<double, 2>, 6> truth{{{0, 0.04},
