@@ -39,7 +39,7 @@ install(DIRECTORY scenes mesh solver viewer_export DESTINATION ${CMAKE_INSTALL_I
         PATTERN library EXCLUDE
         REGEX "/scenes/io/(common/json_cursor|gltf/gltf_(accessors|document|draco|draco_mesh|extensions|materials|meshes|meshopt|model|nodes|texture))\\.h$" EXCLUDE
         REGEX "/scenes/io/native/native_(ies_light|materials|objects|shapes|sky|textures|transform|view)\\.h$" EXCLUDE
-        REGEX "/solver/(solution/(audit_group|gather_plan_group|hdf5_[a-z_]+|texture_group)|trace/embree_tree)\\.h$" EXCLUDE
+        REGEX "/solver/(solution/(audit_group|gather_plan_group|hdf5_[a-z_]+|texture_group)|trace/embree_(queries|tree))\\.h$" EXCLUDE
         REGEX "/viewer_export/formats/glb_file\\.h$" EXCLUDE)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/generated/reemit/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/reemit)
 
