@@ -12,8 +12,8 @@
 namespace reemit {
 namespace {
 
-constexpr double kRadius = 0.4;
-const Vec3 kMiddle(1.1, 1.9, 0.9);
+constexpr double kBallRadius = 0.4;
+const Vec3 kBallMiddle(1.1, 1.9, 0.9);
 
 /// A closed room with a crate, tilted sheets and a sphere.
 test::RoomBuilder room_of_faces() {
@@ -25,7 +25,7 @@ test::RoomBuilder room_of_faces() {
     const double x = 0.3 + 0.5 * i;
     room.quad(wall, {Vec3(x, .2, .4), Vec3(x + .3, .2, .9), Vec3(x + .3, .5, .9), Vec3(x, .5, .4)}, 1);
   }
-  room.shape(wall, Sphere{kMiddle, kRadius, false}, 1);
+  room.shape(wall, Sphere{kBallMiddle, kBallRadius, false}, 1);
   return room;
 }
 
@@ -46,9 +46,9 @@ double depth_in_triangle(const std::array<Vec3, 3>& corner, const Vec3& origin, 
 
 /// The same of the sphere, as a share of its radius.
 double depth_in_sphere(const Vec3& origin, const Vec3& direction) {
-  const Vec3 to_middle = kMiddle - origin;
+  const Vec3 to_middle = kBallMiddle - origin;
   const double along = to_middle.dot(direction);
-  return along < 0 ? -1 : 1 - (to_middle - along * direction).norm() / kRadius;
+  return along < 0 ? -1 : 1 - (to_middle - along * direction).norm() / kBallRadius;
 }
 
 // Rays that miss or go through by less than 1e-5 of a face are left to rounding.
@@ -72,7 +72,7 @@ TEST(FaceSieve, finds_the_rays_that_go_through_one_of_its_faces) {
       const auto k = static_cast<std::size_t>(i);
       do {
         origin[k] = {3 * uniform(random), 3 * uniform(random), 2.5 * uniform(random)};
-      } while ((origin[k] - kMiddle).norm() < 1.01 * kRadius);
+      } while ((origin[k] - kBallMiddle).norm() < 1.01 * kBallRadius);
       direction[k] = Vec3(normal(random), normal(random), normal(random)).normalized();
       block_rays.set(i, rays.normalised(origin[k]), direction[k].cast<float>());
     }
