@@ -9,6 +9,8 @@
 
 namespace reemit::hit_paths {
 
+struct BlockSums;
+
 /// A block beyond both limits differs: one alone is chance (5 standard errors: odds of 1 in 1.7 million) or
 /// too little to see.
 constexpr double kMostErrors = 5;
@@ -57,5 +59,10 @@ struct Comparison {
 /// and compares them block by block. Deterministic but for the number of reference paths, which the clock
 /// decides. Throws std::invalid_argument for rooms with luminaires that the reference does not know.
 Comparison compare_blocks(const Scene& scene, const Camera& camera, const ComparisonSettings& settings);
+
+/// The same against a reference of this view (trace_reference) that was traced before, at the size of the
+/// settings.
+Comparison compare_blocks(const Scene& scene, const Camera& camera, const ComparisonSettings& settings,
+                          const std::vector<BlockSums>& reference);
 
 }  // namespace reemit::hit_paths

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -99,12 +100,19 @@ CheckedPicture render_checked(const Scene& scene, const Camera& camera, const Co
   still.spp = std::max(1, settings.spp / kRenderings);
   still.integrator = settings.by_path ? Integrator::kPath : Integrator::kGather;
   CheckedPicture picture = empty_picture(settings.width, settings.height, scene.bands.count());
+  std::optional<ProgressiveSolver> run;
   for (int rendering = 0; rendering < kRenderings; ++rendering) {
     solver.seed = settings.seed * kRenderings + static_cast<std::uint64_t>(rendering);
     still.seed = solver.seed;
-    const Solution solution = solve_zones(scene, mesh, solver, {}, never);
-    const Room walls(scene, solution.mesh);
-    add_still(render_still(walls, solution, camera, still, {}, never), 1 + settings.planted_bias, picture);
+    // Paths do not read the zones: they need no solution, nor a room of their own for every picture.
+    if (!run || !settings.by_path) run.emplace(scene, new_solution(scene, mesh, solver), never);
+    if (!settings.by_path) {
+      while (run->step()) {
+      }
+      run->end({}, Examination::kNone);
+    }
+    const StillImage image = render_still(run->room(), run->solution(), camera, still, {}, never);
+    add_still(image, 1 + settings.planted_bias, picture);
   }
   return picture;
 }

@@ -1,10 +1,12 @@
 #pragma once
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "bench/hit_paths/block_comparison.h"
+#include "bench/hit_paths/block_reference.h"
 
 namespace reemit::hit_paths {
 
@@ -27,8 +29,10 @@ inline ComparisonSettings quick(bool by_path) {
 /// Gathered and path-traced stills of the first camera show the picture of the reference, whose relative
 /// standard error has to stay below `most_error`.
 inline void expect_same_picture(const Scene& scene, const std::string& name, double most_error) {
+  const Camera& camera = scene.cameras.at(0);
+  const std::vector<BlockSums> reference = trace_reference(scene, camera, quick(false));
   for (const bool by_path : {false, true}) {
-    const Comparison c = compare_blocks(scene, scene.cameras.at(0), quick(by_path));
+    const Comparison c = compare_blocks(scene, camera, quick(by_path), reference);
     const std::string what = name + (by_path ? ", path traced" : ", gathered");
     EXPECT_EQ(c.different(), 0U) << what << ": worst block " << c.blocks.at(0).relative() << ", "
                                  << c.blocks.at(0).errors() << " standard errors";
