@@ -2,7 +2,7 @@
 # file takes. A folder is a room of the house, so names in anonymous namespaces need to differ within their folder only,
 # and a new file changes nothing for the files of others. Large folders are split, so that all cores have work; the
 # preset dev compiles each file alone and so notices what a file forgets to include.
-set(REEMIT_UNITY_FILES 16)  # of one folder, at most, that are compiled as one
+set(REEMIT_UNITY_FILES 16 CACHE STRING "Files of one folder, at most, that are compiled as one")
 
 function(reemit_unite target)
   get_target_property(sources ${target} SOURCES)
