@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -24,6 +25,14 @@ constexpr std::size_t kReplicates = ZoneSums::kGroups;
 constexpr double kFewerPackets = 9;
 /// Variance of packets over that of gathering, as foreseen, from which on a zone is gathered.
 constexpr double kWorthwhile = 2;
+/// Variance of what was gathered over that of packets, as foreseen, from which on a zone keeps what packets
+/// brought, and standard errors of their difference. A bright spot that few gather rays meet does either: it
+/// is met and makes much noise, or it is missed and leaves none.
+constexpr double kMostSurprise = 4;
+constexpr double kMostDeviation = 5;
+/// Share of the area of a zone that rounding of its corners to single precision may take or add. Packets meet
+/// slivers as they are rounded, up to a thousand times as often as their area says.
+constexpr double kMostRounding = 0.1;
 /// Gather rays per shadow ray.
 constexpr int kGathersPerPoint = 2;
 constexpr std::uint64_t kRaysPerPoint = kReplicates * (1 + kGathersPerPoint);
@@ -76,7 +85,10 @@ struct ZoneReplicates {
   std::array<double, kReplicates> direct{};
   std::array<double, kReplicates> indirect{};
 
-  double total(std::size_t r) const { return direct[r] + indirect[r]; }
+  ReplicateMean total() const {
+    return mean_of_replicates(kReplicates, kReplicates,
+                              [&](std::size_t r) { return direct[r] + indirect[r]; });
+  }
 };
 
 /// What is small stands close to what is large: the part of the floor that a foot sees lies in its shadow,
@@ -105,7 +117,7 @@ class Gatherer {
   /// Luminaires that the choice of one for a shadow ray looks at.
   std::size_t luminaires_weighed() const { return direct_.luminaires_weighed(); }
 
-  /// Calls use(i, band, ZoneReplicates) for the zones i of the list from any thread; returns how many zones
+  /// Calls use(i, ZoneReplicates by band) for the zones i of the list from any thread; returns how many zones
   /// it was called for.
   template <class Use>
   std::size_t gather(const std::vector<ZoneId>& zones, int points, RngPurpose purpose, Use&& use) const {
@@ -143,16 +155,16 @@ class Gatherer {
                       caustic.data());
       }
     batch.flush();
-    for (std::size_t i = first; i < last; ++i)
-      for (std::size_t b = 0; b < bands_; ++b) {
-        ZoneReplicates replicates;
+    std::vector<ZoneReplicates> by_band(bands_);
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t b = 0; b < bands_; ++b)
         for (std::size_t r = 0; r < kReplicates; ++r) {
           const float* values = &found[((i - first) * kReplicates + r) * stride];
-          replicates.direct[r] = static_cast<double>(values[b]);
-          replicates.indirect[r] = std::numbers::pi * static_cast<double>(values[bands_ + b]);
+          by_band[b].direct[r] = static_cast<double>(values[b]);
+          by_band[b].indirect[r] = std::numbers::pi * static_cast<double>(values[bands_ + b]);
         }
-        use(i, b, replicates);
-      }
+      use(i, std::as_const(by_band));
+    }
     return true;
   }
 
@@ -165,11 +177,26 @@ class Gatherer {
   HemisphereGather gather_;
 };
 
-/// What the pilot found out about a zone, all bands together, caustics left out.
-struct PilotResult {
-  double irradiance = 0;  // that packets bring [W/m2]
+/// What was gathered on a zone, all bands together, caustics left out.
+struct GatheredLight {
+  ReplicateMean brought;  // as far as packets bring it [W/m2]
   double variance = 0;    // of all its irradiance
 };
+
+GatheredLight gathered_light(const std::vector<ZoneReplicates>& by_band, bool direct_is_sampled) {
+  GatheredLight result;
+  for (const ZoneReplicates& x : by_band) {
+    const ReplicateMean total = x.total();
+    const ReplicateMean brought =
+        direct_is_sampled
+            ? mean_of_replicates(kReplicates, kReplicates, [&](std::size_t r) { return x.indirect[r]; })
+            : total;
+    result.brought.mean += brought.mean;
+    result.brought.squared_error += brought.squared_error;
+    result.variance += total.squared_error;
+  }
+  return result;
+}
 
 /// Incident power that one ray of the solve carried on average [W].
 double power_per_ray(const Solution& solution, bool direct_is_sampled) {
@@ -184,9 +211,55 @@ double power_per_ray(const Solution& solution, bool direct_is_sampled) {
 }
 
 /// True if gathering with `gain` times the rays of the pilot is foreseen to beat packets clearly.
-bool is_worthwhile(const PilotResult& pilot, double gain, double area, double watts_per_ray) {
-  const double variance_of_packets = pilot.irradiance * watts_per_ray / area;
+bool is_worthwhile(const GatheredLight& pilot, double gain, double area, double watts_per_ray) {
+  const double variance_of_packets = pilot.brought.mean * watts_per_ray / area;
   return pilot.variance / gain * kWorthwhile <= variance_of_packets;
+}
+
+/// What packets brought to a zone, all bands together, caustics left out.
+struct PacketLight {
+  double irradiance = 0;      // [W/m2]
+  double of_one = 0;          // what a packet brings [W/m2]
+  bool area_is_exact = true;  // for rays: no sliver that rounding makes wider
+
+  /// False if packets know better than gather rays.
+  bool agree_with(const ReplicateMean& gathered) const {
+    const double variance = std::max(irradiance, gathered.mean) * of_one;
+    if (gathered.squared_error > kMostSurprise * variance) return false;
+    const double deviation = gathered.mean - irradiance;
+    return !area_is_exact ||
+           deviation * deviation <= kMostDeviation * kMostDeviation * (variance + gathered.squared_error);
+  }
+};
+
+/// As rays meet it [m2].
+double rounded_area(const RayTracer& rays, TriangleId t) {
+  const Vec3 corner = rays.corner(t, 0).cast<double>();
+  const Vec3 u = rays.corner(t, 1).cast<double>() - corner;
+  const Vec3 v = rays.corner(t, 2).cast<double>() - corner;
+  return 0.5 * u.cross(v).norm() * rays.metres_per_unit() * rays.metres_per_unit();
+}
+
+bool is_exact_for_rays(const Room& room, ZoneId zone) {
+  const ZoneMesh& mesh = room.mesh();
+  double rounded = 0;
+  double exact = 0;
+  const std::size_t members = mesh.is_group(zone) ? mesh.member_count(zone) : 1;
+  for (std::uint32_t m = 0; m < members; ++m) {
+    const TriangleId t = mesh.is_group(zone) ? mesh.member_triangle(zone, m) : mesh.zone_triangle(zone);
+    rounded += rounded_area(room.rays(), t);
+    exact += mesh.triangle_area(t);
+  }
+  return std::abs(rounded - exact) <= kMostRounding * exact;
+}
+
+PacketLight packet_light(const Room& room, const Solution& solution, ZoneId zone, bool direct_is_sampled,
+                         double watts_per_ray) {
+  PacketLight result{0, watts_per_ray / room.mesh().zone_area(zone), is_exact_for_rays(room, zone)};
+  for (std::size_t b = 0; b < solution.bands.count(); ++b)
+    result.irradiance += solution.indirect_irradiance(zone, b).mean +
+                         (direct_is_sampled ? 0.0 : solution.direct_irradiance(zone, b).mean);
+  return result;
 }
 
 }  // namespace
@@ -212,16 +285,11 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   const std::size_t bands = room.band_count();
 
   const auto start = std::chrono::steady_clock::now();
-  std::vector<PilotResult> pilots(zones.size());
-  const std::size_t piloted = gatherer.gather(
-      zones, 1, RngPurpose::kSmallZonePilot, [&](std::size_t i, std::size_t, const ZoneReplicates& x) {
-        const ReplicateMean mean =
-            mean_of_replicates(kReplicates, kReplicates, [&](std::size_t r) { return x.total(r); });
-        pilots[i].irradiance += limits.direct_is_sampled
-                                    ? std::reduce(x.indirect.begin(), x.indirect.end()) / double{kReplicates}
-                                    : mean.mean;
-        pilots[i].variance += mean.squared_error;
-      });
+  std::vector<GatheredLight> pilots(zones.size());
+  const std::size_t piloted = gatherer.gather(zones, 1, RngPurpose::kSmallZonePilot,
+                                              [&](std::size_t i, const std::vector<ZoneReplicates>& by_band) {
+                                                pilots[i] = gathered_light(by_band, limits.direct_is_sampled);
+                                              });
   const auto packet_rays = static_cast<double>(solution.record.rays);
   const double watts_per_ray = power_per_ray(solution, limits.direct_is_sampled);
   solution.gathered.rays = piloted * kRaysPerPoint;
@@ -239,8 +307,12 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   }
   const double gain = whole_points(points_left / static_cast<double>(zones.size()));
   std::vector<ZoneId> chosen;
-  for (std::size_t i = 0; i < zones.size(); ++i)
-    if (is_worthwhile(pilots[i], gain, mesh.zone_area(zones[i]), watts_per_ray)) chosen.push_back(zones[i]);
+  std::vector<PacketLight> packets;  // of each
+  for (std::size_t i = 0; i < zones.size(); ++i) {
+    if (!is_worthwhile(pilots[i], gain, mesh.zone_area(zones[i]), watts_per_ray)) continue;
+    chosen.push_back(zones[i]);
+    packets.push_back(packet_light(room, solution, zones[i], limits.direct_is_sampled, watts_per_ray));
+  }
   chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(std::max(0.0, points_left))));
   if (chosen.empty()) return clock_had_a_say;
 
@@ -248,11 +320,18 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   const double enough = packet_rays / static_cast<double>(mesh.zone_count() * kRaysPerPoint);
   const int points = whole_points(std::min(enough, points_left / static_cast<double>(chosen.size())));
   solution.gathered.keep(solution.sums, chosen);
+  std::atomic<std::size_t> surprises{0};
   const std::size_t gathered = gatherer.gather(
-      chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, std::size_t b, const ZoneReplicates& x) {
-        store_replicates(solution.sums, chosen[i].index() * bands + b, x.direct, x.indirect);
+      chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, const std::vector<ZoneReplicates>& by_band) {
+        if (!packets[i].agree_with(gathered_light(by_band, limits.direct_is_sampled).brought)) {
+          ++surprises;
+          return;
+        }
+        for (std::size_t b = 0; b < bands; ++b)
+          store_replicates(solution.sums, chosen[i].index() * bands + b, by_band[b].direct,
+                           by_band[b].indirect);
       });
-  solution.record.gathered_zones = gathered;
+  solution.record.gathered_zones = gathered - surprises;
   const std::uint64_t gather_rays = gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);
   solution.gathered.rays += gather_rays;
   solution.record.rays += gather_rays;

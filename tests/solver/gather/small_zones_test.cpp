@@ -147,6 +147,7 @@ TEST(SmallZones, see_the_shadows_they_stand_in) {
   const test::RoomBuilder room = room_with_low_table();
   SolverSettings settings;
   settings.packets = 6'000'000;
+  settings.direct = DirectSource::kPackets;  // small zones get few shadow rays
   const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
   EXPECT_GT(gathered.record.gathered_zones, 100U);
   settings.gather_small_zones = false;
@@ -185,6 +186,51 @@ TEST(SmallZones, keep_caustics_and_the_inside_of_glass) {
     if (gathered.sums.caustic[z.index()] > 0) ++over_glass;
   }
   EXPECT_GT(over_glass, 10U);
+}
+
+/// A dim box in which a narrow beam lights a spot that fills a ten-thousandth of what a plate 30 cm over it
+/// sees.
+test::RoomBuilder plate_over_a_bright_spot() {
+  test::RoomBuilder room;
+  const MaterialId white = room.material("white", 0.5, 0, true);
+  const MaterialId lamp = room.material("lamp", 0.5, 0.2);
+  room.box({0, 0, 0}, {1, 1, 1}, {white, white, white, white, white, white}, 8);
+  room.quad(lamp, {Vec3(0.6, 0.6, 0.98), Vec3(0.6, 0.9, 0.98), Vec3(0.9, 0.9, 0.98), Vec3(0.9, 0.6, 0.98)},
+            2);
+  room.quad(
+      white,
+      {Vec3(0.2, 0.2, 0.001), Vec3(0.206, 0.2, 0.001), Vec3(0.206, 0.206, 0.001), Vec3(0.2, 0.206, 0.001)},
+      1);
+  room.quad(white, {Vec3(0.2, 0.2, 0.3), Vec3(0.2, 0.21, 0.3), Vec3(0.21, 0.21, 0.3), Vec3(0.21, 0.2, 0.3)},
+            1);
+  room.scene().lights.push_back(SpotLight{
+      "beam", {0.6, 0.203, 0.4}, Vec3(-0.397, 0, -0.399).normalized(), room.flat(1000), 0.002, 0.003});
+  return room;
+}
+
+// The pilot's rays miss the spot, and one of thousands that follow meets it: one half of the plate has far
+// too much light then, and the other none of it, with a standard error that knows nothing of it. Packets know
+// the light on each half to 5 %.
+TEST(SmallZones, keep_what_packets_brought_where_few_gather_rays_meet_a_bright_spot) {
+  const test::RoomBuilder room = plate_over_a_bright_spot();
+  SolverSettings settings;
+  settings.packets = 5'000'000;
+  const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  EXPECT_GT(gathered.record.gathered_zones, 2U);
+  settings.gather_small_zones = false;
+  const Solution packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  int over_the_spot = 0;
+  for (std::size_t z = 0; z < packets.mesh.zone_count(); ++z) {
+    const Estimate by_packets = packets.irradiance(ZoneId(z), 0);
+    if (!is_small(packets, z) || packets.mesh.zone_centroid(ZoneId(z)).z() < 0.2 || by_packets.mean < 0.03)
+      continue;
+    ++over_the_spot;
+    const Estimate kept = gathered.irradiance(ZoneId(z), 0);
+    EXPECT_EQ(kept.mean, by_packets.mean);
+    EXPECT_EQ(kept.stderr_of_mean, by_packets.stderr_of_mean);
+    EXPECT_LT(kept.stderr_of_mean, 0.06 * kept.mean);
+  }
+  EXPECT_EQ(over_the_spot, 2);
 }
 
 TEST(SmallZones, need_all_batch_groups) {
