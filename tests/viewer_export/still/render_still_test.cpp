@@ -167,6 +167,7 @@ TEST(RenderStill, refinement_ends_where_noise_is_that_of_the_zones) {
   const RoomBuilder room = lamp_room();
   SolverSettings solver;
   solver.packets = 30'000;
+  solver.direct = DirectSource::kPackets;  // shadow rays would make up for them
   const Solution solution = solve(room.scene(), room.mesh(), solver, {}, test::kNever);
   StillSettings settings = refined_still(1e-3);
   settings.width = 32;
