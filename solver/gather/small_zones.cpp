@@ -92,10 +92,10 @@ struct ZoneReplicates {
 };
 
 /// What is small stands close to what is large: the part of the floor that a foot sees lies in its shadow,
-/// the zone of the floor mostly not. So near hits are continued, unless zones are to send out light evenly,
-/// as the matrix method has it.
+/// the zone of the floor mostly not. So near hits are continued, and those on uneven zones, unless zones are
+/// to send out light evenly, as the matrix method has it.
 GatherSettings gather_settings(const SolverSettings& solver) {
-  GatherSettings settings{.continue_uneven = false, .seed = solver.seed};
+  GatherSettings settings{.seed = solver.seed};
   if (solver.reemission == Reemission::kFromZones) settings.close_hit = 0;
   return settings;
 }
@@ -110,7 +110,7 @@ class Gatherer {
         seed_(solution.settings.seed),
         field_(room, solution, kReplicates),
         direct_(room),
-        gather_(field_, direct_, gather_settings(solution.settings)) {}
+        gather_(field_, direct_, gather_settings(solution.settings), &stop) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
 
