@@ -16,9 +16,8 @@ namespace {
 constexpr int kPassesAtOnce = 8;
 constexpr int kLeastPasses = 64;
 
-void add_passes(const HitPathTracer& tracer, const ComparisonSettings& settings, std::size_t block,
-                BlockSums& sums) {
-  const auto across = static_cast<std::size_t>(settings.width / kBlock);
+void add_passes(const HitPathTracer& tracer, const ComparisonSettings& settings, std::size_t across,
+                std::size_t block, BlockSums& sums) {
   const int x0 = static_cast<int>(block % across) * kBlock;
   const int y0 = static_cast<int>(block / across) * kBlock;
   const std::size_t bands = sums.sum.size();
@@ -56,12 +55,14 @@ std::vector<BlockSums> trace_reference(const Scene& scene, const Camera& camera,
                                        const ComparisonSettings& settings) {
   const HitPathTracer tracer(scene, camera, settings.width, settings.height, settings.photometry);
   const std::size_t bands = scene.bands.count();
-  const std::size_t count = empty_picture(settings.width, settings.height, bands).count();
+  const CheckedPicture size{settings.width, settings.height, bands, {}};
+  const std::size_t count = size.count();
+  const auto across = static_cast<std::size_t>(size.across());
   std::vector<BlockSums> blocks(count, {std::vector<double>(bands), std::vector<double>(bands), 0});
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
     tbb::parallel_for(std::size_t{0}, count,
-                      [&](std::size_t i) { add_passes(tracer, settings, i, blocks[i]); });
+                      [&](std::size_t i) { add_passes(tracer, settings, across, i, blocks[i]); });
     if (settings.passes > 0 && blocks[0].passes >= settings.passes) return blocks;
     if (settings.passes > 0 || blocks[0].passes < kLeastPasses) continue;
     std::vector<double> errors;

@@ -26,14 +26,16 @@ struct SmallZoneLimits {
 /// Gives zones too small to meet enough packets their irradiance by gathering from the rest of the zone
 /// solution, as [GI98] (Monte Carlo notes) proposes: rays from uniform points of the zone read the zones they
 /// hit, one replicate per batch group, so that the standard error holds the noise of the zones read. Near
-/// hits are continued (GatherSettings::close_hit), unless the run has Reemission::kFromZones: then it is the
-/// equation of the zonal system, E_i = sum_j F_ij B_j. Caustics, which few gather rays would find, stay those
-/// that packets brought, as do the inner sides of bodies of glass. A short pilot gather of every small zone
-/// decides whether gathering it will beat its packets; the pilot's random numbers are its own, and what
-/// packets found has no say, so the choice biases nothing. `limits` bound the work. Adds to record.rays and
-/// sets record.gathered_zones. Returns true if the clock had a say in what was gathered, by the limit or by
-/// `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When `stop` is requested the zones not yet
-/// done keep what packets found.
+/// hits (GatherSettings::close_hit) and those on uneven zones are continued, unless the run has
+/// Reemission::kFromZones: then it is the equation of the zonal system, E_i = sum_j F_ij B_j. Caustics, which
+/// few gather rays would find, stay those that packets brought, as do the inner sides of bodies of glass. A
+/// short pilot gather of every small zone, with random numbers of its own, foresees whether gathering it will
+/// beat its packets. Zones whose gather turns out to have more noise than packets, or to differ from them by
+/// more than chance, as where few rays meet a bright spot, keep what packets brought; light that is missed by
+/// less than packets can tell stays missed (docs/estimators.md). `limits` bound the work. Adds to record.rays
+/// and sets record.gathered_zones. Returns true if the clock had a say in what was gathered, by the limit or
+/// by `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When `stop` is requested the zones not
+/// yet done keep what packets found.
 bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solution& solution,
                         const StopToken& stop);
 
