@@ -63,7 +63,8 @@ PlanRow measure(const Scene& scene, const Plan& plan, const SolverSettings& sett
   row.rays_per_s = static_cast<double>(s.record.rays) / s.record.seconds;
   row.noise = s.record.error;
   row.points = discretisation_error(room, s, stop, kProbes).value_or(0);
-  if (const auto gathered = estimate_zone_bias(RadianceField(room, s, ZoneSums::kGroups), s, stop))
+  if (const auto gathered = estimate_zone_bias(RadianceField(room, s, ZoneSums::kGroups), s,
+                                               ZoneBiasEffort::of(static_cast<double>(s.record.rays)), stop))
     row.gathered = gathered->rms;
   row.picture_zones = pictures.error(room, s);
   const ExportDifference exported = export_difference(room, s, kExportPoints);

@@ -95,7 +95,7 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
 }
 
 std::optional<ZoneBias> estimate_zone_bias(const RadianceField& field, const Solution& solution,
-                                           const StopToken& stop) {
+                                           const ZoneBiasEffort& effort, const StopToken& stop) {
   if (stop.requested()) return std::nullopt;
   const std::uint64_t seed = solution.settings.seed;
   const CounterRng rng(seed, RngPurpose::kZoneBias);
@@ -122,7 +122,6 @@ std::optional<ZoneBias> estimate_zone_bias(const RadianceField& field, const Sol
     points.push_back(point_in_zone(room, probes[i].zone, {u[0], u[1]}));
     for (const double p : power) scale.push_back(p > 0 ? ZoneBiasEffort::kPoints * probes[i].area / p : 0);
   }
-  const ZoneBiasEffort effort = ZoneBiasEffort::of(static_cast<double>(solution.record.rays));
   const ZoneBias bias = estimate_zone_bias(gather, path, points, scale, effort, seed, &stop);
   if (stop.requested()) return std::nullopt;
   return bias;

@@ -40,6 +40,6 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
 /// `field`: of the solution, in as many parts as there are. Nothing without light, or when `stop` is
 /// requested before it is done.
 std::optional<ZoneBias> estimate_zone_bias(const RadianceField& field, const Solution& solution,
-                                           const StopToken& stop);
+                                           const ZoneBiasEffort& effort, const StopToken& stop);
 
 }  // namespace reemit

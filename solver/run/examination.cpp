@@ -40,15 +40,23 @@ void gather_what_is_small(const Room& room, bool direct_is_sampled, const Schedu
 void examine_zones(const Room& room, const Schedule& schedule, const std::atomic<bool>& interrupt,
                    Solution& solution) {
   // Short runs may spend a moment more on it; the matrix method has no limit.
-  constexpr double kMoment = 0.5;
+  constexpr double kMoment = 1;
+  constexpr double kRoughShare = 0.1;
   const StopToken stop = solution.settings.method == SolveMethod::kMatrix
                              ? StopToken(interrupt)
                              : schedule.token(schedule.limit_s + kMoment, interrupt);
   const RadianceField field(room, solution, ZoneSums::kGroups);
   plan_uneven_zones(field, stop, solution);
   solution.record.discretisation = discretisation_error(room, solution, stop);
-  solution.record.gather_bias = estimate_zone_bias(field, solution, stop);
+  // Where paths are long the estimate takes more of the time than it should, and what is cut off is lost: if
+  // there is a limit a rough one comes first, and the best one last.
+  const auto rays = static_cast<double>(solution.record.rays);
+  if (schedule.limit_s > 0)
+    solution.record.gather_bias =
+        estimate_zone_bias(field, solution, ZoneBiasEffort::of(kRoughShare * rays), stop);
   plan_caustic_packets(room, stop, solution);
+  if (const auto bias = estimate_zone_bias(field, solution, ZoneBiasEffort::of(rays), stop))
+    solution.record.gather_bias = bias;
 }
 
 void look_for_lost_light(const PreparedRoom& room, const std::atomic<bool>& interrupt, Solution& solution) {

@@ -8,9 +8,11 @@
 namespace reemit {
 namespace {
 
-/// Share of the time that is kept for what comes after batches and gathering: the error and the
-/// discretisation.
-constexpr double kLastShare = 0.03;
+/// Share of the time that is kept for what comes after batches and gathering: the error, the discretisation
+/// and the plan of later gathers, which takes longest in rooms that bend light.
+double last_share(const Solution& solution) {
+  return solution.sums.has_caustics() ? 0.1 : 0.05;
+}
 
 /// Beyond what a clock can count it is as good as for ever.
 StopToken::Clock::duration clock_duration(double seconds) {
@@ -38,9 +40,9 @@ StopToken::Clock::time_point seconds_ago(double seconds) {
 Schedule::Schedule(Clock::time_point begin, const Solution& solution)
     : start(begin),
       limit_s(solution.settings.time_limit_s),
-      batches_s(limit_s * (1 - kLastShare) -
+      batches_s(limit_s * (1 - last_share(solution)) -
                 (gathers_small_zones(solution) ? kSmallZoneShare * limit_s : 0.0)),
-      gather_s(limit_s * (1 - kLastShare)) {}
+      gather_s(limit_s * (1 - last_share(solution))) {}
 
 StopToken Schedule::token(double seconds, const std::atomic<bool>& interrupt) const {
   if (!(limit_s > 0)) return StopToken(interrupt);

@@ -79,7 +79,8 @@ struct Estimate {
   double stderr_of_mean = 0;
 };
 
-/// What packets brought to zones whose sums hold light that was gathered since; to go on, a run needs it.
+/// What packets brought to zones that were gathered since; to go on, a run needs it. The sums of most of them
+/// hold gathered light, those of a few, where packets knew better, the same as here.
 struct GatheredZones {
   std::vector<ZoneId> zones;
   std::vector<double> sums;        ///< Rows of ZoneSums::columns(): [zone][channel][column].
