@@ -6,9 +6,24 @@
 #include <new>
 #include <utility>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include "scenes/model/error.h"
 
 namespace reemit {
+namespace {
+
+/// Calls use(pixel) for all pixels, on all threads.
+template <class Use>
+void for_each_pixel(std::size_t pixels, const Use& use) {
+  constexpr std::size_t kPixelsOfTask = 2048;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels, kPixelsOfTask), [&](const auto& range) {
+    for (std::size_t p = range.begin(); p < range.end(); ++p) use(p);
+  });
+}
+
+}  // namespace
 
 std::string to_string(PixelFilter filter) {
   return filter == PixelFilter::kBox ? "box" : "tent";
@@ -33,10 +48,12 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
   image_.height = height;
   const std::size_t pixels = image_.pixel_count();
   try {
-    image_.direct.assign(pixels * bands_, 0.0F);
-    if (caustics) image_.caustic.assign(pixels * bands_, 0.0F);
-    image_.albedo.assign(pixels * bands_, 0.0F);
-    for (std::size_t r = 0; r < replicates_; ++r) means_[r].assign(pixels * bands_, 0.0F);
+    std::vector<std::vector<float>*> by_band{&image_.direct, &image_.albedo};
+    if (caustics) by_band.push_back(&image_.caustic);
+    for (std::size_t r = 0; r < replicates_; ++r) by_band.push_back(&means_[r]);
+    // What takes time is that the system hands the memory out.
+    tbb::parallel_for(std::size_t{0}, by_band.size(),
+                      [&](std::size_t i) { by_band[i]->assign(pixels * bands_, 0.0F); });
     image_.samples.assign(pixels, 0.0F);
     image_.depth.assign(pixels, 0.0F);
     image_.normal.assign(3 * pixels, 0.0F);
@@ -97,21 +114,17 @@ double Film::radiance(std::size_t pixel, std::size_t band) const {
   return replicate_mean(pixel, band).mean;
 }
 
-double Film::squared_error(std::size_t pixel, std::size_t band) const {
-  return replicate_mean(pixel, band).squared_error;
-}
-
 StillHalves Film::halves() const {
   const bool is_whole = std::all_of(begun_.begin(), begun_.end(),
                                     [&](std::size_t n) { return n == replicates_ && n % 2 == 0; });
   if (!is_whole) return {};
   StillHalves halves;
   const float share = 2.0F / static_cast<float>(replicates_);
-  for (std::size_t h = 0; h < halves.size(); ++h) {
+  tbb::parallel_for(std::size_t{0}, halves.size(), [&](std::size_t h) {
     halves[h].assign(image_.direct.size(), 0.0F);
     for (std::size_t r = h; r < replicates_; r += 2)
       for (std::size_t k = 0; k < halves[h].size(); ++k) halves[h][k] += share * means_[r][k];
-  }
+  });
   return halves;
 }
 
@@ -133,7 +146,7 @@ StillImage Film::snapshot() const {
   StillImage image = image_;
   for (std::vector<float>* layer : {&image.radiance, &image.indirect, &image.radiance_stderr})
     layer->resize(image_.direct.size());
-  for (std::size_t pixel = 0; pixel < image_.pixel_count(); ++pixel) {
+  for_each_pixel(image_.pixel_count(), [&](std::size_t pixel) {
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t k = pixel * bands_ + b;
       const ReplicateMean mean = replicate_mean(pixel, b);
@@ -142,14 +155,14 @@ StillImage Film::snapshot() const {
       image.radiance_stderr[k] = static_cast<float>(std::sqrt(mean.squared_error));
     }
     complete_geometry(image, pixel);
-  }
+  });
   return image;
 }
 
 StillImage Film::finish() {
   const bool have_errors = std::find(begun_.begin(), begun_.end(), 1) == begun_.end();
   for (std::size_t r = replicates_; r < 3; ++r) means_[r].resize(image_.direct.size());
-  for (std::size_t pixel = 0; pixel < image_.pixel_count(); ++pixel) {
+  for_each_pixel(image_.pixel_count(), [&](std::size_t pixel) {
     for (std::size_t b = 0; b < bands_; ++b) {
       // In place: replicates 0, 1 and 2 become the layers radiance, indirect and standard error.
       const std::size_t k = pixel * bands_ + b;
@@ -160,7 +173,7 @@ StillImage Film::finish() {
       means_[2][k] = static_cast<float>(error);
     }
     complete_geometry(image_, pixel);
-  }
+  });
   image_.radiance = std::move(means_[0]);
   image_.indirect = std::move(means_[1]);
   if (have_errors) image_.radiance_stderr = std::move(means_[2]);

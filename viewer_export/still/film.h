@@ -60,9 +60,9 @@ class Film {
   std::size_t replicates() const { return replicates_; }
   bool has_gaps() const;  ///< A pixel has no sample.
   // Pre of both: all replicates of the pixel have begun.
+  /// Mean radiance and the square of its standard error, infinite with one replicate.
+  ReplicateMean replicate_mean(std::size_t pixel, std::size_t band) const;
   double radiance(std::size_t pixel, std::size_t band) const;
-  /// Square of the standard error of radiance; infinite with one replicate.
-  double squared_error(std::size_t pixel, std::size_t band) const;
   /// Size, bands and the layers that hold means already: direct, caustic, albedo, samples.
   const StillImage& image() const { return image_; }
 
@@ -78,7 +78,6 @@ class Film {
   StillImage finish();
 
  private:
-  ReplicateMean replicate_mean(std::size_t pixel, std::size_t band) const;
   ReplicateMean mean_so_far(std::size_t pixel, std::size_t band) const;
   float indirect(std::size_t pixel, std::size_t band, float radiance) const;
   /// From sums to means, of a pixel of a picture that has the layers of this one.

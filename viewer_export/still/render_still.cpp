@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -35,19 +36,29 @@ struct TileState {
   RefinedPart part;
 };
 
-/// Sum over the pixels of a tile of (s/(L + floor))^2 for one band.
-double tile_error(const Film& film, const Tile& tile, std::size_t band, double floor) {
+/// Sum of use(mean and error of a pixel in one band) over the pixels of a tile.
+template <class Use>
+double sum_over_pixels(const Film& film, const Tile& tile, std::size_t band, const Use& use) {
   double sum = 0;
   for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
-                         static_cast<std::size_t>(x);
-      const double variance = film.squared_error(pixel, band);
-      if (variance == 0) continue;
-      const double scale = film.radiance(pixel, band) + floor;
-      sum += variance / (scale * scale);
-    }
+    for (int x = tile.x0; x < tile.x1; ++x)
+      sum +=
+          use(film.replicate_mean(static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
+                                      static_cast<std::size_t>(x),
+                                  band));
   return sum;
+}
+
+double tile_radiance(const Film& film, const Tile& tile, std::size_t band) {
+  return sum_over_pixels(film, tile, band, [](const ReplicateMean& pixel) { return pixel.mean; });
+}
+
+/// Sum over the pixels of a tile of (s/(L + floor))^2 for one band.
+double tile_error(const Film& film, const Tile& tile, std::size_t band, double floor) {
+  return sum_over_pixels(film, tile, band, [&](const ReplicateMean& pixel) {
+    const double scale = pixel.mean + floor;
+    return pixel.squared_error == 0 ? 0.0 : pixel.squared_error / (scale * scale);
+  });
 }
 
 /// The blocks of one picture: renders them, measures the error and decides which tiles go on.
@@ -193,18 +204,21 @@ class Rendering {
     const double target2 = std::pow(RefinedPart::aim(settings_.error_target), 2);
     const bool may_stop = refines_tiles_ && progress_now_.samples >= kFewestToStop;
     std::vector<double> worst(tiles_.size(), 0.0);
+    std::vector<double> of_tile(tiles_.size());  // added up in their order, whatever the threads do
+    const auto sum_over_tiles = [&](const auto& value) {
+      tbb::parallel_for(std::size_t{0}, tiles_.size(),
+                        [&](std::size_t i) { of_tile[i] = value(tiles_[i].tile); });
+      return std::accumulate(of_tile.begin(), of_tile.end(), 0.0);
+    };
     double error2 = 0;
     for (std::size_t b = 0; b < bands; ++b) {
-      double mean = 0;
-      for (std::size_t p = 0; p < pixels; ++p) mean += film_.radiance(p, b);
-      mean /= static_cast<double>(pixels);
+      const double mean = sum_over_tiles([&](const Tile& t) { return tile_radiance(film_, t, b); }) /
+                          static_cast<double>(pixels);
       const double floor = settings_.error_floor * mean;
-      double sum = 0;
+      const double sum = sum_over_tiles([&](const Tile& t) { return tile_error(film_, t, b, floor); });
       for (std::size_t i = 0; i < tiles_.size(); ++i) {
         const Tile& t = tiles_[i].tile;
-        const double tile_sum = tile_error(film_, t, b, floor);
-        sum += tile_sum;
-        worst[i] = std::max(worst[i], tile_sum / ((t.x1 - t.x0) * (t.y1 - t.y0)));
+        worst[i] = std::max(worst[i], of_tile[i] / ((t.x1 - t.x0) * (t.y1 - t.y0)));
       }
       error2 = std::max(error2, sum / static_cast<double>(pixels));
     }

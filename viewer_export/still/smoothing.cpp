@@ -6,6 +6,10 @@
 #include <new>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include "scenes/model/error.h"
 #include "viewer_export/output/smoothing_errors.h"
@@ -21,11 +25,13 @@ constexpr int kBlock = 16;  ///< Pixels to a side of a block.
 
 /// What a picture becomes.
 struct SmoothedLayers {
-  SmoothedLayers(const StillImage& image, const StillPlanes& planes)
-      : irradiance(planes.irradiance),
-        direct(planes.direct),
-        caustic(planes.caustic),
-        radiance(image.radiance.size()) {}
+  explicit SmoothedLayers(const StillPlanes& planes) {
+    const std::size_t size = planes.direct.size();
+    // What takes time is that the system hands the memory out.
+    tbb::parallel_invoke([&] { irradiance[0].resize(size); }, [&] { irradiance[1].resize(size); },
+                         [&] { direct.resize(size); }, [&] { caustic.resize(planes.caustic.size()); },
+                         [&] { radiance = SmoothedValues(size); });
+  }
 
   void take(const SimilarPixels& means, const StillPlanes& planes, const StillImage& image, int first,
             int last) {
@@ -49,7 +55,7 @@ struct SmoothedLayers {
   /// By band, as those of StillPlanes.
   std::array<std::vector<float>, 2> irradiance;
   std::vector<float> direct, caustic;
-  SmoothedValues radiance;  ///< In the layout of StillImage; of the values take() finds the errors alone.
+  SmoothedValues radiance{0};  ///< In the layout of StillImage; of the values take() finds the errors alone.
 };
 
 /// Radiance of the irradiance that the planes hold.
@@ -114,7 +120,7 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
   if (image.radiance_stderr.empty()) return;
   try {
     StillPlanes planes(image, halves);
-    SmoothedLayers smoothed(image, planes);
+    SmoothedLayers smoothed(planes);
     {
       const BasicEstimate basic(planes, stop);
       for_similar_pixels(planes, basic.guide(), SimilarPixels::Extent::kWide, kSmoothedRows, stop,
@@ -129,10 +135,11 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
     if (!planes.caustic.empty()) smooth_coarsely(planes, stop);
     if (stop.requested()) return;
     put_radiance(planes, smoothed.radiance);
-    image.info.error = 0;
-    for (std::size_t b = 0; b < image.bands.count(); ++b)
-      image.info.error =
-          std::max(image.info.error, complete_errors(image, smoothed.radiance, b, error_floor));
+    std::vector<double> errors(image.bands.count());  // by band
+    tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t b) {
+      errors[b] = complete_errors(image, smoothed.radiance, b, error_floor);
+    });
+    image.info.error = *std::max_element(errors.begin(), errors.end());
     std::transform(smoothed.radiance.variance.begin(), smoothed.radiance.variance.end(),
                    image.radiance_stderr.begin(), [](float variance) { return std::sqrt(variance); });
     put_layers(planes, smoothed.radiance.value, image);

@@ -42,7 +42,7 @@ TEST(Film, mean_and_error_of_replicates_that_grow_by_blocks) {
   const float last[] = {1, 2.5F, 4, 8.5F};
   for (std::size_t r = 0; r < 4; ++r) add(r, 0.5F, last[r] - 0.5F, 2, 4);
   EXPECT_NEAR(film.radiance(1, 0), 3, 1e-5);
-  EXPECT_NEAR(film.squared_error(1, 0), 14.0 / 12, 1e-5);
+  EXPECT_NEAR(film.replicate_mean(1, 0).squared_error, 14.0 / 12, 1e-5);
   const StillImage image = film.finish();
   ASSERT_NO_THROW(check_consistent(image));
   EXPECT_NEAR(image.radiance[1], 3, 1e-5);
