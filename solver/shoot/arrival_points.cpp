@@ -1,6 +1,7 @@
 #include "solver/shoot/arrival_points.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "scenes/model/instruction_sets.h"
 
@@ -13,6 +14,9 @@ constexpr std::size_t kEnoughPoints = 16'384;
 constexpr std::size_t kMostSharing = 8;
 constexpr std::uint32_t kSweepNumbers = 255;
 constexpr int kSweepShift = 56;
+/// Lowest rank of a packet, and how often one counts at most.
+constexpr std::int32_t kMostMissed = 15;
+constexpr float kMostRepeats = 0x1p20F;
 
 }  // namespace
 
@@ -27,9 +31,12 @@ ArrivalPoints::ArrivalPoints(const ZoneMesh& mesh, std::uint32_t packets) : mesh
     all_have_points_ = all_have_points_ && mesh.member_count(ZoneId(z)) <= kFractions;
 }
 
-void ArrivalPoints::begin(std::uint32_t sweep) {
+void ArrivalPoints::begin(std::uint32_t sweep, double mean_power, std::uint64_t random) {
+  over_mean_ = static_cast<float>(1 / mean_power);
   std::swap(written_, read_);
   read_key_ = sweep_key_;
+  read_mask_ = sweep_mask_;
+  sweep_mask_ = random & ((std::uint64_t{1} << kPointBits) - 1);
   const std::uint64_t number = sweep % kSweepNumbers + 1;
   sweep_key_ = number << kSweepShift;
   // Where the numbers start again, what stands in the table would look newer than what comes. It holds the
@@ -39,13 +46,17 @@ void ArrivalPoints::begin(std::uint32_t sweep) {
 
 REEMIT_FOR_INSTRUCTION_SETS
 void ArrivalPoints::find16(const TrianglePoints16& __restrict points, const std::uint32_t* __restrict zones,
-                           const std::uint32_t* __restrict bits, ArrivalLanes& __restrict arrived) const {
+                           const float* __restrict power, const std::uint32_t (*__restrict random)[16],
+                           ArrivalLanes& __restrict arrived) const {
   const auto first_group = static_cast<std::uint32_t>(mesh_->cell_zone_count());
   const std::uint64_t per_zone = per_zone_;
   const std::uint64_t sweep_key = sweep_key_;
+  const std::uint64_t mask = sweep_mask_;
+  const float over_mean = over_mean_;
   alignas(64) std::uint32_t u[16];
   alignas(64) std::uint32_t v[16];
   alignas(64) std::uint32_t in_parts[16];
+  alignas(64) std::uint32_t rank[16];
   std::uint32_t any_group = 0;
   for (int lane = 0; lane < 16; ++lane) {
     const bool in_group = (zones[lane] >= first_group) & (zones[lane] != ZoneMesh::kNone);
@@ -57,16 +68,55 @@ void ArrivalPoints::find16(const TrianglePoints16& __restrict points, const std:
     v[lane] = static_cast<std::uint32_t>(j < 0 ? 0 : j > parts - 1 ? parts - 1 : j);
     in_parts[lane] = static_cast<std::uint32_t>(parts);
   }
+  alignas(64) float missed_by[16];
+  alignas(64) std::int32_t counts[16];
+  for (int lane = 0; lane < 16; ++lane) {
+    const float chance = static_cast<float>(static_cast<std::int32_t>(random[1][lane] >> 8)) * 0x1p-24F;
+    // Stronger packets count several times, the remainder by chance.
+    const float worth = power[lane] * over_mean;
+    const float at_most = worth < kMostRepeats ? worth : kMostRepeats;
+    const auto whole = static_cast<std::int32_t>(at_most);
+    const std::int32_t one_more = chance < at_most - static_cast<float>(whole) ? 1 : 0;
+    counts[lane] = whole + one_more;
+    missed_by[lane] = chance / worth;
+  }
+  alignas(64) std::int32_t missed_bits[16];
+  std::memcpy(missed_bits, missed_by, sizeof missed_by);
+  for (int lane = 0; lane < 16; ++lane) {
+    // Weaker ones count with odds of their power, else by how far they missed it, in powers of two.
+    const std::int32_t missed = (missed_bits[lane] >> 23 & 0xff) - 126;
+    const std::int32_t below = missed > kMostMissed ? kMostMissed : missed;
+    rank[lane] = static_cast<std::uint32_t>(counts[lane] > 0 ? kMostMissed : kMostMissed - below);
+    arrived.repeats[lane] = static_cast<std::uint32_t>(counts[lane] > 1 ? counts[lane] - 1 : 0);
+  }
   for (int lane = 0; lane < 16; ++lane) {
     const std::uint64_t zone = zones[lane] == ZoneMesh::kNone ? 0 : zones[lane];
-    arrived.place[lane] = zone * per_zone + (std::uint64_t{bits[lane]} * per_zone >> 32);
-    arrived.key[lane] = sweep_key | std::uint64_t{bits[lane] & 0xffffU} << 40 |
-                        std::uint64_t{u[lane]} * in_parts[lane] | v[lane];
+    arrived.place[lane] = zone * per_zone + (std::uint64_t{random[0][lane]} * per_zone >> 32);
+    arrived.key[lane] = sweep_key | std::uint64_t{rank[lane]} << (kPointBits + 16) |
+                        std::uint64_t{random[0][lane] & 0xffffU} << kPointBits |
+                        ((std::uint64_t{u[lane]} * in_parts[lane] | v[lane]) ^ mask);
   }
   for (int lane = 0; any_group != 0 && lane < 16; ++lane) {
     if (in_parts[lane] != kMemberFractions) continue;
     const std::uint64_t member = mesh_->member(TriangleId(points.triangle[lane]), points.front[lane]);
-    arrived.key[lane] = has_points(ZoneId(zones[lane])) ? arrived.key[lane] | member << 20 : 0;
+    const bool has = has_points(ZoneId(zones[lane]));
+    arrived.key[lane] = has ? arrived.key[lane] ^ member << kFractionBits : 0;
+    arrived.repeats[lane] = has ? arrived.repeats[lane] : 0;
+  }
+}
+
+void ArrivalPoints::repeat(std::uint64_t place, std::uint64_t key, std::uint32_t times) {
+  constexpr std::uint64_t kRandom = std::uint64_t{0xffff} << kPointBits;
+  const std::uint64_t first = place / per_zone_ * per_zone_;
+  // SplitMix64: one packet's own numbers, which need not be better than that.
+  std::uint64_t state = key ^ (place << 17);
+  for (std::uint32_t i = 0; i < times; ++i) {
+    state += 0x9e3779b97f4a7c15U;
+    std::uint64_t x = state;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebU;
+    x ^= x >> 31;
+    put(first + ((x >> 32) * per_zone_ >> 32), (key & ~kRandom) | (x & 0xffff) << kPointBits);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/zones/zone_mesh.h"
@@ -21,14 +22,19 @@ struct MemberPoint {
 
 /// Where 16 packets met zones (ArrivalPoints::find16).
 struct alignas(64) ArrivalLanes {
-  std::uint64_t place[16];  ///< That the packet competes for.
-  std::uint64_t key[16];    ///< What it would write there.
+  std::uint64_t place[16];    ///< That the packet competes for.
+  std::uint64_t key[16];      ///< What it would write there.
+  std::uint32_t repeats[16];  ///< How many further places it competes for, since it carries much.
 };
 
-/// Where the packets of a sweep met the zones: up to a few points of each, chosen by chance with equal odds
-/// for every packet, whichever thread brings it. In the next sweep the zone's packets leave from them, so
-/// that light stays in the part of the zone that it fell on. Points are rounded to 2^-20 of their base
-/// triangle, in groups, whose triangles are small, to 2^-10.
+/// Where the packets of a sweep met the zones: up to a few points of each, chosen by chance, whichever thread
+/// brings them, with odds in proportion to the power that packets carry, all channels together. In the next
+/// sweep the zone's packets leave from them, so that light stays in the part of the zone that it fell on.
+/// Points are rounded to 2^-18 of their base triangle, in groups, whose triangles are small, to 2^-9.
+///
+/// Packets are made alike: one with w times the mean power competes as w packets would, on the mean, and
+/// whole ones go before those that chance has left out. Of a zone that only such have met, the weakest of the
+/// mean are thinned out by factors of two until some are left, so that the odds hold among them too.
 class ArrivalPoints {
  public:
   /// One point per zone, or more where there are few zones and many `packets`. The mesh must outlive it.
@@ -40,25 +46,23 @@ class ArrivalPoints {
   }
 
   /// Points added from here on belong to `sweep`; those of the sweep before can be read. Sweeps count from 0.
-  void begin(std::uint32_t sweep);
+  /// `mean_power` > 0: of its packets, in any unit; `random`: bits of its own, which decide where two packets
+  /// have drawn the same number.
+  void begin(std::uint32_t sweep, double mean_power, std::uint64_t random);
 
-  /// What 16 packets would write where that met the zones at points of their base triangles; `bits` are 32
-  /// random ones of each packet. Nothing of use where a zone is ZoneMesh::kNone or has no points.
-  void find16(const TrianglePoints16& points, const std::uint32_t* zones, const std::uint32_t* bits,
-              ArrivalLanes& arrived) const;
+  /// What 16 packets would write where that met the zones at points of their base triangles; `power`: of
+  /// each, in the unit of the mean; `random`: two numbers of 32 bits of each. Nothing of use where a zone is
+  /// ZoneMesh::kNone or has no points.
+  void find16(const TrianglePoints16& points, const std::uint32_t* zones, const float* power,
+              const std::uint32_t (*random)[16], ArrivalLanes& arrived) const;
   /// Asks for the memory that `add` will look at, before it is needed.
   void ask_for(const ArrivalLanes& arrived, int lane) const {
     __builtin_prefetch(&written_[arrived.place[lane]], 1);
   }
   /// Adds the packet of a lane. Any thread.
   void add(const ArrivalLanes& arrived, int lane) {
-    const std::atomic_ref<std::uint64_t> slot(written_[arrived.place[lane]]);
-    // The order of the keys decides, not that of the threads: a sweep's points hide older ones, and among
-    // themselves the largest random number wins.
-    const std::uint64_t key = arrived.key[lane];
-    std::uint64_t seen = slot.load(std::memory_order_relaxed);
-    while (seen < key && !slot.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-    }
+    put(arrived.place[lane], arrived.key[lane]);
+    if (arrived.repeats[lane] > 0) repeat(arrived.place[lane], arrived.key[lane], arrived.repeats[lane]);
   }
 
   /// The points of the sweep before in one zone, dealt out evenly to the packets that it sends.
@@ -69,14 +73,14 @@ class ArrivalPoints {
     std::optional<BarycentricPoint> point(std::uint32_t k) const {
       const std::uint64_t key = this->key(k);
       if (key == 0) return std::nullopt;
-      return BarycentricPoint{coordinate(key >> 20, kFractions), coordinate(key, kFractions)};
+      return BarycentricPoint{coordinate(key >> kFractionBits, kFractions), coordinate(key, kFractions)};
     }
     /// The same for a zone that is a group.
     std::optional<MemberPoint> point_in_group(std::uint32_t k) const {
       const std::uint64_t key = this->key(k);
       if (key == 0) return std::nullopt;
-      return MemberPoint{static_cast<std::uint32_t>(key >> 20 & (kFractions - 1)),
-                         coordinate(key >> 10, kMemberFractions), coordinate(key, kMemberFractions)};
+      return MemberPoint{static_cast<std::uint32_t>(key >> kFractionBits & (kFractions - 1)),
+                         coordinate(key >> kMemberBits, kMemberFractions), coordinate(key, kMemberFractions)};
     }
 
    private:
@@ -85,29 +89,53 @@ class ArrivalPoints {
       const auto first = static_cast<std::size_t>(k * step_ >> 32);
       for (std::size_t i = 0; i < count_; ++i) {
         const std::uint64_t key = own_[first + i < count_ ? first + i : first + i - count_];
-        if (key >= oldest_) return key;
+        if (key >= least_) return key ^ mask_;
       }
       return 0;
     }
     friend class ArrivalPoints;
-    Dealer(const std::uint64_t* own, std::size_t count, std::uint64_t oldest, std::uint32_t packets)
-        : own_(own), count_(count), oldest_(oldest), step_((std::uint64_t{count} << 32) / packets) {}
+    Dealer(std::span<const std::uint64_t> own, std::uint64_t oldest, std::uint64_t mask,
+           std::uint32_t packets)
+        : own_(own.data()),
+          count_(own.size()),
+          least_(oldest),
+          mask_(mask),
+          step_((std::uint64_t{count_} << 32) / packets) {
+      for (const std::uint64_t key : own) least_ = std::max(least_, key & ~(kLeastOfRank - 1));
+    }
     const std::uint64_t* own_ = nullptr;
     std::size_t count_ = 0;
-    std::uint64_t oldest_ = 0;
+    std::uint64_t least_ = 0;  // key of the zone's best rank
+    std::uint64_t mask_ = 0;
     std::uint64_t step_ = 0;  // places from one packet to the next, in fixed point
   };
   /// `packets` > 0: how many the zone sends.
   Dealer deal(ZoneId zone, std::uint32_t packets) const {
-    return {&read_[zone.index() * per_zone_], per_zone_, read_key_, packets};
+    return {std::span(read_).subspan(zone.index() * per_zone_, per_zone_), read_key_, read_mask_, packets};
   }
 
  private:
-  static constexpr std::uint32_t kFractions = 1U << 20;
-  static constexpr std::uint32_t kMemberFractions = 1U << 10;
+  // A key, from its highest bit: 8 of the sweep, so that its points hide older ones; 4 of the rank; 16 random
+  // ones, of which the largest wins; 36 of the point, under a mask.
+  static constexpr int kFractionBits = 18;
+  static constexpr int kMemberBits = 9;
+  static constexpr int kPointBits = 2 * kFractionBits;
+  static constexpr std::uint32_t kFractions = 1U << kFractionBits;
+  static constexpr std::uint32_t kMemberFractions = 1U << kMemberBits;
+  static constexpr std::uint64_t kLeastOfRank = std::uint64_t{1} << (kPointBits + 16);
   static float coordinate(std::uint64_t low_bits, std::uint32_t parts) {
     return 1.0F / static_cast<float>(parts) * static_cast<float>(low_bits & (parts - 1));
   }
+  /// The order of the keys decides, not that of the threads.
+  void put(std::uint64_t place, std::uint64_t key) {
+    const std::atomic_ref<std::uint64_t> slot(written_[place]);
+    std::uint64_t seen = slot.load(std::memory_order_relaxed);
+    while (seen < key && !slot.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
+    }
+  }
+  /// The same at more places of its zone, with other random numbers.
+  void repeat(std::uint64_t place, std::uint64_t key, std::uint32_t times);
+
   const ZoneMesh* mesh_;
   bool all_have_points_;
   std::size_t per_zone_;
@@ -115,6 +143,9 @@ class ArrivalPoints {
   std::vector<std::uint64_t> read_;     // of the sweep before
   std::uint64_t sweep_key_ = 0;         // highest bits of every key of this sweep
   std::uint64_t read_key_ = 0;          // of the sweep before
+  std::uint64_t sweep_mask_ = 0;  // of points, so that no part of a zone wins where numbers are the same
+  std::uint64_t read_mask_ = 0;
+  float over_mean_ = 1;  // of power
 };
 
 }  // namespace reemit

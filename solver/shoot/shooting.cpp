@@ -56,7 +56,9 @@ class SweepTracer {
     if (arrivals_ != nullptr) {
       BitLanes bits;
       packets_.specular().draw_bits(choice_, arrived.block, number_, bits);
-      arrivals_->find16(arrived.hits.points(), arrived.zones, bits.word[0], points_);
+      alignas(64) float power[16];
+      power_of(arrived.block, power);
+      arrivals_->find16(arrived.hits.points(), arrived.zones, power, bits.word, points_);
     }
     ask_for_accounts(arrived);
     // The compiler cannot know that booking leaves the members of this object alone.
@@ -76,6 +78,16 @@ class SweepTracer {
       packets_.specular().carry_on(arrived.block, arrived.hits, lane, number_, carried);
     });
     if (holds_beyond_) carried.move_beyond(*holds_beyond_, held_, carried_before);
+  }
+
+  /// Of each packet, all channels together [quanta].
+  void power_of(const PacketBlock& block, float* power) const {
+    const std::int64_t* of_channel = block.power.data();
+    for (int lane = 0; lane < 16; ++lane) {
+      std::int64_t sum = 0;
+      for (std::size_t c = 0; c < values_; ++c) sum += *of_channel++;
+      power[lane] = static_cast<float>(sum);
+    }
   }
 
   /// Asks for the memory of all accounts at once, before the first is needed: with many zones the books are
@@ -241,7 +253,12 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
   if (task.settings.reemission == Reemission::kFromHits) arrivals.emplace(transport.mesh(), flight.packets());
   bool whole = true;
   for (std::uint32_t sweep = 0;; ++sweep) {
-    if (arrivals) arrivals->begin(sweep);
+    if (arrivals) {
+      const auto power =
+          static_cast<double>(std::accumulate(flight.quanta.begin(), flight.quanta.end(), std::int64_t{0}));
+      const auto bits = offsets.bits4(1, task.batch, sweep);
+      arrivals->begin(sweep, power / flight.packets(), std::uint64_t{bits[0]} << 32 | bits[1]);
+    }
     ArrivalPoints* points = arrivals ? &*arrivals : nullptr;
     WaitingPackets held(channels);
     whole = trace_flight(task, flight, sweep, points, accounts, held, books);
