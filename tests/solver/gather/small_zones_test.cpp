@@ -146,11 +146,12 @@ test::Measured light_on_small_zones(const Solution& s) {
 TEST(SmallZones, see_the_shadows_they_stand_in) {
   const test::RoomBuilder room = room_with_low_table();
   SolverSettings settings;
-  settings.packets = 8'000'000;
+  settings.packets = 6'000'000;
   settings.direct = DirectSource::kPackets;  // small zones get few shadow rays
   const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
   EXPECT_GT(gathered.record.gathered_zones, 100U);
   settings.gather_small_zones = false;
+  settings.packets = 16'000'000;
   settings.seed = 2;
   const Solution packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
   const test::Measured a = light_on_small_zones(gathered);
