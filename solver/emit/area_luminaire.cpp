@@ -58,8 +58,8 @@ AreaLuminaire::AreaLuminaire(const std::vector<Vec3>& corners, const Vec3& front
     shape_ = Polygon{corners};
 }
 
-AreaLuminaire::AreaLuminaire(const CurvedShape& shape, double exponent)
-    : area_(shape_area(shape)), exponent_(exponent) {
+AreaLuminaire::AreaLuminaire(const CurvedShape& shape, double exponent, bool is_clear)
+    : is_clear_(is_clear), area_(shape_area(shape)), exponent_(exponent) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     shape_ = *sphere;
     centre_ = sphere->centre;
@@ -76,7 +76,8 @@ AreaLuminaire::AreaLuminaire(const CurvedShape& shape, double exponent)
   const auto* disk = std::get_if<Disk>(&shape);
   if (disk != nullptr && disk->inner_radius == 0)
     shape_ = *disk;
-  else if (const auto* cylinder = std::get_if<Cylinder>(&shape))
+  else if (const auto* cylinder = std::get_if<Cylinder>(&shape);
+           cylinder != nullptr && !(cylinder->inward && is_clear))
     shape_ = *cylinder;
   else
     shape_ = Mantle{std::make_shared<const CurvedPatches>(shape)};
@@ -143,7 +144,7 @@ double AreaLuminaire::expected_near(const Vec3& x, const Vec3& n) const {
   if (const auto* t = std::get_if<Triangle>(&shape_)) return of_polygon(t->corners);
   if (const auto* p = std::get_if<Polygon>(&shape_)) return of_polygon(p->corners);
   if (const auto* s = std::get_if<Sphere>(&shape_)) {
-    const SphereSampler sampler(*s, x, n, Density::kArea);
+    const SphereSampler sampler(*s, x, n, Density::kArea, is_clear_);
     return sampler.lights() ? sampler.irradiance() : -1;
   }
   if (const auto* d = std::get_if<Disk>(&shape_)) {
@@ -206,7 +207,7 @@ bool AreaLuminaire::sample(const Vec3& x, const Vec3& n, double u0, double u1, A
     if (const auto* p = std::get_if<Polygon>(&shape_))
       return drawn_from(ConvexPolygonSampler(p->corners, front_, x, n, density_of_polygon(ratio())));
     if (const auto* s = std::get_if<Sphere>(&shape_))
-      return drawn_from(SphereSampler(*s, x, n, density_of_sphere()));
+      return drawn_from(SphereSampler(*s, x, n, density_of_sphere(), is_clear_));
     if (const auto* d = std::get_if<Disk>(&shape_))
       return drawn_from(DiskSampler(*d, x, n, density_of_disk(ratio())));
     if (const auto* c = std::get_if<Cylinder>(&shape_))

@@ -30,8 +30,9 @@ class AreaLuminaire {
   /// Convex planar polygon with 3 to kMostCorners corners in either sense; `front`: unit normal of the side
   /// that emits; `exponent`: e of Material::emission_exponent.
   AreaLuminaire(const std::vector<Vec3>& corners, const Vec3& front, double exponent);
-  /// The front of a curved shape.
-  AreaLuminaire(const CurvedShape& shape, double exponent);
+  /// The front of a curved shape. `is_clear`: light crosses the shape straight on, so that an inner side
+  /// lights what is outside through the wall before it.
+  AreaLuminaire(const CurvedShape& shape, double exponent, bool is_clear = false);
 
   double area() const { return area_; }
   /// Bounds for a light tree; `radiance`: along the normal, of all bands.
@@ -56,7 +57,7 @@ class AreaLuminaire {
   struct Polygon {
     std::vector<Vec3> corners;
   };
-  /// Cones and rings: drawn by area.
+  /// Cones, rings and the inside of clear cylinders: drawn by area.
   struct Mantle {
     std::shared_ptr<const CurvedPatches> patches;  // aside: it is large, and the table should stay in cache
   };
@@ -71,6 +72,7 @@ class AreaLuminaire {
   double reach_;  // its radius
   Vec3 front_;    // of flat shapes; the axis of mantles
   bool flat_ = true;
+  bool is_clear_ = false;
   double area_ = 0;
   double exponent_ = 0;
 };

@@ -48,8 +48,9 @@ void LuminaireTable::add_surfaces(const Room& room) {
     if (!surfaces.emits(surface)) continue;
     const CurvedShape& shape = rays_->patches(patch).shape();
     const double exponent = surfaces.emission_exponent(surface);
-    add({shape, exponent}, surface);
-    if (surfaces.emits(patch, false)) add({flipped(shape), exponent}, surface);
+    const bool is_clear = surfaces.specular(patch).is_pane();
+    add({shape, exponent, is_clear}, surface);
+    if (surfaces.emits(patch, false)) add({flipped(shape), exponent, is_clear}, surface);
   }
 }
 

@@ -8,7 +8,8 @@
 
 namespace reemit {
 
-SphereSampler::SphereSampler(const Sphere& sphere, const Vec3& x, const Vec3& n, Density density)
+SphereSampler::SphereSampler(const Sphere& sphere, const Vec3& x, const Vec3& n, Density density,
+                             bool is_clear)
     : centre_(sphere.centre),
       x_(x),
       n_(n),
@@ -16,12 +17,13 @@ SphereSampler::SphereSampler(const Sphere& sphere, const Vec3& x, const Vec3& n,
       radius_(sphere.radius),
       distance_(to_centre_.norm()),
       side_(sphere.inward ? -1 : 1),
+      inside_(distance_ <= radius_),
       density_(density) {
   constexpr double kPi = std::numbers::pi;
-  const bool inside = distance_ <= radius_;
   const double height = n.dot(to_centre_);
-  if (!(radius_ > 0) || inside != sphere.inward || !(height + radius_ > 0)) return;
-  if (density == Density::kArea || (inside && density == Density::kVisibleArea)) {
+  const bool can_light = inside_ ? sphere.inward : !sphere.inward || is_clear;
+  if (!(radius_ > 0) || !can_light || !(height + radius_ > 0)) return;
+  if (density == Density::kArea || (sphere.inward && density == Density::kVisibleArea)) {
     region_ = Region::kWholeArea;
     extent_ = 4 * kPi * radius_ * radius_;
     e3_ = {0, 0, 1};
@@ -29,7 +31,7 @@ SphereSampler::SphereSampler(const Sphere& sphere, const Vec3& x, const Vec3& n,
     e2_ = {0, 1, 0};
     return;
   }
-  if (inside) {
+  if (inside_) {
     region_ = density == Density::kCosine ? Region::kProjectedHemisphere : Region::kHemisphere;
     extent_ = density == Density::kCosine ? kPi : 2 * kPi;
     cap_height_ = 1;
@@ -164,7 +166,7 @@ std::array<double, 2> SphereSampler::invert(const Vec3& point) const {
 
 double SphereSampler::irradiance() const {
   if (region_ == Region::kNone) return 0;
-  if (side_ < 0) return std::numbers::pi;
+  if (inside_) return std::numbers::pi;
   if (region_ == Region::kProjectedCap) return extent_;
   const AlignedFrame frame(n_, to_centre_ / distance_);
   const double sin_alpha = radius_ / distance_;

@@ -9,11 +9,13 @@ namespace reemit {
 
 /// Sphere [SWZ96] sec. 3.2: p1 (kArea), its restriction to the visible cap (kVisibleArea), p2 (kSolidAngle)
 /// and the part above the horizon by projected solid angle (kCosine, in place of p3; no variance). Seen from
-/// outside, a sphere lights if its front is the outside; from inside, if it is the inside: then kSolidAngle
-/// and kCosine draw from the hemisphere above the horizon.
+/// outside, a sphere lights if its front is the outside, or if it is clear: then its far inner side does, and
+/// kVisibleArea is kArea. Seen from inside, it lights if its front is the inside: then kSolidAngle and
+/// kCosine draw from the hemisphere above the horizon.
 class SphereSampler {
  public:
-  SphereSampler(const Sphere& sphere, const Vec3& x, const Vec3& n, Density density);
+  /// `is_clear`: light crosses it straight on.
+  SphereSampler(const Sphere& sphere, const Vec3& x, const Vec3& n, Density density, bool is_clear = false);
 
   bool lights() const { return region_ != Region::kNone; }
   Density density() const { return density_; }
@@ -38,6 +40,7 @@ class SphereSampler {
   double radius_;
   double distance_;        // |centre - x|
   double side_;            // +1: the outside emits
+  bool inside_;            // x is
   double extent_ = 0;      // area [m2], or solid angle [sr], or projected solid angle, of the region
   double cap_height_ = 2;  // 1 - cos of the half angle of a cap or cone
   Density density_;

@@ -217,5 +217,48 @@ TEST(DirectLight, room_without_luminaires_is_black) {
   EXPECT_EQ(sum, 0);
 }
 
+/// Irradiance at (0,0,0) upwards of a shape of radiance 1 that lets `clear` through and emits on both sides.
+MeanTest light_of_clear(const CurvedShape& shape, double clear) {
+  RoomBuilder room;
+  add_receiver(room, {0, 0, 0}, 0.002);
+  const MaterialId lamp = room.material("lamp", 0, pi, true);
+  Material& material = room.scene().materials[lamp.index()];
+  material.emits_both_sides = true;
+  if (clear > 0) material.non_diffuse.specular_transmittance = room.flat(clear);
+  room.shape(lamp, shape, 2);
+  const Lit lit(room);
+  return lit.irradiance(lit.point(0, 0.5F, 0), 256);
+}
+
+// The far inner side is seen through the wall before it, at the same places of the picture.
+TEST(DirectLight, far_side_of_a_clear_sphere) {
+  for (const double clear : {0.0, 0.5, 1.0}) {
+    const MeanTest e = light_of_clear(Sphere{{0, 0, 2}, 0.5}, clear);
+    const double truth = (1 + clear) * pi * 0.5 * 0.5 / (2 * 2);
+    EXPECT_TRUE(e.agrees_with(truth)) << clear << ": " << e.mean() << " against " << truth;
+    EXPECT_TRUE(e.would_notice(0.02, truth));
+  }
+}
+
+// Its axis lies level: whatever is seen of the inside is seen through the wall before it.
+TEST(DirectLight, far_side_of_a_clear_cylinder) {
+  const double radius = 0.4;
+  const double clear = 0.6;
+  double truth = 0;
+  constexpr int kSteps = 600;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const double angle = 2 * pi * (i + 0.5) / kSteps;
+      const Vec3 outwards(0, std::cos(angle), std::sin(angle));
+      const Vec3 p = Vec3((j + 0.5) / kSteps - 0.5, 0, 2) + radius * outwards;
+      const double cos_outside = -outwards.dot(p) / p.norm();
+      const double seen = cos_outside > 0 ? cos_outside : -clear * cos_outside;
+      truth += p.z() / p.norm() * seen / p.squaredNorm() * 2 * pi * radius / (kSteps * kSteps);
+    }
+  const MeanTest e = light_of_clear(Cylinder{{-0.5, 0, 2}, {0.5, 0, 2}, radius}, clear);
+  EXPECT_TRUE(e.agrees_with(truth)) << e.mean() << " against " << truth;
+  EXPECT_TRUE(e.would_notice(0.02, truth));
+}
+
 }  // namespace
 }  // namespace reemit

@@ -14,6 +14,9 @@ using test::ShapeCase;
 SphereSampler make_sphere(const Sphere& s, const Vec3& x, const Vec3& n, Density d) {
   return {s, x, n, d};
 }
+SphereSampler make_clear_sphere(const Sphere& s, const Vec3& x, const Vec3& n, Density d) {
+  return {s, x, n, d, true};
+}
 
 /// Whole sphere above the horizon: pi (R/d)^2 cos(theta). Partly below, with h = d/R, w = sqrt(h^2 - 1),
 /// y = -w cot(theta): [cos(theta) acos(y) - w sin(theta) sqrt(1 - y^2)]/h^2 + atan(sin(theta) sqrt(1 -
@@ -26,6 +29,8 @@ const std::vector<ShapeCase<Sphere>>& spheres() {
       {"mostly below the horizon", {{2, 0, -0.4}, 1}, {0, 0, 0}, {0, 0, 1}, 0.027474342102480825},
       {"near", {{0, 0, -1.05}, 1}, {0, 0, 0}, {0, 0, -1}, 2.849517146113191},
       {"inside", {{0.3, -0.2, 0.1}, 1, true}, {0, 0, 0}, {0.2, 0.3, 1}, pi},
+      {"far side", {{1, 0, 1.7320508075688772}, 0.5, true}, {0, 0, 0}, {0, 0, 1}, 0.17004369039695794},
+      {"far side, cut", {{2, 0, 0.3}, 1, true}, {0, 0, 0}, {0, 0, 1}, 0.15385944604615762},
   };
   return all;
 }
@@ -35,7 +40,7 @@ double sphere_area(const Sphere& s) {
 }
 
 TEST(SphereSampler, MeansAreTheClosedForms) {
-  test::expect_means(spheres(), make_sphere, [](Density d) { return d == Density::kCosine; });
+  test::expect_means(spheres(), make_clear_sphere, [](Density d) { return d == Density::kCosine; });
 }
 
 TEST(SphereSampler, SamplesAndInverseFollowTheDensity) {
@@ -43,7 +48,7 @@ TEST(SphereSampler, SamplesAndInverseFollowTheDensity) {
   std::vector<ShapeCase<Sphere>> some(spheres());
   some.erase(some.begin() + 4);
   some.push_back({"close", {{0.2, 0.1, -1.5}, 1}, {0, 0, 0}, {0, 0, -1}, -1});
-  test::expect_densities(some, make_sphere, sphere_area);
+  test::expect_densities(some, make_clear_sphere, sphere_area);
 }
 
 TEST(SphereSampler, BothFitsRejectAPlantedBias) {
@@ -62,7 +67,7 @@ TEST(SphereSampler, BothFitsRejectAPlantedBias) {
 TEST(SphereSampler, ClosedFormIsTheSameForAllDensities) {
   for (const ShapeCase<Sphere>& c : spheres())
     for (const Density d : test::kDensities)
-      EXPECT_NEAR(make_sphere(c.shape, c.x, c.n.normalized(), d).irradiance() / c.irradiance, 1, 1e-12)
+      EXPECT_NEAR(make_clear_sphere(c.shape, c.x, c.n.normalized(), d).irradiance() / c.irradiance, 1, 1e-12)
           << c.name;
 }
 
