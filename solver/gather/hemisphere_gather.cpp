@@ -9,6 +9,9 @@
 namespace reemit {
 namespace {
 
+/// Bounces that no chance ends.
+constexpr int kSureBounces = 4;
+
 /// By zone, the distance within which a hit is continued [normalised units].
 std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight& direct,
                                   const GatherSettings& settings, const StopToken* stop) {
@@ -20,9 +23,12 @@ std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight&
     uneven = settings.plan != nullptr && settings.plan->uneven.size() == uneven.size()
                  ? settings.plan->uneven
                  : uneven_zones(field, direct, settings.seed, stop);
-  for (std::size_t z = 0; z < reach.size(); ++z)
-    reach[z] = uneven[z] != 0 ? std::numeric_limits<float>::infinity()
-                              : static_cast<float>(settings.close_hit) * field.zone_size(ZoneId(z));
+  for (std::size_t z = 0; z < reach.size(); ++z) {
+    const bool is_little_known = settings.little_known != nullptr && (*settings.little_known)[z] != 0;
+    reach[z] = uneven[z] != 0 || is_little_known
+                   ? std::numeric_limits<float>::infinity()
+                   : static_cast<float>(settings.close_hit) * field.zone_size(ZoneId(z));
+  }
   return reach;
 }
 
@@ -102,8 +108,12 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     for (std::size_t b = 0; b < bands; ++b) dark = dark && weight[b] * brdf(b) == 0;
     if (dark) return;
     if (!specular) add_direct(point, bounce, key, here, sum);
+    float most = 0;
+    for (std::size_t b = 0; b < bands; ++b) most = std::max(most, brdf(b) * next.cosine_over_pdf);
+    const float survives = bounce < kSureBounces ? 1.0F : std::min(1.0F, most);
+    if (!(u_ray[2] < survives)) return;
     for (std::size_t b = 0; b < bands; ++b) {
-      weight[b] *= brdf(b) / scattered;
+      weight[b] *= brdf(b) / (scattered * survives);
       weight[b] *= next.cosine_over_pdf;
     }
     along = next.direction;

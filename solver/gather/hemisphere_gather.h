@@ -22,7 +22,12 @@ struct GatherSettings {
   /// A hit nearer than this many zone sizes is continued by another bounce instead of read, so that corners
   /// show no zone-sized steps; so are hits on uneven zones from any distance. >= 0, 0 = always read.
   double close_hit = 1.0;
-  int most_bounces = 4;  ///< Bounces after which a hit is read all the same [0, 64].
+  /// Bounces after which a hit is read all the same [0, 64]. From the fifth on, chance ends those that carry
+  /// little.
+  int most_bounces = 4;
+  /// By zone, 1 where what packets brought is too little to be read: such hits are continued from any
+  /// distance. Needed by the constructor alone; null: none.
+  const std::vector<std::uint8_t>* little_known = nullptr;
   /// Look for uneven zones before the first ray, which takes some shadow rays for each zone.
   bool continue_uneven = true;
   /// Shoot photons for light over mirrors and glass before the first ray (CausticMap); else rays find it.

@@ -91,13 +91,32 @@ struct ZoneReplicates {
   }
 };
 
+/// By zone, 1 where so few packets are to be expected by its area that what they brought says next to
+/// nothing. What they did bring has no say, or the lucky zones would be read and the others not.
+std::vector<std::uint8_t> little_known_zones(const Solution& solution) {
+  constexpr double kFewPackets = 16;
+  const ZoneMesh& mesh = solution.mesh;
+  const double of_few = kFewPackets * mean_zone_area(mesh) * static_cast<double>(mesh.zone_count()) /
+                        static_cast<double>(solution.record.rays);
+  std::vector<std::uint8_t> result(mesh.zone_count());
+  for (std::size_t z = 0; z < result.size(); ++z) result[z] = mesh.zone_area(ZoneId(z)) < of_few ? 1 : 0;
+  return result;
+}
+
 /// What is small stands close to what is large: the part of the floor that a foot sees lies in its shadow,
 /// the zone of the floor mostly not. So near hits are continued, and those on uneven zones, unless zones are
-/// to send out light evenly, as the matrix method has it.
-GatherSettings gather_settings(const SolverSettings& solver) {
-  GatherSettings settings{.seed = solver.seed};
+/// to send out light evenly, as the matrix method has it. In cavities that packets hardly ever enter all
+/// hits are, until light from outside is met.
+GatherSettings gather_settings(const SolverSettings& solver, const std::vector<std::uint8_t>& little_known) {
+  GatherSettings settings{.most_bounces = 64, .little_known = &little_known, .seed = solver.seed};
   if (solver.reemission == Reemission::kFromZones) settings.close_hit = 0;
   return settings;
+}
+
+/// Of PathKey: what foresees whether a zone is worth gathering shares no numbers with what is gathered.
+std::uint32_t batch_of(RngPurpose purpose, std::uint32_t replicate) {
+  return purpose == RngPurpose::kSmallZonePilot ? static_cast<std::uint32_t>(kReplicates) + replicate
+                                                : replicate;
 }
 
 /// Gathers at zones; every replicate reads its own part of the zone solution.
@@ -110,7 +129,7 @@ class Gatherer {
         seed_(solution.settings.seed),
         field_(room, solution, kReplicates),
         direct_(room),
-        gather_(field_, direct_, gather_settings(solution.settings), &stop) {}
+        gather_(field_, direct_, gather_settings(solution.settings, little_known_zones(solution)), &stop) {}
   Gatherer(const Gatherer&) = delete;
   Gatherer& operator=(const Gatherer&) = delete;
 
@@ -151,8 +170,8 @@ class Gatherer {
                                    std::countr_zero(static_cast<unsigned>(points)));
         const auto place = [&](const std::array<float, 2>& u) { return point_in_zone(room_, zones[i], u); };
         add_replicate(direct_, sampler, {points, kGathersPerPoint},
-                      {zones[i].index(), replicate, 0, replicate}, place, batch, next, next + bands_,
-                      caustic.data());
+                      {zones[i].index(), batch_of(purpose, replicate), 0, replicate}, place, batch, next,
+                      next + bands_, caustic.data());
       }
     batch.flush();
     std::vector<ZoneReplicates> by_band(bands_);
