@@ -95,8 +95,9 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
     // The sum over the probes has about this standard error.
     const double low = std::sqrt(std::max(0.0, difference) / value);
     const double high = std::sqrt((std::max(0.0, difference) + 2 * std::sqrt(squares)) / value);
-    if (high > std::max(kSmallEnough, kMostUncertain * low)) return std::nullopt;
-    worst = std::max(worst.value_or(0), low);
+    const bool is_certain = high <= kMostUncertain * low;
+    if (!is_certain && high > kSmallEnough) return std::nullopt;
+    worst = std::max(worst.value_or(0), is_certain ? low : high);
   }
   return worst;
 }
