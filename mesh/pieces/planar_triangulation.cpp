@@ -1,7 +1,3 @@
-// Points lie on edges only up to rounding, and a triangulation may find itself in a face where it should not
-// be. CGAL's checks must then stop it in every build, not only in debug builds.
-#define CGAL_DEBUG
-
 #include "mesh/pieces/planar_triangulation.h"
 
 #include <algorithm>
