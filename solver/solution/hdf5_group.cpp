@@ -7,6 +7,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/solution/hdf5_chunks.h"
 #include "solver/solution/packed_chunk.h"
 
 namespace reemit {
@@ -71,9 +72,6 @@ std::string without_padding(const char* text, std::size_t length) {
 template <class T>
 constexpr H5T_class_t kClass = std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER;
 
-// Chunks of whole rows of about this size: small enough to compress in cache, large enough to be few.
-constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 18;
-
 // Properties of a new object without the times that HDF5 would put into it: the same solution must give the
 // same bytes.
 Hdf5Id timeless_properties(hid_t kind) {
@@ -83,19 +81,11 @@ Hdf5Id timeless_properties(hid_t kind) {
   return properties;
 }
 
-std::uint64_t row_bytes(const Hdf5Shape& shape, std::size_t value_size) {
-  return value_count(shape) / shape[0] * value_size;
-}
-
-std::uint64_t rows_of_chunk(const Hdf5Shape& shape, std::size_t value_size) {
-  return std::clamp<std::uint64_t>(kChunkBytes / row_bytes(shape, value_size), 1, shape[0]);
-}
-
 Hdf5Id dataset_properties(const Hdf5Shape& shape, std::size_t value_size) {
   Hdf5Id properties = timeless_properties(H5P_DATASET_CREATE);
   if (value_count(shape) == 0) return properties;  // nothing to cut into chunks
-  std::vector<hsize_t> chunk(shape.begin(), shape.end());
-  chunk[0] = rows_of_chunk(shape, value_size);
+  const Hdf5Shape of_chunk = Hdf5Chunks(shape, value_size).shape();
+  const std::vector<hsize_t> chunk(of_chunk.begin(), of_chunk.end());
   const char* what = "cannot set dataset properties";
   check_hdf5(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), what);
   check_hdf5(H5Pset_shuffle(properties.get()), what);
@@ -106,36 +96,31 @@ Hdf5Id dataset_properties(const Hdf5Shape& shape, std::size_t value_size) {
 // What H5Dwrite_chunk is told of the filters that were left out.
 constexpr std::uint32_t kAllFilters = 0;
 constexpr std::uint32_t kNoFilters = 0xffffffff;
-// What is packed at once: enough for many threads, little enough to be done in the moment that Packing
-// allows, and to fit beside a large solution, whose rows are chunks of megabytes.
+// Packed at once: enough for many threads, few enough to be done in the moment that Packing allows.
 constexpr std::uint64_t kChunksAtOnce = 16;
-constexpr std::uint64_t kBytesAtOnce = std::uint64_t{1} << 25;
 
 // Writes a dataset chunk by chunk, packed side by side; those for which `packs` is false without filters.
 template <class Packs>
 void write_chunks(hid_t dataset, std::span<const std::byte> bytes, const Hdf5Shape& shape,
                   std::size_t value_size, const Packs& packs, const std::string& what) {
-  const std::size_t of_row = row_bytes(shape, value_size);
-  const std::uint64_t rows = rows_of_chunk(shape, value_size);
-  const std::uint64_t chunks = (shape[0] + rows - 1) / rows;
-  const std::uint64_t at_once = std::clamp<std::uint64_t>(kBytesAtOnce / (rows * of_row), 1, kChunksAtOnce);
+  const Hdf5Chunks chunks(shape, value_size);
   const auto whole_chunk = [&](std::uint64_t c) {
-    const auto found = bytes.subspan(c * rows * of_row, std::min(rows, shape[0] - c * rows) * of_row);
-    std::vector<std::byte> whole(rows * of_row);  // the last one may be larger than what is left
+    const auto found = chunks.part(bytes, c);
+    std::vector<std::byte> whole(chunks.bytes());  // may be larger than what is left
     std::copy(found.begin(), found.end(), whole.begin());
     return whole;
   };
-  std::vector<std::vector<std::byte>> stored(at_once);
-  for (std::uint64_t first = 0; first < chunks; first += at_once) {
-    const std::uint64_t end = std::min(first + at_once, chunks);
+  std::vector<std::vector<std::byte>> stored(kChunksAtOnce);
+  for (std::uint64_t first = 0; first < chunks.count(); first += kChunksAtOnce) {
+    const std::uint64_t end = std::min(first + kChunksAtOnce, chunks.count());
     const bool is_packed = packs();
     tbb::parallel_for(first, end, [&](std::uint64_t c) {
       std::vector<std::byte> whole = whole_chunk(c);
       stored[c - first] = is_packed ? packed_chunk(whole, value_size) : std::move(whole);
     });
     for (std::uint64_t c = first; c < end; ++c) {
-      std::vector<hsize_t> at(shape.size(), 0);
-      at[0] = c * rows;
+      const Hdf5Shape place = chunks.place(c);
+      const std::vector<hsize_t> at(place.begin(), place.end());
       const std::vector<std::byte>& chunk = stored[c - first];
       check_hdf5(H5Dwrite_chunk(dataset, H5P_DEFAULT, is_packed ? kAllFilters : kNoFilters, at.data(),
                                 chunk.size(), chunk.data()),
@@ -333,7 +318,8 @@ Hdf5Shape Hdf5Group::shape(const std::string& name) const {
   const int rank = H5Sget_simple_extent_ndims(space.get());
   if (rank < 1 || rank > 3) raise("the dataset " + full_name(name) + " has an unknown shape");
   std::vector<hsize_t> dims(static_cast<std::size_t>(rank));
-  H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
+  if (H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr) != rank)
+    raise("no usable dataset " + full_name(name));
   return {dims.begin(), dims.end()};
 }
 

@@ -91,7 +91,7 @@ TEST(PackedChunk, IsWhatHdf5Stores) {
   expect_like_hdf5<double>(H5T_IEEE_F64LE);
 }
 
-/// More chunks than are packed at once, the last of them not full; and rows that are chunks each.
+/// More chunks than are packed at once, the last of them not full; and rows of several chunks each.
 TEST(PackedChunk, ManyOfThemComeBack) {
   const Hdf5MemoryFile file;
   const Hdf5Group root = file.root();
