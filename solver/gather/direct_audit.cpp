@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
@@ -159,15 +160,17 @@ DirectAudit audit_direct_light(const Room& room, const Solution& solution,
   };
   const auto compare_all = [&](const std::vector<std::size_t>& which, int points, std::uint64_t seed,
                                double done_before, double done_after) {
-    std::atomic<std::size_t> done{0};
+    std::mutex mutex;
+    std::size_t done = 0;
     const std::size_t chunks = (which.size() + kComparedPerTask - 1) / kComparedPerTask;
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
       const std::size_t last = std::min(which.size(), (c + 1) * kComparedPerTask);
       for (std::size_t j = c * kComparedPerTask; j < last && !interrupt; ++j) compare(which[j], points, seed);
+      if (!progress) return;
+      const std::lock_guard lock(mutex);
       done += last - c * kComparedPerTask;
-      if (progress)
-        progress(done_before +
-                 (done_after - done_before) * static_cast<double>(done) / static_cast<double>(which.size()));
+      progress(done_before +
+               (done_after - done_before) * static_cast<double>(done) / static_cast<double>(which.size()));
     });
   };
   std::vector<std::size_t> suspects(zones.size());

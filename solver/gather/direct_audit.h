@@ -54,7 +54,7 @@ struct DirectAudit {
 /// samples, for the odds `false_alarm` over all zones together, and 0.3 % for float arithmetic; likewise for
 /// surfaces. Pre: the room of the solution. Throws InputError when the solution has no packets (matrix
 /// method). When `interrupt` becomes true, returns what was compared. `progress` (may be empty): share done
-/// [0,1].
+/// [0,1], rising; called from many threads, one at a time.
 DirectAudit audit_direct_light(const Room& room, const Solution& solution,
                                const DirectAuditSettings& settings,
                                const std::function<void(double)>& progress,
