@@ -71,10 +71,10 @@ bool encode(png_structp png, png_infop info, const PngPicture& picture, const st
 }  // namespace
 
 void encode_png(const PngPicture& picture, OutputFile& file) {
+  const std::vector<png_text> texts = texts_of(picture);  // may throw, so before what has to be freed
   Target target{file, nullptr, ""};
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &target, on_error, ignore_warning);
   png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
-  const std::vector<png_text> texts = texts_of(picture);
   const bool done = info != nullptr && encode(png, info, picture, texts, target);
   png_destroy_write_struct(&png, &info);
   if (target.not_written) std::rethrow_exception(target.not_written);
