@@ -22,7 +22,6 @@ class SmoothPatches {
   std::uint32_t neighbour(SideId p, int k) const { return neighbour_[slot(p, k)]; }
   /// Number of the vertex at corner k; patches joined around it have the same.
   std::uint32_t corner_vertex(SideId p, int k) const { return corner_vertex_[slot(p, k)]; }
-  std::size_t corner_vertex_count() const { return corner_normal_.size(); }
   /// Unit normal at such a vertex: of the shading normals, else of the faces around it, weighted by angle.
   const Vec3& corner_normal(std::uint32_t vertex) const { return corner_normal_[vertex]; }
 

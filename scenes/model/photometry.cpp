@@ -97,7 +97,6 @@ IntensityTable::IntensityTable(PhotometricType type, const std::vector<double>& 
   demand(polar_deg.front() >= 0 && polar_deg.back() <= 180, "polar angles must lie in [0, 180] degrees");
   const double turn = azimuth_deg.back() - azimuth_deg.front();
   demand(turn <= 360, "azimuths must lie in one turn");
-  full_circle_ = turn == 360;
   const std::size_t lines = polar_.size();
   demand(candela_.size() == lines * azimuth_.size(), "one intensity per pair of angles is needed");
   for (const double value : candela_) {

@@ -46,7 +46,6 @@ class IntensityTable {
   double candela(std::size_t azimuth, std::size_t polar) const {
     return candela_[azimuth * polar_.size() + polar];
   }
-  bool full_circle() const { return full_circle_; }  ///< The azimuths close.
 
   /// Intensity [cd] in a direction of any length above 0, in luminaire coordinates.
   double intensity(const Vec3& direction) const;
@@ -95,7 +94,6 @@ class IntensityTable {
   std::vector<double> polar_sine_, polar_cosine_;
   std::vector<double> flux_below_, azimuth_integral_;
   double greatest_ = 0;
-  bool full_circle_ = false;
 };
 
 /// The part of a luminaire that shines, centred on its position.

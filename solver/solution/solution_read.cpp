@@ -55,10 +55,8 @@ struct AttributeReader {
     parse<SamplingKind>(name, value, kAllSamplingKinds);
   }
   void attribute(const char* name, Reemission& value) { parse<Reemission>(name, value, kAllReemissions); }
-  /// Files without it are from when there were packets only.
   void attribute(const char* name, DirectSource& value) {
-    value = DirectSource::kPackets;
-    if (group.has_attribute(name)) parse<DirectSource>(name, value, kAllDirectSources);
+    parse<DirectSource>(name, value, kAllDirectSources);
   }
   void attribute(const char* name, StopReason& value) { parse<StopReason>(name, value, kAllStopReasons); }
 

@@ -14,7 +14,6 @@ class TextTable {
  public:
   /// Cells beyond the longest row so far make new columns; missing ones stay empty.
   void row(std::vector<std::string> cells);
-  void blank_line() { rows_.emplace_back(); }
   /// All rows, each ended by a newline, without trailing spaces.
   std::string text() const;
 

@@ -354,13 +354,13 @@ TEST_F(SolutionFile, RefusesEveryTruncatedFile) {
   EXPECT_THROW(load_solution(file_), InputError);
 }
 
-TEST_F(SolutionFile, RunsFromBeforeShadowRaysGoOnByPackets) {
+TEST_F(SolutionFile, RefusesASolutionThatDoesNotSayWhereDirectLightIsFrom) {
   Solution saved = sample_solution(BandSet::grey());
   saved.settings.direct = DirectSource::kBest;
   save_solution(saved, file_);
   EXPECT_EQ(load_solution(file_).settings.direct, DirectSource::kBest);
   edit([](hid_t id) { H5Adelete_by_name(id, "settings/solve", "direct", H5P_DEFAULT); });
-  EXPECT_EQ(load_solution(file_).settings.direct, DirectSource::kPackets);
+  EXPECT_THAT([&] { load_solution(file_); }, ThrowsMessage<InputError>(HasSubstr("damaged or incomplete")));
 }
 
 TEST_F(SolutionFile, RefusesOtherHdf5FilesWithASeal) {
