@@ -56,7 +56,7 @@ class ToneMap {
 /// above 0 count; without any the exposure is 1. Throws std::invalid_argument for settings out of range.
 ToneMap make_tone_map(std::span<const float> rgb, const ToneMapSettings& settings = {});
 
-/// sRGB transfer function [IEC 61966-2-1], linear [0,1] -> encoded [0,1].
+/// sRGB transfer function [IEC61966], linear [0,1] -> encoded [0,1].
 double srgb_encoded(double linear);
 
 /// Encoded 8-bit value of a display-linear one. `dither` in [0,1) spreads the rounding error: 0.5 rounds to

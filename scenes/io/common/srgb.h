@@ -3,7 +3,7 @@
 
 namespace reemit {
 
-/// Linear light [0,1] of an sRGB component [0,1] (IEC 61966-2-1).
+/// Linear light [0,1] of an sRGB component [0,1] [IEC61966].
 inline double linear_from_srgb(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
