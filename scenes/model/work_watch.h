@@ -30,7 +30,7 @@ class WorkWatch {
 
   /// The work is done to this share. Throws Interrupted if it is to stop.
   void at(double done) const {
-    if (stop_ && stop_->requested()) throw Interrupted("interrupted before the room was meshed");
+    if (stop_ && stop_->requested()) throw Interrupted("interrupted before the solve began");
     if (progress_) progress_(done);
   }
 
