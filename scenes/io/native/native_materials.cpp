@@ -190,7 +190,7 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, const std::filesys
     const auto colour = at.find("emission_color");
     if (colour && !is_photometric(key)) {
       colour->fail("a colour without a photometric emission",
-                   fmt::format("Use it with luminance_cd_m2, {}", "exitance_lm_m2 or total_flux_lm."));
+                   "Use it with luminance_cd_m2, exitance_lm_m2 or total_flux_lm.");
     }
     if (const auto exponent = at.find("emission_exponent")) {
       if (!emission)
