@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include <fmt/format.h>
@@ -78,14 +79,7 @@ class ParseGuard {
     return true;
   }
 
- private:
-  struct Level {
-    bool is_array;
-    std::size_t index;  // Of the value being read, in an array.
-    std::set<std::string> keys;
-    std::string last_key;
-  };
-
+  /// File and JSON pointer of the value being read.
   std::string path() const {
     std::string path = file_ + "#";
     for (const Level& level : levels_) {
@@ -98,6 +92,14 @@ class ParseGuard {
     }
     return path;
   }
+
+ private:
+  struct Level {
+    bool is_array;
+    std::size_t index;  // Of the value being read, in an array.
+    std::set<std::string> keys;
+    std::string last_key;
+  };
 
   const std::string& file_;
   std::vector<Level> levels_;
@@ -145,8 +147,9 @@ bool find_path(const json& from, const json& wanted, std::string& path) {
 }  // namespace
 
 json parse_json(const std::string& text, const std::string& file) {
+  ParseGuard guard(file);
   try {
-    return json::parse(text, ParseGuard(file), true, true);
+    return json::parse(text, std::ref(guard), true, true);
   } catch (const json::parse_error& error) {
     std::string problem = error.what();
     if (const auto start = problem.find("syntax error"); start != std::string::npos) problem.erase(0, start);
@@ -157,7 +160,7 @@ json parse_json(const std::string& text, const std::string& file) {
   } catch (const json::out_of_range& error) {
     std::string problem = error.what();
     if (const auto start = problem.find("number"); start != std::string::npos) problem.erase(0, start);
-    throw InputError(file, problem, "Numbers must fit a double, that is lie below 1.8e308.");
+    throw InputError(guard.path(), problem, "Numbers must fit a double, that is lie below 1.8e308.");
   }
 }
 
@@ -269,6 +272,12 @@ double JsonCursor::number_in(double least, double most) const {
   if (value < least || value > most) {
     fail(fmt::format("{} is out of range", value), fmt::format("It must lie from {} to {}.", least, most));
   }
+  return value;
+}
+
+double JsonCursor::strength() const {
+  const double value = number();
+  if (value < 0) fail(fmt::format("{} is out of range", value), "It must be above 0.");
   return value;
 }
 

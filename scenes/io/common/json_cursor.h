@@ -52,7 +52,8 @@ class JsonCursor {
 
   double number() const;
   double number_in(double least, double most) const;
-  double length() const;  ///< Above 0, at most limits::kFarthest.
+  double strength() const;  ///< Of light: not below 0. Who needs more than nothing looks.
+  double length() const;    ///< Above 0, at most limits::kFarthest.
   int integer_in(int least, int most) const;
   bool boolean() const;
   const std::string& string() const;

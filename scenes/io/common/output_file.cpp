@@ -96,6 +96,17 @@ bool lock_new_file(int descriptor) {
          fstat(descriptor, &status) == 0 && status.st_nlink > 0;
 }
 
+// No file can be created there, though nobody forbids it.
+[[noreturn]] void refuse_folder(const fs::path& target, const fs::path& resolved) {
+  const fs::path folder = resolved.has_parent_path() ? resolved.parent_path() : fs::path(".");
+  std::error_code code;
+  // Such as /proc.
+  if (fs::is_directory(folder, code))
+    throw ResourceError(target.string(), fmt::format("no file can be created in '{}'", folder.string()),
+                        "Choose a folder that you may write to.");
+  throw ResourceError(target.string(), missing_folder(resolved), kCreateFolder);
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& target) : target_(target), resolved_(follow_links(target)) {
@@ -115,8 +126,7 @@ OutputFile::OutputFile(const fs::path& target) : target_(target), resolved_(foll
   for (int attempt = 0; attempt < kAttempts && descriptor_ < 0; ++attempt) {
     partial_ = partial_name(resolved_, attempt);
     descriptor_ = open(partial_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && errno == ENOENT)
-      throw ResourceError(target_.string(), missing_folder(resolved_), kCreateFolder);
+    if (descriptor_ < 0 && errno == ENOENT) refuse_folder(target_, resolved_);
     if (descriptor_ < 0 && errno != EEXIST) raise(target_, "cannot create the file", last_error());
     if (descriptor_ >= 0 && !lock_new_file(descriptor_)) {
       close(descriptor_);

@@ -1,7 +1,6 @@
 #include "scenes/io/native/native_ies_light.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -97,9 +96,8 @@ PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& 
   const auto scale = at.find("scale");
   const auto flux = at.find("flux_lm");
   if (scale && flux) flux->fail("\"scale\" is given already", "Keep one of the two.");
-  constexpr double kMost = std::numeric_limits<double>::max();
-  const double dimming = scale ? scale->number_in(0, kMost)
-                               : (flux ? flux->number_in(0, kMost) / light.table->total_flux() : 1.0);
+  const double dimming =
+      scale ? scale->strength() : (flux ? flux->strength() / light.table->total_flux() : 1.0);
   if (!(dimming > 0)) (scale ? *scale : *flux).fail("the light emits nothing", "Remove it or give it power.");
   light.intensity_per_candela = dimming * photometric_emission(1, at.find("color"), scene_.bands);
   const std::string problem = strength_problem(

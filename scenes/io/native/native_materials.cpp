@@ -199,10 +199,8 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, const std::filesys
     }
     if (emission) {
       const JsonCursor given = at.at(emission);
-      const Spectrum value =
-          is_photometric(key) ? photometric_emission(given.number_in(0, std::numeric_limits<double>::max()),
-                                                     colour, scene.bands)
-                              : read_emission(given, scene.bands);
+      const Spectrum value = is_photometric(key) ? photometric_emission(given.strength(), colour, scene.bands)
+                                                 : read_emission(given, scene.bands);
       if (!(value > 0).any())
         given.fail(fmt::format("the material \"{}\" emits nothing, though its emission is given", name),
                    "Remove the emission or give it power.");

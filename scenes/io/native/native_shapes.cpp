@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -135,6 +136,14 @@ Surface read_box(const JsonCursor& at) {
   return shape;
 }
 
+int read_vertex(const JsonCursor& at, std::size_t vertices) {
+  const double index = at.number();
+  if (index != std::floor(index) || index < 0 || index >= static_cast<double>(vertices))
+    at.fail(fmt::format("there is no vertex {}", index),
+            fmt::format("The mesh has {} vertices, numbered from 0 to {}.", vertices, vertices - 1));
+  return static_cast<int>(index);
+}
+
 Surface read_mesh(const JsonCursor& at) {
   at.expect_object({"vertices", "faces", "texture_coordinates", "colours"});
   Surface shape;
@@ -145,13 +154,12 @@ Surface read_mesh(const JsonCursor& at) {
   const bool has_points = read_colours(at, shape.positions.size(), shape) || has_coordinates;
   const JsonCursor faces = at.at("faces");
   faces.expect_array(1);
-  const int last = static_cast<int>(shape.positions.size()) - 1;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     faces[i].expect_array(3);
     Face face;
     std::set<int> seen;
     for (std::size_t k = 0; k < faces[i].size(); ++k) {
-      const int index = faces[i][k].integer_in(0, last);
+      const int index = read_vertex(faces[i][k], shape.positions.size());
       if (!seen.insert(index).second) {
         faces[i][k].fail(fmt::format("vertex {} stands twice in the face", index), "Name each vertex once.");
       }

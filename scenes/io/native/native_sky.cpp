@@ -83,8 +83,7 @@ Spectrum read_irradiance(const JsonCursor& at, const BandSet& bands) {
     colour->fail("a colour needs \"illuminance_lx\"", "Give one irradiance per band instead.");
   if (watts) return checked(read_emission(*watts, bands), *watts);
   if (!lux) return {};
-  return checked(photometric_emission(lux->number_in(0, std::numeric_limits<double>::max()), colour, bands),
-                 *lux);
+  return checked(photometric_emission(lux->strength(), colour, bands), *lux);
 }
 
 Sun read_sun(const JsonCursor& at, const BandSet& bands) {
@@ -157,10 +156,8 @@ void read_strength(const JsonCursor& at, const BandSet& bands, Sky& sky) {
       given.fail("only uniform and overcast skies are given by their zenith", "Give \"illuminance_lx\".");
     if ((radiance && luminance) || at.find("irradiance") || at.find("illuminance_lx"))
       given.fail("the strength of the sky is given twice", "Keep one of the two.");
-    const Spectrum zenith =
-        radiance ? read_emission(*radiance, bands)
-                 : photometric_emission(luminance->number_in(0, std::numeric_limits<double>::max()),
-                                        at.find("color"), bands);
+    const Spectrum zenith = radiance ? read_emission(*radiance, bands)
+                                     : photometric_emission(luminance->strength(), at.find("color"), bands);
     sky.irradiance =
         checked(zenith * std::numbers::pi * (sky.kind == SkyKind::kUniform ? 1.0 : 7.0 / 9), given);
   } else {

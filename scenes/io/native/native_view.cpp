@@ -48,7 +48,7 @@ Spectrum read_quantity(const JsonCursor& at, std::initializer_list<LightQuantity
     if (!(strength > 0).any()) value.fail("the light emits nothing", "Remove it or give it power.");
     return checked(strength);
   }
-  const double amount = value.number_in(0, std::numeric_limits<double>::max());
+  const double amount = value.strength();
   if (!(amount > 0)) value.fail("the light emits nothing", "Remove it or give it power.");
   return checked(photometric_emission(amount, colour, bands) / chosen->divisor);
 }
@@ -92,8 +92,10 @@ SpotLight read_spot(const JsonCursor& at, const std::string& name, double unit, 
     if (!(towards.norm() > 0))
       look_at->fail("the light looks at its own position", "Move one of the two points.");
     light.direction = towards.normalized();
+  } else if (const auto direction = at.find("direction")) {
+    light.direction = read_direction(*direction);
   } else {
-    light.direction = read_direction(at.at("direction"));
+    at.fail("the light has no direction", "Give \"direction\", or \"look_at\", a point on its axis.");
   }
   const auto outer = at.find("outer_angle_deg");
   const auto inner = at.find("inner_angle_deg");

@@ -29,6 +29,8 @@ TEST(ParseJson, RefusesAKeyThatStandsTwice) {
 TEST(ParseJson, RefusesDeepNestingAndHugeNumbers) {
   expect_input_error([] { parse_json(std::string(100000, '['), kFile); }, {"nested deeper than 64"});
   expect_input_error([] { parse_json("[1e999]", kFile); }, {"1e999"});
+  expect_input_error([] { parse_json(R"({"a": [{"b": 1}, {"c": 2, "d/e": -1e400}]})", kFile); },
+                     {"room.json#/a/1/d~1e", "-1e400"});
 }
 
 TEST(JsonCursor, NamesThePlaceOfAWrongValue) {
@@ -50,12 +52,14 @@ TEST(JsonCursor, SuggestsTheNearestKey) {
 }
 
 TEST(JsonCursor, ChecksRanges) {
-  const auto document = parse_json(R"({"n": 1.5, "count": 7})", kFile);
+  const auto document = parse_json(R"({"n": 1.5, "count": 7, "less": -5})", kFile);
   const JsonCursor root(document, kFile);
   EXPECT_EQ(root.at("count").integer_in(0, 7), 7);
   expect_input_error([&] { root.at("count").integer_in(0, 6); }, {"#/count", "0 to 6"});
   expect_input_error([&] { root.at("n").integer_in(0, 6); }, {"whole number"});
   expect_input_error([&] { root.at("n").number_in(0, 1); }, {"out of range"});
+  EXPECT_EQ(root.at("n").strength(), 1.5);
+  expect_input_error([&] { root.at("less").strength(); }, {"#/less", "-5 is out of range", "above 0"});
 }
 
 TEST(NearestName, FindsTyposButNotStrangers) {

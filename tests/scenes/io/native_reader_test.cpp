@@ -155,6 +155,8 @@ TEST(NativeLights, RefusesWrongValues) {
   refused(R"("type": "point", "position": [0,0,0], "intensity": 1, "power": 1)", {"given already"});
   refused(R"("type": "point", "position": [0,0,0], "intensity": 1, "direction": [0,0,1])", {"unknown key"});
   refused(R"("type": "spot", "position": [0,0,0], "direction": [0,0,0], "intensity": 1)", {"no length"});
+  refused(R"("type": "spot", "position": [0,0,0], "intensity": 1)",
+          {"#/lights/0", "no direction", "\"direction\"", "\"look_at\""});
   refused(
       R"("type": "spot", "position": [0,0,0], "direction": [0,0,1], "intensity": 1, "outer_angle_deg": 95)",
       {"outer_angle_deg"});
@@ -175,6 +177,8 @@ TEST(NativeLights, ALightOrEmissionOfNoPowerIsRefused) {
   refused(R"("type": "directional", "direction": [0,0,1], "illuminance_lx": 0)",
           {"#/lights/0/illuminance_lx", "emits nothing"});
   refused(R"("type": "point", "position": [0,0,0], "intensity": -1)", {"#/lights/0/intensity"});
+  refused(R"("type": "point", "position": [0,0,0], "intensity_cd": -5)",
+          {"#/lights/0/intensity_cd", "-5 is out of range", "It must be above 0."});
   for (const char* key :
        {"radiance", "exitance", "total_power", "luminance_cd_m2", "exitance_lm_m2", "total_flux_lm"})
     expect_refused(room(std::string(R"("materials": {"lamp": {")") + key + R"(": 0}})"),

@@ -80,6 +80,13 @@ TEST(OutputFile, KeepsThePermissionsOfTheFileItReplaces) {
   EXPECT_EQ(status.st_mode & 0777, 0640U);
 }
 
+TEST(OutputFile, AFolderThatTakesNoFilesIsNotCalledMissing) {
+  EXPECT_THAT([] { OutputFile file("/proc/a.txt"); },
+              ThrowsMessage<ResourceError>(HasSubstr("no file can be created in '/proc'")));
+  EXPECT_THAT([] { OutputFile file("/proc/none/a.txt"); },
+              ThrowsMessage<ResourceError>(HasSubstr("there is no folder '/proc/none'")));
+}
+
 TEST(OutputFile, FullDiskKeepsThePreviousFile) {
   const TempFolder folder;
   const auto target = folder / "a.txt";
