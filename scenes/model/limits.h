@@ -20,6 +20,8 @@ inline constexpr double kFarthestInRooms = 1e5;
 inline constexpr double kStrongest = 1e15;
 /// The same in the strongest band of what emits.
 inline constexpr double kWeakest = 1e-15;
+/// Sides of a picture [px].
+inline constexpr int kMostPixels = 16384;
 }  // namespace limits
 
 /// What is wrong with a place [m], or nothing: "the place (1e+20, 0, 0) m is ...".

@@ -260,7 +260,7 @@ void check_camera(const Camera& camera, const Box& room, const std::string& wher
   if (!(camera.vertical_fov_deg > 0 && camera.vertical_fov_deg < 180))
     throw InputError(where, fmt::format("field of view {:.6g} degrees", camera.vertical_fov_deg),
                      "It must lie between 0 and 180 degrees.");
-  constexpr int kMostPixels = 65536;
+  using limits::kMostPixels;
   if (camera.width < 1 || camera.height < 1 || camera.width > kMostPixels || camera.height > kMostPixels)
     throw InputError(where, fmt::format("image of {} x {} pixels", camera.width, camera.height),
                      fmt::format("Width and height must be 1 ... {}.", kMostPixels));

@@ -140,10 +140,10 @@ std::string joined_point(std::span<const std::string> words) {
 }
 
 PixelSize parse_size(const std::string& text) {
-  constexpr int kLargestSide = 16384;
+  using limits::kMostPixels;
   const auto side = [](std::string_view digits) {
     const auto value = digits.starts_with(' ') || digits.ends_with(' ') ? std::nullopt : whole_number(digits);
-    return value && *value <= kLargestSide ? static_cast<int>(*value) : 0;
+    return value && *value <= kMostPixels ? static_cast<int>(*value) : 0;
   };
   const std::string_view all = trimmed(text);
   const auto cross = all.find('x');
@@ -151,7 +151,7 @@ PixelSize parse_size(const std::string& text) {
     const PixelSize size{side(all.substr(0, cross)), side(all.substr(cross + 1))};
     if (size.width > 0 && size.height > 0) return size;
   }
-  refuse(text, fmt::format("a picture size WxH in pixels, sides from 1 to {}; write 640x480", kLargestSide));
+  refuse(text, fmt::format("a picture size WxH in pixels, sides from 1 to {}; write 640x480", kMostPixels));
 }
 
 }  // namespace reemit::cli

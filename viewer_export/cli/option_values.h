@@ -34,7 +34,7 @@ struct PixelSize {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
 };
-/// "640x480", each side in [1, 16384].
+/// "640x480", each side in [1, limits::kMostPixels].
 PixelSize parse_size(const std::string& text);
 
 }  // namespace reemit::cli

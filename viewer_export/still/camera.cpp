@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "scenes/model/error.h"
+#include "scenes/model/limits.h"
 
 namespace reemit {
 namespace {
@@ -21,10 +22,10 @@ std::string where(const Camera& camera) {
 
 PinholeCamera::PinholeCamera(const Camera& camera, int width, int height, const RayTracer& rays)
     : half_width_(0.5 * width), half_height_(0.5 * height) {
-  if (width < 1 || height < 1 || width > 65536 || height > 65536)
+  if (width < 1 || height < 1 || width > limits::kMostPixels || height > limits::kMostPixels)
     throw InputError(where(camera),
                      "a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
-                     "Choose 1 to 65536 pixels each way.");
+                     "Choose 1 to " + std::to_string(limits::kMostPixels) + " pixels each way.");
   if (!camera.eye.allFinite() || !camera.look_at.allFinite() || !camera.up.allFinite())
     throw InputError(where(camera), "eye, look-at and up must be finite numbers", "");
   if (!(camera.vertical_fov_deg > 0 && camera.vertical_fov_deg < 180))

@@ -16,8 +16,8 @@ enum class Integrator {
 std::string to_string(Integrator integrator);  ///< "gather", "path" or "zones".
 
 struct StillSettings {
-  int width = 0;   ///< [px] 0 = as the camera says, [1, 65536].
-  int height = 0;  ///< [px] 0 = as the camera says, [1, 65536].
+  int width = 0;   ///< [px] 0 = as the camera says, [1, limits::kMostPixels].
+  int height = 0;  ///< [px] 0 = as the camera says, [1, limits::kMostPixels].
   Integrator integrator = Integrator::kGather;
   PixelFilter filter = PixelFilter::kBox;
   int spp = 16;     ///< Camera rays per pixel, rounded to a power of two below 8, up to a multiple of 8 above

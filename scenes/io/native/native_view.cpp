@@ -131,8 +131,8 @@ Camera read_camera(const JsonCursor& at, const std::string& name, double unit) {
   if (const auto fov = at.find("vertical_fov_deg")) camera.vertical_fov_deg = fov->number_in(0.01, 179);
   if (const auto size = at.find("size")) {
     size->expect_array(2, 2);
-    camera.width = (*size)[0].integer_in(1, 65536);
-    camera.height = (*size)[1].integer_in(1, 65536);
+    camera.width = (*size)[0].integer_in(1, limits::kMostPixels);
+    camera.height = (*size)[1].integer_in(1, limits::kMostPixels);
   }
   return camera;
 }

@@ -63,7 +63,8 @@ void read_line(const TextLine& line, const std::string& where, View& view) {
   } else if (keyword == "image" && line.words.size() == 4 && line.words[2] == "x") {
     const auto width = parse_integer(line.words[1]);
     const auto height = parse_integer(line.words[3]);
-    if (!width || !height || *width < 1 || *height < 1 || *width > 65536 || *height > 65536)
+    if (!width || !height || *width < 1 || *height < 1 || *width > limits::kMostPixels ||
+        *height > limits::kMostPixels)
       refuse(where, line);
     view.camera.width = static_cast<int>(*width);
     view.camera.height = static_cast<int>(*height);

@@ -299,6 +299,7 @@ TEST(NativeCameras, FieldsAndDefaults) {
   refused(R"("eye": [1, 2, 3], "look_at": [1, 2, 3])", {"#/cameras/0/look_at", "own eye"});
   refused(R"("eye": [1, 2, 3], "look_at": [1, 5, 3])", {"up direction"});
   refused(R"("eye": [1, 2, 3], "look_at": [1, 5, 4], "size": [0, 5])", {"#/cameras/0/size/0"});
+  refused(R"("eye": [1, 2, 3], "look_at": [1, 5, 4], "size": [5, 16385])", {"#/cameras/0/size/1", "16384"});
   refused(
       R"("name": "x", "eye": [0,0,0], "look_at": [0,0,1]}, {"name": "x", "eye": [0,0,0], "look_at": [0,0,1])",
       {"#/cameras/1", "second camera"});

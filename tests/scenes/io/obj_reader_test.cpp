@@ -261,8 +261,9 @@ TEST_F(ObjReader, TakesTheCameraBesideIt) {
   EXPECT_NEAR(camera.vertical_fov_deg, 2 * std::atan(0.5) * 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(camera.width, 200);
   EXPECT_EQ(camera.height, 100);
-  for (const char* bad : {"eye 1 2\n", "eye 1 2 3\n", "eye 1 2 3\ndirection 0 0 1\nhorizontal fov 200\n",
-                          "shopping list\n", "eye 1 2 3\ndirection 0 0 1\nimage 0 x 5\n"}) {
+  for (const char* bad :
+       {"eye 1 2\n", "eye 1 2 3\n", "eye 1 2 3\ndirection 0 0 1\nhorizontal fov 200\n", "shopping list\n",
+        "eye 1 2 3\ndirection 0 0 1\nimage 0 x 5\n", "eye 1 2 3\ndirection 0 0 1\nimage 16385 x 5\n"}) {
     folder_.write("camera.txt", bad);
     const Scene without = read(kSquare + "f 1 2 3\n");
     EXPECT_THAT(without.cameras, IsEmpty()) << bad;
