@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "solver/losses/dark_space.h"
 #include "solver/losses/exit_place.h"
 #include "solver/losses/probe_flight.h"
 
@@ -18,6 +19,7 @@ constexpr double kLeastShare = 1e-5;         // of the emitted power; less is be
 constexpr double kClosedShare = 0.01;        // a room that loses less through openings counts as closed
 constexpr double kMostlyClosedShare = 0.05;  // the same where most of the loss goes through gaps
 constexpr double kOutdoorShare = 0.3;        // a room that loses more from places outside is meant to
+constexpr double kDarkShare = 0.5;           // of the space enclosed; walls and furniture have less in them
 constexpr double kNarrow = 0.01;             // width of a gap, of the diagonal of the room
 constexpr double kOnePlace = 0.05;           // distance within which losses are in one place, of the diagonal
 constexpr std::uint32_t kProbes = 1U << 16;
@@ -157,7 +159,8 @@ std::string names_of(const std::vector<SurfaceId>& surfaces, const Scene& scene)
   return text;
 }
 
-std::string text_of(const LightLoss& loss, const Scene& scene) {
+/// `lost`: the sum over all places.
+std::string text_of(const LightLoss& loss, double lost, const Scene& scene) {
   std::string text = fmt::format("near {} m", place_text(loss.place));
   const std::string names = names_of(loss.surfaces, scene);
   if (loss.way == LightLoss::Way::kGap)
@@ -165,7 +168,7 @@ std::string text_of(const LightLoss& loss, const Scene& scene) {
                         names);
   else if (!names.empty())
     text += fmt::format("{} from {}", loss.way == LightLoss::Way::kOutside ? " outside" : "", names);
-  return text + fmt::format(" ({})", share_text(loss.share));
+  return text + fmt::format(" ({} of that)", share_text(loss.share / lost));
 }
 
 double room_diagonal(const Scene& scene) {
@@ -176,6 +179,27 @@ bool is_lit_from_outside(const Scene& scene) {
   if (scene.sky) return true;
   return std::any_of(scene.lights.begin(), scene.lights.end(),
                      [](const PunctualLight& l) { return is_at_infinity(l); });
+}
+
+/// True if it had reason to.
+bool warn_of_the_dark(const PacketRoom& transport, const Solution& solution, const StopToken* stop,
+                      std::vector<std::string>& warnings) {
+  const Scene& scene = transport.scene();
+  if (is_lit_from_outside(scene)) return false;  // houses seen from outside are dark inside
+  const DarkSpace dark = find_dark_space(transport, solution, stop);
+  if (!(dark.share > kDarkShare)) return false;
+  std::string text = fmt::format("no light gets into {} of the space that surfaces enclose; dark are",
+                                 share_text(dark.share));
+  for (std::size_t i = 0; i < std::min(kMostPlaces, dark.faces.size()); ++i) {
+    const DarkSpace::Face& face = dark.faces[i];
+    text += fmt::format("{} {} ({}{:.3g} m2)", i == 0 ? "" : ",", quoted_name(scene, face.surface),
+                        face.front ? "" : "back, ", face.area);
+  }
+  if (dark.faces.size() > kMostPlaces) text += fmt::format(" and {} more", dark.faces.size() - kMostPlaces);
+  warnings.push_back(text +
+                     "; is a luminaire outside the room, shut in or turned away? Move or turn it so that it "
+                     "shines into the room");
+  return true;
 }
 
 void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission, const Solution& solution,
@@ -192,8 +216,11 @@ void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission,
   if (!by_gaps && !closed) return;
   std::string text =
       fmt::format("{} of the light leaves the room, although its faces close", share_text(share));
+  // Probes find places, but know the share less well than the books do.
+  double lost = 0;
+  for (const LightLoss& place : found.places) lost += place.share;
   for (std::size_t i = 0; i < std::min(kMostPlaces, found.places.size()); ++i)
-    text += (i == 0 ? ": " : "; ") + text_of(found.places[i], transport.scene());
+    text += (i == 0 ? ": " : "; ") + text_of(found.places[i], lost, transport.scene());
   if (found.places.size() > kMostPlaces)
     text += fmt::format("; and {} more place(s)", found.places.size() - kMostPlaces);
   warnings.push_back(text);
@@ -295,7 +322,9 @@ std::vector<std::string> lost_light_warnings(const PacketRoom& transport, const 
   end_if_requested(stop);
   std::vector<std::string> warnings;
   if (!(emitted_watts(solution.audit) > 0)) return warnings;
-  warn_of_escapes(transport, emission, solution, stop, warnings);
+  // What goes astray outside of a dark room is not what its faces lose.
+  if (!warn_of_the_dark(transport, solution, stop, warnings))
+    warn_of_escapes(transport, emission, solution, stop, warnings);
   warn_of_backs(transport, emission, solution, stop, warnings);
   return warnings;
 }

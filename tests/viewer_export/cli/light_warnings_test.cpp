@@ -72,6 +72,17 @@ TEST_F(LightWarnings, MountedOnTheCeilingItLosesNothing) {
   EXPECT_EQ(audit["absorbed_on_backs_W"], 0);
 }
 
+TEST_F(LightWarnings, ARoomWhoseOnlyLampIsOutsideIsNamedDark) {
+  folder_.write("dark.json", R"({"format": "reemit-room", "version": 1,
+    "materials": {"w": {"reflectance": 0.5}, "l": {"radiance": 10}},
+    "objects": [
+      {"name": "shell", "material": "w", "box": {"min": [0, 0, 0], "max": [4, 3, 4], "inward": true}},
+      {"name": "lamp", "material": "l", "quad": {"corner": [10, 2, 1], "u": [1, 0, 0], "v": [0, 0, 1]}}]})");
+  const auto named = AllOf(HasSubstr("no light gets into"), HasSubstr("'shell' (80 m2)"));
+  EXPECT_THAT(run(solve("dark.json")).err, named);
+  EXPECT_THAT(run({"info", path("room.h5")}).err, named);
+}
+
 TEST_F(LightWarnings, UnitsOfGltfAreStatedAndKeptWithTheSolution) {
   std::string room = replaced(small_gltf_room(), R"({"version": "2.0"})",
                               R"({"version": "2.0", "generator": "Khronos glTF Blender I/O v4.2.57"})");

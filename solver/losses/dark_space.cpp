@@ -1,0 +1,108 @@
+#include "solver/losses/dark_space.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/losses/probe_flight.h"
+#include "solver/sampling/counter_rng.h"
+#include "solver/sampling/warp.h"
+#include "solver/trace/surface_point.h"
+
+namespace reemit {
+namespace {
+
+constexpr std::uint32_t kSideRays = 1U << 14;
+constexpr std::uint32_t kSideRayStream = 3;  // of random numbers of probes
+
+/// Front and back of each surface.
+std::size_t face_of(const ZoneMesh& mesh, SideId side) {
+  return 2 * mesh.surface(side).index() + (mesh.shows_front(side) ? 0 : 1);
+}
+
+/// By face, whether a packet came to any of its zones.
+std::vector<bool> lit_faces(const Solution& solution) {
+  const ZoneMesh& mesh = solution.mesh;
+  std::vector<bool> lit(2 * solution.surface_names.size(), false);
+  for (std::size_t z = 0; z < mesh.zone_count(); ++z)
+    for (std::size_t b = 0; b < solution.bands.count(); ++b)
+      if (solution.irradiance(ZoneId(z), b).mean > 0) lit[face_of(mesh, mesh.zone_side(ZoneId(z)))] = true;
+  return lit;
+}
+
+/// What rays say of the dark sides of a face.
+struct Outlook {
+  double area = 0;    // [m2]
+  double chords = 0;  // sum over rays that met something; all stand for the same area
+  std::uint32_t rays = 0;
+  std::uint32_t misses = 0;
+};
+
+}  // namespace
+
+DarkSpace find_dark_space(const PacketRoom& transport, const Solution& solution, const StopToken* stop) {
+  end_if_requested(stop);
+  const ZoneMesh& mesh = solution.mesh;
+  const RayTracer& rays = transport.rays();
+  const SurfaceModel& surfaces = transport.surface_model();
+  const std::vector<bool> lit = lit_faces(solution);
+  std::vector<SideId> sides;
+  std::vector<bool> is_dark;
+  std::vector<Outlook> dark(lit.size());
+  double all_area = 0;
+  for (std::size_t s = 0; s < mesh.side_count(); ++s) {
+    const SideId side(s);
+    const TriangleId t = triangle_of(side);
+    if (!mesh.has_zones(side)) continue;
+    const std::size_t face = face_of(mesh, side);
+    const bool sealed = mesh.is_sealed(mesh.first_zone(t, is_front(side)));
+    sides.push_back(side);
+    is_dark.push_back((sealed || !lit[face]) && !surfaces.emits(t, is_front(side)));
+    all_area += mesh.triangle_area(t);
+    if (is_dark.back()) dark[face].area += mesh.triangle_area(t);
+  }
+  const CounterRng rng(0, RngPurpose::kProbe);
+  double lit_chords = 0;
+  double running = 0;
+  std::uint32_t sent = 0;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const SideId side = sides[i];
+    running += mesh.triangle_area(triangle_of(side));
+    const auto upto = static_cast<std::uint32_t>(std::floor(running / all_area * kSideRays + 0.5));
+    Outlook& outlook = dark[face_of(mesh, side)];
+    while (sent < upto) {
+      constexpr std::uint32_t kNowAndThen = 1024;
+      if (sent % kNowAndThen < 16) end_if_requested(stop);
+      const int count = static_cast<int>(std::min<std::uint32_t>(16, upto - sent));
+      Ray16 some;
+      for (int lane = 0; lane < count; ++lane) {
+        const std::array<float, 4> u = rng.uniform4(sent++, kSideRayStream, 0);
+        const auto [a, b] = sample_triangle(u[0], u[1]);
+        const SurfacePoint x = surface_point(rays, triangle_of(side), a, b, is_front(side));
+        some.set(lane, ray_origin(rays, x), Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3])));
+      }
+      trace_probes(rays, some, count, [&](int, const ProbeRay& probe) {
+        const double chord = probe.met ? static_cast<double>(probe.hit.distance) : 0;
+        if (!is_dark[i]) {
+          lit_chords += chord;
+          return;
+        }
+        ++outlook.rays;
+        outlook.chords += chord;
+        if (!probe.met) ++outlook.misses;
+      });
+    }
+  }
+  DarkSpace found;
+  double dark_chords = 0;
+  for (std::size_t f = 0; f < dark.size(); ++f) {
+    if (dark[f].rays == 0 || 2 * dark[f].misses > dark[f].rays) continue;
+    dark_chords += dark[f].chords;
+    found.faces.push_back({SurfaceId(f / 2), f % 2 == 0, dark[f].area});
+  }
+  if (dark_chords > 0) found.share = dark_chords / (dark_chords + lit_chords);
+  std::stable_sort(found.faces.begin(), found.faces.end(),
+                   [](const DarkSpace::Face& a, const DarkSpace::Face& b) { return a.area > b.area; });
+  return found;
+}
+
+}  // namespace reemit
