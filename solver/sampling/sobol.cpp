@@ -1,6 +1,7 @@
 #include "solver/sampling/sobol.h"
 
 #include "scenes/model/instruction_sets.h"
+#include "solver/sampling/split_mix.h"
 
 namespace reemit {
 namespace {
@@ -70,14 +71,8 @@ std::uint32_t reversed_sobol_bits(std::uint32_t index, int dimension) {
 }
 
 SobolSequence::SobolSequence(std::uint64_t seed) {
-  // SplitMix64 spreads one seed over the dimensions.
-  for (std::uint32_t& s : seeds_) {
-    seed += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = seed;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    s = static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
-  }
+  SplitMix numbers(seed);
+  for (std::uint32_t& s : seeds_) s = static_cast<std::uint32_t>(numbers.next() >> 32);
 }
 
 REEMIT_FOR_INSTRUCTION_SETS

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "scenes/model/instruction_sets.h"
+#include "solver/sampling/split_mix.h"
 
 namespace reemit {
 namespace {
@@ -92,8 +93,8 @@ void ArrivalPoints::find16(const TrianglePoints16& __restrict points, const std:
   for (int lane = 0; lane < 16; ++lane) {
     const std::uint64_t zone = zones[lane] == ZoneMesh::kNone ? 0 : zones[lane];
     arrived.place[lane] = zone * per_zone + (std::uint64_t{random[0][lane]} * per_zone >> 32);
-    arrived.key[lane] = sweep_key | std::uint64_t{rank[lane]} << (kPointBits + 16) |
-                        std::uint64_t{random[0][lane] & 0xffffU} << kPointBits |
+    arrived.key[lane] = sweep_key | rank[lane] * kLeastOfRank |
+                        (random[0][lane] & kMostRandom) << kPointBits |
                         ((std::uint64_t{u[lane]} * in_parts[lane] | v[lane]) ^ mask);
   }
   for (int lane = 0; any_group != 0 && lane < 16; ++lane) {
@@ -106,17 +107,13 @@ void ArrivalPoints::find16(const TrianglePoints16& __restrict points, const std:
 }
 
 void ArrivalPoints::repeat(std::uint64_t place, std::uint64_t key, std::uint32_t times) {
-  constexpr std::uint64_t kRandom = std::uint64_t{0xffff} << kPointBits;
   const std::uint64_t first = place / per_zone_ * per_zone_;
-  // SplitMix64: one packet's own numbers, which need not be better than that.
-  std::uint64_t state = key ^ (place << 17);
+  const std::uint64_t without_random = key & ~(kMostRandom << kPointBits);
+  // One packet's own numbers, which need not be better than that.
+  SplitMix numbers(key ^ (place << 17));
   for (std::uint32_t i = 0; i < times; ++i) {
-    state += 0x9e3779b97f4a7c15U;
-    std::uint64_t x = state;
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9U;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebU;
-    x ^= x >> 31;
-    put(first + ((x >> 32) * per_zone_ >> 32), (key & ~kRandom) | (x & 0xffff) << kPointBits);
+    const std::uint64_t x = numbers.next();
+    put(first + ((x >> 32) * per_zone_ >> 32), without_random | (x & kMostRandom) << kPointBits);
   }
 }
 

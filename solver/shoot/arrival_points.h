@@ -122,7 +122,9 @@ class ArrivalPoints {
   static constexpr int kPointBits = 2 * kFractionBits;
   static constexpr std::uint32_t kFractions = 1U << kFractionBits;
   static constexpr std::uint32_t kMemberFractions = 1U << kMemberBits;
-  static constexpr std::uint64_t kLeastOfRank = std::uint64_t{1} << (kPointBits + 16);
+  static constexpr int kRandomBits = 16;
+  static constexpr std::uint64_t kMostRandom = (std::uint64_t{1} << kRandomBits) - 1;
+  static constexpr std::uint64_t kLeastOfRank = std::uint64_t{1} << (kPointBits + kRandomBits);
   static float coordinate(std::uint64_t low_bits, std::uint32_t parts) {
     return 1.0F / static_cast<float>(parts) * static_cast<float>(low_bits & (parts - 1));
   }

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "scenes/model/error.h"
+#include "viewer_export/still/allocate_planes.h"
 
 namespace reemit {
 namespace {
@@ -51,9 +52,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
     std::vector<std::vector<float>*> by_band{&image_.direct, &image_.albedo};
     if (caustics) by_band.push_back(&image_.caustic);
     for (std::size_t r = 0; r < replicates_; ++r) by_band.push_back(&means_[r]);
-    // What takes time is that the system hands the memory out.
-    tbb::parallel_for(std::size_t{0}, by_band.size(),
-                      [&](std::size_t i) { by_band[i]->assign(pixels * bands_, 0.0F); });
+    allocate_planes(by_band, pixels * bands_);
     image_.samples.assign(pixels, 0.0F);
     image_.depth.assign(pixels, 0.0F);
     image_.normal.assign(3 * pixels, 0.0F);

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include "scenes/model/error.h"
 #include "viewer_export/output/smoothing_errors.h"
+#include "viewer_export/still/allocate_planes.h"
 #include "viewer_export/still/basic_estimate.h"
 #include "viewer_export/still/coarse_smoothing.h"
 #include "viewer_export/still/similar_pixels.h"
@@ -26,11 +26,11 @@ constexpr int kBlock = 16;  ///< Pixels to a side of a block.
 /// What a picture becomes.
 struct SmoothedLayers {
   explicit SmoothedLayers(const StillPlanes& planes) {
-    const std::size_t size = planes.direct.size();
-    // What takes time is that the system hands the memory out.
-    tbb::parallel_invoke([&] { irradiance[0].resize(size); }, [&] { irradiance[1].resize(size); },
-                         [&] { direct.resize(size); }, [&] { caustic.resize(planes.caustic.size()); },
-                         [&] { radiance = SmoothedValues(size); });
+    std::vector<std::vector<float>*> by_band{&irradiance[0],      &irradiance[1],     &direct,
+                                             &radiance.value,     &radiance.variance, &radiance.halves_apart,
+                                             &radiance.covariance};
+    if (!planes.caustic.empty()) by_band.push_back(&caustic);
+    allocate_planes(by_band, planes.direct.size());
   }
 
   void take(const SimilarPixels& means, const StillPlanes& planes, const StillImage& image, int first,

@@ -5,6 +5,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "viewer_export/still/allocate_planes.h"
+
 namespace reemit {
 namespace {
 
@@ -19,10 +21,9 @@ constexpr float kSteepest = 0.1F;
 StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
     : width(image.width), height(image.height), bands(image.bands.count()) {
   const std::size_t n = image.pixel_count();
-  // What takes time is that the system hands the memory out.
   std::vector<std::vector<float>*> by_band{&irradiance[0], &irradiance[1], &scale, &direct, &variance};
   if (!image.caustic.empty()) by_band.push_back(&caustic);
-  tbb::parallel_for(std::size_t{0}, by_band.size(), [&](std::size_t i) { by_band[i]->resize(bands * n); });
+  allocate_planes(by_band, bands * n);
   precision.resize(n);
   depth.resize(n);
   for (std::vector<float>& axis : normal) axis.resize(n);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <utility>
 
@@ -141,24 +142,33 @@ test::Measured light_on_small_zones(const Solution& s) {
   return {mean.mean, std::sqrt(mean.squared_error)};
 }
 
+/// Light on all small zones as gathered, and as other packets bring it.
+struct TwoWays {
+  std::uint64_t gathered_zones;
+  test::Measured gathered, by_packets;
+
+  double error() const { return std::hypot(gathered.stderr_of_mean, by_packets.stderr_of_mean); }
+};
+
+TwoWays light_both_ways(const test::RoomBuilder& room, std::uint64_t packets, std::uint64_t packets_alone) {
+  SolverSettings settings;
+  settings.packets = packets;
+  settings.direct = DirectSource::kPackets;  // small zones get few shadow rays
+  const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  settings.gather_small_zones = false;
+  settings.packets = packets_alone;
+  settings.seed = 2;
+  const Solution alone = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  return {gathered.record.gathered_zones, light_on_small_zones(gathered), light_on_small_zones(alone)};
+}
+
 // Their floor is dark, but the mean of its zones is not: read as they stand they make feet a quarter
 // brighter. Five standard errors, 2.5 %, are passed once in two million runs.
 TEST(SmallZones, see_the_shadows_they_stand_in) {
-  const test::RoomBuilder room = room_with_low_table();
-  SolverSettings settings;
-  settings.packets = 6'000'000;
-  settings.direct = DirectSource::kPackets;  // small zones get few shadow rays
-  const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  EXPECT_GT(gathered.record.gathered_zones, 100U);
-  settings.gather_small_zones = false;
-  settings.packets = 16'000'000;
-  settings.seed = 2;
-  const Solution packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  const test::Measured a = light_on_small_zones(gathered);
-  const test::Measured b = light_on_small_zones(packets);
-  const double error = std::hypot(a.stderr_of_mean, b.stderr_of_mean);
-  EXPECT_LT(error, 0.005 * b.mean);
-  EXPECT_NEAR(a.mean, b.mean, 5 * error);
+  const TwoWays light = light_both_ways(room_with_low_table(), 6'000'000, 16'000'000);
+  EXPECT_GT(light.gathered_zones, 100U);
+  EXPECT_LT(light.error(), 0.005 * light.by_packets.mean);
+  EXPECT_NEAR(light.gathered.mean, light.by_packets.mean, 5 * light.error());
 }
 
 /// A room whose ceiling is bright above a lamp that shines up, which a shade hides from everything below, and
@@ -183,21 +193,10 @@ test::RoomBuilder room_with_shaded_lamp() {
 // ceiling sends them what only the shade gets, 36 % more than there is. Five standard errors are passed once
 // in two million runs.
 TEST(SmallZones, are_not_lit_by_what_is_hidden_from_them) {
-  const test::RoomBuilder room = room_with_shaded_lamp();
-  SolverSettings settings;
-  settings.packets = 2'000'000;
-  settings.direct = DirectSource::kPackets;  // small zones get few shadow rays
-  const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  EXPECT_GT(gathered.record.gathered_zones, 300U);
-  settings.gather_small_zones = false;
-  settings.packets = 8'000'000;
-  settings.seed = 2;
-  const Solution packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  const test::Measured a = light_on_small_zones(gathered);
-  const test::Measured b = light_on_small_zones(packets);
-  const double error = std::hypot(a.stderr_of_mean, b.stderr_of_mean);
-  EXPECT_LT(error, 0.01 * b.mean);
-  EXPECT_NEAR(a.mean, b.mean, 5 * error);
+  const TwoWays light = light_both_ways(room_with_shaded_lamp(), 2'000'000, 8'000'000);
+  EXPECT_GT(light.gathered_zones, 300U);
+  EXPECT_LT(light.error(), 0.01 * light.by_packets.mean);
+  EXPECT_NEAR(light.gathered.mean, light.by_packets.mean, 5 * light.error());
 }
 
 /// A furnace of irradiance 1 on everything, with a cube of a millimetre that is open at the top and reflects
