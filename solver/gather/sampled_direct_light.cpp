@@ -1,7 +1,6 @@
 #include "solver/gather/sampled_direct_light.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -24,12 +23,16 @@ constexpr std::size_t kFirstZones = 1024;
 constexpr std::size_t kMostZones = std::size_t{1} << 19;
 /// Least standard deviation of a sample over its mean: a few points do not show all there is to see.
 constexpr double kLeastSpread = 0.2;
+/// Dark surfaces are looked at as if they reflected so much: nobody lives from their light, but their
+/// illuminance is asked for.
+constexpr double kLeastReflectance = 0.2;
 /// Variance of the low-discrepancy packets that a zone meets over that of so many at random.
 constexpr double kPacketVariance = 0.6;
 /// So that samples_ of a lit zone is not 0.
 constexpr float kLeastSamples = 1e-6F;
-/// Of a zone in one batch.
+/// Of a zone in one batch, and of a batch: fewer than the packets in the place of which they are.
 constexpr long kMostSamples = 1L << 20;
+constexpr int kLog2Samples = 31;
 /// Luminaires are weighed once for a zone up to so many weights.
 constexpr std::size_t kMostWeights = std::size_t{1} << 22;
 /// Direct light that may fall on zones where the pilot found none, as a share: their noise counts several
@@ -68,13 +71,12 @@ SampledDirectLight::SampledDirectLight(const Room& room, std::uint64_t seed, dou
   for_zones(first, [&](std::size_t i) { looks[i] = look(ZoneId(i * stride), nullptr); });
   double needs = 0;
   double by_packets = 0;
-  const SurfaceModel& surfaces = room.surfaces();
   for (std::size_t i = 0; i < first; ++i) {
     const ZoneId z(i * stride);
+    const std::vector<double> rho = reflectance(z);
     needs += need(z, looks[i]);
     if (looks[i].lit) lit_zones_ += static_cast<std::int64_t>(stride);
-    const double* rho = surfaces.reflectance(z, room.mesh().zone_triangle(z), room.mesh().zone_is_front(z));
-    by_packets += looks[i].mean * *std::max_element(rho, rho + bands_);
+    by_packets += looks[i].mean * *std::max_element(rho.begin(), rho.end());
   }
   if (needs > 0)
     gain_ = kPacketVariance * watts * by_packets / (cost_ * needs * needs * static_cast<double>(stride));
@@ -107,11 +109,18 @@ double SampledDirectLight::need(ZoneId zone, const Look& look) const {
   return std::sqrt(room_->mesh().zone_area(zone)) * look.sigma;
 }
 
+std::vector<double> SampledDirectLight::reflectance(ZoneId zone) const {
+  const ZoneMesh& mesh = room_->mesh();
+  const double* rho = room_->surfaces().reflectance(zone, mesh.zone_triangle(zone), mesh.zone_is_front(zone));
+  std::vector<double> result(rho, rho + bands_);
+  for (double& r : result) r = std::max(r, kLeastReflectance);
+  return result;
+}
+
 SampledDirectLight::Look SampledDirectLight::look(ZoneId zone, float* weights) const {
   const PointSampler sampler(seed_, RngPurpose::kSampledDirect, zone.index(), static_cast<int>(kPilot),
                              std::countr_zero(unsigned{kPilotPoints}));
-  const double* rho = room_->surfaces().reflectance(zone, room_->mesh().zone_triangle(zone),
-                                                    room_->mesh().zone_is_front(zone));
+  const std::vector<double> rho = reflectance(zone);
   const std::vector<float> one(bands_, 1.0F);
   std::vector<float> irradiance(bands_);
   Look result;
@@ -137,11 +146,10 @@ SampledDirectLight::Look SampledDirectLight::look(ZoneId zone, float* weights) c
   return result;
 }
 
-void SampledDirectLight::add_samples(ZoneId zone, std::uint32_t replicate, int count, float* sum) const {
-  const PointSampler sampler(seed_, RngPurpose::kSampledDirect, zone.index(), static_cast<int>(replicate),
-                             std::countr_zero(std::bit_ceil(static_cast<unsigned>(count))));
+void SampledDirectLight::add_samples(ZoneId zone, const PointSampler& sampler, int first, int count,
+                                     float* sum) const {
   const std::vector<float> weight(bands_, 1.0F / static_cast<float>(count));
-  for (int i = 0; i < count; ++i) {
+  for (int i = first; i < first + count; ++i) {
     const SurfacePoint x = point_in_zone(*room_, zone, sampler.place(i));
     if (weighed_ > 0)
       light_.add_sample(x, sampler.light(i, 0, 1), {&weights_[zone.index() * weighed_], weighed_},
@@ -154,19 +162,17 @@ void SampledDirectLight::add_samples(ZoneId zone, std::uint32_t replicate, int c
 std::uint64_t SampledDirectLight::put(std::uint32_t batch, std::int64_t weight,
                                       const std::vector<double>& watts_per_quantum, BatchBooks& books) const {
   std::vector<std::int64_t> on_all(bands_), by_packets(bands_), by_samples(bands_);
-  std::atomic<std::uint64_t> rays{0};
+  const std::vector<int> first = first_samples(weight);
+  const PointSampler sampler(seed_, RngPurpose::kSampledDirect, 0, static_cast<int>(batch), kLog2Samples);
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, samples_.size(), kSampledPerTask), [&](const auto& range) {
         std::vector<float> found(bands_);
-        std::uint64_t own_rays = 0;
         for (std::size_t z = range.begin(); z != range.end(); ++z) {
           std::int64_t* direct = &books.direct[z * bands_];
           for (std::size_t b = 0; b < bands_; ++b) book(on_all[b], direct[b]);
           if (samples_[z] == 0) continue;
-          const int count = samples_of(z, weight);
           std::fill(found.begin(), found.end(), 0.0F);
-          add_samples(ZoneId(z), batch, count, found.data());
-          own_rays += static_cast<std::uint64_t>(count);
+          add_samples(ZoneId(z), sampler, first[z], first[z + 1] - first[z], found.data());
           const double area = room_->mesh().zone_area(ZoneId(z));
           for (std::size_t b = 0; b < bands_; ++b) {
             if (!(watts_per_quantum[b] > 0)) continue;
@@ -175,12 +181,11 @@ std::uint64_t SampledDirectLight::put(std::uint32_t batch, std::int64_t weight,
             book(by_samples[b], direct[b]);
           }
         }
-        rays += own_rays;
       });
   for (std::size_t b = 0; b < bands_; ++b)
     if (on_all[b] == books.emitted[b] && by_samples[b] > 0)
       scale(static_cast<double>(by_packets[b]) / static_cast<double>(by_samples[b]), b, books);
-  return rays;
+  return static_cast<std::uint64_t>(first.back());
 }
 
 void SampledDirectLight::scale(double factor, std::size_t band, BatchBooks& books) const {
@@ -191,9 +196,13 @@ void SampledDirectLight::scale(double factor, std::size_t band, BatchBooks& book
   }
 }
 
-int SampledDirectLight::samples_of(std::size_t zone, std::int64_t weight) const {
-  const auto wanted = std::lround(samples_[zone] * static_cast<float>(weight));
-  return static_cast<int>(std::clamp(wanted, 1L, kMostSamples));
+std::vector<int> SampledDirectLight::first_samples(std::int64_t weight) const {
+  std::vector<int> first(samples_.size() + 1);
+  for (std::size_t z = 0; z < samples_.size(); ++z) {
+    const auto wanted = std::lround(samples_[z] * static_cast<float>(weight));
+    first[z + 1] = first[z] + (samples_[z] > 0 ? static_cast<int>(std::clamp(wanted, 1L, kMostSamples)) : 0);
+  }
+  return first;
 }
 
 bool SampledDirectLight::finds_what_packets_find(const std::vector<double>& watts_per_quantum,

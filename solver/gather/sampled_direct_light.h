@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solver/gather/direct_light.h"
+#include "solver/gather/point_sampler.h"
 #include "solver/room/room.h"
 #include "solver/shoot/packet_room.h"
 #include "solver/shoot/packet_sources.h"
@@ -67,16 +68,19 @@ class SampledDirectLight {
   struct Look {
     bool lit = false;
     double irradiance = 0;  // all bands together [W/m2]
-    double mean = 0;        // of radiosity, all bands together [W/m2]
+    double mean = 0;        // of radiosity, dark zones taken as lighter ones, all bands together [W/m2]
     double sigma = 0;       // of one sample of it
   };
   Look look(ZoneId zone, float* weights) const;
+  /// By band, at least as much as what counts for one that is dark.
+  std::vector<double> reflectance(ZoneId zone) const;
   void plan_samples(const std::vector<Look>& looks, double per_unit);
   /// sqrt(area) sigma: the numbers of samples that leave the least error go by it.
   double need(ZoneId zone, const Look& look) const;
-  int samples_of(std::size_t zone, std::int64_t weight) const;
+  /// By zone, of those of a batch: its samples are those up to the first one of the next zone.
+  std::vector<int> first_samples(std::int64_t weight) const;
   void scale(double factor, std::size_t band, BatchBooks& books) const;
-  void add_samples(ZoneId zone, std::uint32_t replicate, int count, float* sum) const;
+  void add_samples(ZoneId zone, const PointSampler& sampler, int first, int count, float* sum) const;
 
   const Room* room_;
   DirectLight light_;

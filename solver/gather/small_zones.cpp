@@ -33,6 +33,10 @@ constexpr double kMostDeviation = 5;
 /// Share of the area of a zone that rounding of its corners to single precision may take or add. Packets meet
 /// slivers as they are rounded, up to a thousand times as often as their area says.
 constexpr double kMostRounding = 0.1;
+/// Zones get more points than needed, up to so many times as many, while they take this share of the work
+/// that is allowed.
+constexpr double kMostTimesEnough = 32;
+constexpr double kCheap = 0.25;
 /// Gather rays per shadow ray.
 constexpr int kGathersPerPoint = 2;
 constexpr std::uint64_t kRaysPerPoint = kReplicates * (1 + kGathersPerPoint);
@@ -335,9 +339,12 @@ bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solutio
   chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(std::max(0.0, points_left))));
   if (chosen.empty()) return clock_had_a_say;
 
-  // As many rays as the mean zone meets packets leave about its error.
+  // As many rays as the mean zone meets packets leave about its error. But few shadow rays find a window, and
+  // zones that are few are sensors: more cost next to nothing then.
+  const auto chosen_count = static_cast<double>(chosen.size());
   const double enough = packet_rays / static_cast<double>(mesh.zone_count() * kRaysPerPoint);
-  const int points = whole_points(std::min(enough, points_left / static_cast<double>(chosen.size())));
+  const double cheap = std::min(kMostTimesEnough * enough, kCheap * affordable / chosen_count);
+  const int points = whole_points(std::min(std::max(enough, cheap), points_left / chosen_count));
   solution.gathered.keep(solution.sums, chosen);
   std::atomic<std::size_t> surprises{0};
   const std::size_t gathered = gatherer.gather(

@@ -36,10 +36,12 @@ void add_cells(std::vector<std::string>& cells, const MeanLight& light, double p
   std::vector<Estimate> values{light.illuminance, light.luminous_exitance,
                                times(light.area, light.illuminance)};
   if (percent > 0) values.push_back(times(percent, light.illuminance));
+  // A side that no ray found lit may still get a little.
+  const bool unlit = light.illuminance.mean == 0;
   for (const Estimate& value : values) {
     const auto [mean, error] = estimate_texts(value.mean, value.stderr_of_mean);
     cells.push_back(mean);
-    cells.push_back(error);
+    cells.push_back(unlit && value.mean == 0 ? "none met" : error);
   }
 }
 
