@@ -50,11 +50,12 @@ struct DirectAudit {
 /// are those of the solution, or, where its own direct light may be that of shadow rays
 /// (DirectSource::kBest), as many that are shot for it. The two share the room and its rays, but nothing of
 /// the choice of luminaires, of points on them, or of what a shadow ray stops at. The limit of a zone is
-/// Bernstein's bound for the number of packets on it [BLM13, cor. 2.11] plus as many standard errors of the
-/// samples, for the odds `false_alarm` over all zones together, and 0.3 % for float arithmetic; likewise for
-/// surfaces. Pre: the room of the solution. Throws InputError when the solution has no packets (matrix
-/// method). When `interrupt` becomes true, returns what was compared. `progress` (may be empty): share done
-/// [0,1], rising; called from many threads, one at a time.
+/// Bernstein's bound for the packets on it [BLM13, cor. 2.11], each of the power that packets have there
+/// (LuminairePackets), plus as many standard errors of the samples, for the odds `false_alarm` over all zones
+/// together, and 0.3 % for float arithmetic; likewise for surfaces. Pre: the room of the solution. Throws
+/// InputError when the solution has no packets (matrix method). When `interrupt` becomes true, returns what
+/// was compared. `progress` (may be empty): share done [0,1], rising; called from many threads, one at a
+/// time.
 DirectAudit audit_direct_light(const Room& room, const Solution& solution,
                                const DirectAuditSettings& settings,
                                const std::function<void(double)>& progress,
