@@ -18,6 +18,15 @@ Box box_of(const Surface& surface) {
   return bounds(alone);
 }
 
+/// What a surface does not let through, as a share of what it meets [0,1]: the mean over the bands.
+double kept_by(const Material& material) {
+  double kept = 1;
+  for (const Spectrum* through :
+       {&material.non_diffuse.diffuse_transmittance, &material.non_diffuse.specular_transmittance})
+    if (through->size() > 0) kept -= through->mean();
+  return std::max(0.0, kept);
+}
+
 /// Luminous surfaces as lamps: those of one material whose boxes touch belong together. A lamp is known by
 /// its first surface.
 class LampGroups {
@@ -92,7 +101,8 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const PacketRoom& transport, c
     sent[lamp] += power;
     if (!probe.met) return;
     const std::size_t to = mesh.surface(probe.hit.triangle, probe.hit.front).index();
-    if (emits[to] && lamps.of(to) == lamp) kept[lamp] += power;
+    if (emits[to] && lamps.of(to) == lamp)
+      kept[lamp] += power * kept_by(scene.materials[scene.surfaces[to].material.index()]);
   };
   trace_probes(transport, flight, 0, visit, stop);
   const double room = bounds(scene).size().norm();

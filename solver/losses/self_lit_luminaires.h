@@ -10,7 +10,7 @@ namespace reemit {
 /// Luminous surfaces of one material whose boxes touch, taken for one lamp, whose light meets the lamp first.
 struct SelfLitLuminaire {
   std::vector<SurfaceId> surfaces;
-  double share = 0;  ///< Of its power that does [0,1].
+  double share = 0;  ///< Of its power that does and is not let through [0,1].
 };
 
 /// Lamps smaller than the room that send a quarter of their power or more onto themselves: closed ones whose

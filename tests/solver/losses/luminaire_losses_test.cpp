@@ -176,6 +176,19 @@ TEST_F(LuminaireLosses, ClosedLampsThatEmitInsideLightThemselvesByHalf) {
   EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'shape6'"), HasSubstr("50 %"))));
 }
 
+TEST_F(LuminaireLosses, OpalLampsThatEmitInsideLetMostOfItOut) {
+  walls(true);
+  const MaterialId both = room_.material("both", 0.2, 10, true);
+  Material& opal = room_.scene().materials[both.index()];
+  opal.emits_both_sides = true;
+  opal.non_diffuse.diffuse_transmittance = room_.flat(0.6);
+  room_.shape(both, Sphere{Vec3(1, 1, 1), 0.3}, 2);
+  EXPECT_THAT(self_lit(room_), IsEmpty()) << "0.2 of its power stays inside";
+  opal.non_diffuse.diffuse_transmittance = room_.flat(0.3);
+  ASSERT_EQ(self_lit(room_).size(), 1u);
+  EXPECT_NEAR(self_lit(room_)[0].share, 0.35, 1e-3);
+}
+
 TEST_F(LuminaireLosses, TheFacesOfABoxAreOneLamp) {
   walls(true);
   const MaterialId both = room_.material("both", 0.5, 10, true);
