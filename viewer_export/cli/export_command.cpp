@@ -141,6 +141,45 @@ std::string output_help() {
   return help;
 }
 
+void add_value_options(CLI::App& command, ExportOptions& options) {
+  command.option_defaults()->group("Values");
+  auto* form_factors =
+      command.add_flag("--form-factors", options.form_factors,
+                       "Write the form factors between all zones instead, computed anew; formats:" +
+                           form_factor_formats_help());
+  form_factors->excludes(add_choice_option<bool>(
+      command, "--values", options.vertex.average_zones, {{"gather", false}, {"zones", true}},
+      "gather: direct light and final gather at each vertex; zones: the mean of the\n"
+      "zones around it, quick and as coarse as the zones"));
+  form_factors->excludes(add_choice_option<bool>(
+      command, "--units", options.photometric, {{"W", false}, {"lx", true}},
+      "W: radiance [W/(m2 sr)] and irradiance [W/m2] per band; lx: luminance [cd/m2] and\n"
+      "illuminance [lx], .csv only"));
+  auto* error =
+      add_parsed_option(command, "--error", options.vertex.error_target, parse_share, "SHARE",
+                        "Refine until the relative error (area-weighted rms over vertices, worst band) is\n"
+                        "below: 1%");
+  error->excludes(form_factors);
+  form_factors->excludes(add_integer_option(command, "--samples", options.vertex.gather_rays, 1, 1048576,
+                                            "Gather rays per vertex, rounded up")
+                             ->excludes(error));
+  form_factors->excludes(add_integer_option(command, "--light-samples", options.vertex.light_samples, 1,
+                                            65536, "Shadow rays per vertex, rounded up")
+                             ->excludes(error));
+  form_factors->excludes(add_choice_option<std::optional<bool>>(
+      command, "--smooth", options.smooth, {{"auto", std::nullopt}, {"on", true}, {"off", false}},
+      "Take noise out: every vertex becomes a fit to those around it that agree within\n"
+      "their noise; auto: gathered vertices without --error"));
+  form_factors->excludes(
+      command.add_flag("--all-zones", options.vertex.all_zones,
+                       "Keep the backs of surfaces that no light reached and that do not emit"));
+  add_seed_and_threads(command, options.vertex.seed, options.vertex.threads);
+  form_factors->excludes(
+      add_parsed_option(command, "--exposure", options.tone_map.exposure_ev, parse_number, "EV",
+                        "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
+                        "(default: as the still from the first camera)"));
+}
+
 }  // namespace
 
 void add_export_command(CLI::App& program, Action& action) {
@@ -164,43 +203,7 @@ void add_export_command(CLI::App& program, Action& action) {
       ->type_name("FILE");
   add_room_option(command, options->room);
 
-  command.option_defaults()->group("Values");
-  auto* form_factors =
-      command.add_flag("--form-factors", options->form_factors,
-                       "Write the form factors between all zones instead, computed anew; formats:" +
-                           form_factor_formats_help());
-  form_factors->excludes(add_choice_option<bool>(
-      command, "--values", options->vertex.average_zones, {{"gather", false}, {"zones", true}},
-      "gather: direct light and final gather at each vertex; zones: the mean of the\n"
-      "zones around it, quick and as coarse as the zones"));
-  form_factors->excludes(add_choice_option<bool>(
-      command, "--units", options->photometric, {{"W", false}, {"lx", true}},
-      "W: radiance [W/(m2 sr)] and irradiance [W/m2] per band; lx: luminance [cd/m2] and\n"
-      "illuminance [lx], .csv only"));
-  auto* error =
-      add_parsed_option(command, "--error", options->vertex.error_target, parse_share, "SHARE",
-                        "Refine until the relative error (area-weighted rms over vertices, worst band) is\n"
-                        "below: 1%");
-  error->excludes(form_factors);
-  form_factors->excludes(add_integer_option(command, "--samples", options->vertex.gather_rays, 1, 1048576,
-                                            "Gather rays per vertex, rounded up")
-                             ->excludes(error));
-  form_factors->excludes(add_integer_option(command, "--light-samples", options->vertex.light_samples, 1,
-                                            65536, "Shadow rays per vertex, rounded up")
-                             ->excludes(error));
-  form_factors->excludes(add_choice_option<std::optional<bool>>(
-      command, "--smooth", options->smooth, {{"auto", std::nullopt}, {"on", true}, {"off", false}},
-      "Take noise out: every vertex becomes a fit to those around it that agree within\n"
-      "their noise; auto: gathered vertices without --error"));
-  form_factors->excludes(
-      command.add_flag("--all-zones", options->vertex.all_zones,
-                       "Keep the backs of surfaces that no light reached and that do not emit"));
-  add_seed_and_threads(command, options->vertex.seed, options->vertex.threads);
-  form_factors->excludes(
-      add_parsed_option(command, "--exposure", options->tone_map.exposure_ev, parse_number, "EV",
-                        "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
-                        "(default: as the still from the first camera)"));
-
+  add_value_options(command, *options);
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);
   add_progress_options(command, options->style);

@@ -200,35 +200,31 @@ void report(const Scene& scene, const Solution& solution, const SolveOptions& op
     print_result(solve_line(solution) + '\n');
 }
 
-ExitCode run_solve(const SolveOptions& options) {
+/// The run at its start, with outputs that will not harm a file of the room.
+Start begin_run(const SolveOptions& options) {
   const auto check_outputs = [&](const fs::path& room) {
     check_solution_output(options.output, room);
     if (!options.log.empty()) RunLog::check(options.log, room, options.output);
   };
   for (const fs::path& file : options.room) check_outputs(file);
-  const bool resumed = !options.resume.empty();
-  Start start = resumed ? resumed_run(options) : new_run(options);
-  if (resumed) {
-    for (const std::string& file : room_files(start.solution)) check_outputs(file);
-    if (is_done(options, start)) {
-      if (!options.style.quiet)
-        print_note(
-            fmt::format("{} is solved as far as its stopping rules ask for ({}); ask for more with --error, "
-                        "--time or --packets",
-                        options.resume.string(), to_string(start.solution.record.stopped)));
-      if (options.output != options.resume) save(start.solution, options);
-      report(start.scene, start.solution, options);
-      return ExitCode::kDone;
-    }
-  }
-  const SolverSettings settings = start.solution.settings;
-  const bool matrix = settings.method == SolveMethod::kMatrix;
-  std::optional<RunLog> log;
-  if (!options.log.empty())
-    log.emplace(options.log, RunLog::Run{start.solution.room_path, options.output, settings,
-                                         start.solution.mesh.zone_count(), start.scene.bands});
-  // Before the first batch there is nothing to keep.
-  InterruptGuard interrupt(InterruptGuard::kLater);
+  if (options.resume.empty()) return new_run(options);
+  Start start = resumed_run(options);
+  for (const std::string& file : room_files(start.solution)) check_outputs(file);
+  return start;
+}
+
+void note_done(const Solution& solution, const SolveOptions& options) {
+  if (options.style.quiet) return;
+  print_note(
+      fmt::format("{} is solved as far as its stopping rules ask for ({}); ask for more with --error, "
+                  "--time or --packets",
+                  options.resume.string(), to_string(solution.record.stopped)));
+}
+
+/// Solves, with lines that tell how far it is, the log and checkpoints.
+Solution solve_with_progress(Start& start, const SolveOptions& options, std::optional<RunLog>& log,
+                             InterruptGuard& interrupt) {
+  const SolveMethod method = start.solution.settings.method;
   const ProgressStyle style = progress_style(options.style.quiet, options.style.verbose);
   std::optional<WaitingLine> preparation;
   Progress progress("solving", style);
@@ -240,9 +236,9 @@ ExitCode run_solve(const SolveOptions& options) {
     }
     preparation.reset();
     interrupt.begin();
-    progress.begin_step(0, matrix ? "form factors" : "first batch");
+    progress.begin_step(0, method == SolveMethod::kMatrix ? "form factors" : "first batch");
   });
-  const ProgressCallback show = progress_callback(progress, settings.method);
+  const ProgressCallback show = progress_callback(progress, method);
   watch.progress = [&](const SolveProgress& now) {
     show(now);
     if (log) log->add(now);
@@ -254,18 +250,140 @@ ExitCode run_solve(const SolveOptions& options) {
       write_output([&] { save_solution(solution, options.output, Packing(&signal_arrived())); });
     };
   }
-  const std::string step = fmt::format("solving {} zones", start.solution.mesh.zone_count());
-  const Solution solution = [&] {
-    const StepNote note(step, options.style);
-    Solution solved = solve(start.scene, std::move(start.solution), watch, interrupt.requested());
-    preparation.reset();
-    progress.finish();
-    return solved;
-  }();
+  const StepNote note(fmt::format("solving {} zones", start.solution.mesh.zone_count()), options.style);
+  Solution solved = solve(start.scene, std::move(start.solution), watch, interrupt.requested());
+  preparation.reset();
+  progress.finish();
+  return solved;
+}
+
+ExitCode run_solve(const SolveOptions& options) {
+  Start start = begin_run(options);
+  if (!options.resume.empty() && is_done(options, start)) {
+    note_done(start.solution, options);
+    if (options.output != options.resume) save(start.solution, options);
+    report(start.scene, start.solution, options);
+    return ExitCode::kDone;
+  }
+  std::optional<RunLog> log;
+  if (!options.log.empty())
+    log.emplace(options.log, RunLog::Run{start.solution.room_path, options.output, start.solution.settings,
+                                         start.solution.mesh.zone_count(), start.scene.bands});
+  // Before the first batch there is nothing to keep.
+  InterruptGuard interrupt(InterruptGuard::kLater);
+  const Solution solution = solve_with_progress(start, options, log, interrupt);
   if (log) log->finish(solution);
   save(solution, options);
   report(start.scene, solution, options);
   return ExitCode::kDone;
+}
+
+constexpr const char* kSolveFooter =
+    "The run ends when the first stopping rule holds; without any it is --error 2%. Ctrl-C ends it "
+    "cleanly\n"
+    "and keeps the solution so far (--method matrix has none before its end); a second Ctrl-C ends it\n"
+    "at once.\n"
+    "Examples:\n"
+    "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
+    "  reemit solve materials.mgf room.mgf lamps.mgf -o office.h5\n"
+    "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7\n"
+    "  reemit solve --resume office.h5 --error 0.5%\n"
+    "How to write a room: docs/room_format.md; what the solution holds: docs/solution_file.md";
+
+void add_file_options(CLI::App& solve, SolveOptions& options) {
+  solve
+      .add_option("room", options.room,
+                  "Room file: .json .obj .gltf .glb .mgf; several .mgf files are read in order\n"
+                  "as one room. With --resume only if the room is no longer where it was")
+      ->type_name("ROOM");
+  solve
+      .add_option("-o,--output", options.output,
+                  "Solution file to write (HDF5): .h5 or .hdf5; replaces a solution, nothing else\n"
+                  "(default with --resume: the same file)")
+      ->type_name("SOLUTION");
+  solve
+      .add_option("--resume", options.resume,
+                  "Go on with a solution that is finished, was interrupted or was killed after a\n"
+                  "checkpoint, by the stopping rules given now or else by its own (--time given\n"
+                  "now counts from what stands, else for all sittings). The result is that of one run "
+                  "without a break")
+      ->type_name("SOLUTION");
+  add_parsed_option(solve, "--checkpoint", options.checkpoint_s, parse_checkpoint, "TIME",
+                    "Save what stands at these intervals, for --resume: 30s, 10min; 0 = never")
+      ->default_str("10min");
+}
+
+void add_stopping_rules(CLI::App& solve, SolverSettings& settings) {
+  solve.option_defaults()->group("Stopping rules");
+  add_parsed_option(solve, "--error", settings.error_target, parse_share, "SHARE",
+                    "Stop at this relative standard error of radiosity (area-weighted rms over zones,\n"
+                    "worst band): 1% or 0.01");
+  add_parsed_option(solve, "--time", settings.time_limit_s, parse_seconds, "TIME",
+                    "Stop after this wall time: 60, 60s, 2min, 1h");
+  add_parsed_option(
+      solve, "--packets", settings.packets, parse_count, "N",
+      "Stop after this many packets, equal parts of the power of all luminaires: 250000 or 1e6");
+}
+
+void add_method_options(CLI::App& solve, SolverSettings& settings) {
+  solve.option_defaults()->group("Method");
+  add_choice_option<SolveMethod>(
+      solve, "--method", settings.method,
+      {{"shooting", SolveMethod::kShooting}, {"walk", SolveMethod::kWalk}, {"matrix", SolveMethod::kMatrix}},
+      "shooting (absorb and re-emit) or walk (Russian roulette); matrix: exact form\n"
+      "factors and a linear system, a reference for up to 16384 zones, without\n"
+      "stopping rules");
+  add_choice_option<SamplingKind>(solve, "--sampling", settings.sampling,
+                                  {{"sobol", SamplingKind::kSobol}, {"random", SamplingKind::kRandom}},
+                                  "Points and directions of packets: low-discrepancy or random");
+  add_choice_option<Reemission>(
+      solve, "--reemit", settings.reemission,
+      {{"hits", Reemission::kFromHits}, {"zones", Reemission::kFromZones}},
+      "Where zones send on the light they reflect: from where it met them, or evenly\n"
+      "over each zone, which is what --method matrix solves (to compare with it)");
+  add_choice_option<DirectSource>(
+      solve, "--direct", settings.direct,
+      {{"best", DirectSource::kBest}, {"packets", DirectSource::kPackets}},
+      "How --method shooting finds the direct light of zones: by shadow rays where a look\n"
+      "at the room says that this pays, or by packets in any case (to compare with them)");
+  add_seed_and_threads(solve, settings.seed, settings.threads);
+}
+
+void add_room_group(CLI::App& solve, SolveOptions& options) {
+  solve.option_defaults()->group("Room");
+  const auto zone_count = [](const std::string& text) {
+    return static_cast<int>(parse_integer(text, 1, 100'000'000));
+  };
+  CLI::Option* zones = add_parsed_option(
+      solve, "--zones", options.zones, zone_count, "N",
+      "About how many zones the room is cut into (default: 8000, 2000 for --method matrix)");
+  add_parsed_option(solve, "--zone-area", options.mesh.zone_area, parse_positive, "M2",
+                    "Cut large faces into zones of at most this area [m2] instead")
+      ->excludes(zones);
+  solve.add_flag("--two-sided", options.read.force_two_sided,
+                 "Let every face reflect on both sides (rooms with mixed winding)");
+  add_read_options(solve, options.read);
+  add_sky_options(solve, options.read);
+}
+
+void add_output_group(CLI::App& solve, SolveOptions& options) {
+  solve.option_defaults()->group("Output");
+  solve
+      .add_option("--log", options.log,
+                  "Log of error over time: one JSON object per line and batch, written as the run goes")
+      ->type_name("FILE");
+  add_json_option(solve, options.style);
+  add_progress_options(solve, options.style);
+}
+
+/// Refuses with --resume what is settled by the run that goes on.
+void exclude_from_resume(CLI::App& solve) {
+  CLI::Option* resume = solve.get_option("--resume");
+  // A run has one of each from its first batch to its last.
+  for (const char* settled :
+       {"--method", "--sampling", "--reemit", "--direct", "--seed", "--zones", "--zone-area", "--two-sided",
+        "--bands", "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
+    resume->excludes(solve.get_option(settled));
 }
 
 }  // namespace
@@ -274,98 +392,13 @@ void add_solve_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<SolveOptions>();
   CLI::App& solve =
       *program.add_subcommand("solve", "Solve the light in a room and keep it in a solution file");
-  solve.footer(
-      "The run ends when the first stopping rule holds; without any it is --error 2%. Ctrl-C ends it "
-      "cleanly\n"
-      "and keeps the solution so far (--method matrix has none before its end); a second Ctrl-C ends it\n"
-      "at once.\n"
-      "Examples:\n"
-      "  reemit solve room.json -o room.h5 --error 1% --time 2min\n"
-      "  reemit solve materials.mgf room.mgf lamps.mgf -o office.h5\n"
-      "  reemit solve office.gltf -o office.h5 --emissive-units W/sr/m2 --packets 1e7 --seed 7\n"
-      "  reemit solve --resume office.h5 --error 0.5%\n"
-      "How to write a room: docs/room_format.md; what the solution holds: docs/solution_file.md");
-  solve
-      .add_option("room", options->room,
-                  "Room file: .json .obj .gltf .glb .mgf; several .mgf files are read in order\n"
-                  "as one room. With --resume only if the room is no longer where it was")
-      ->type_name("ROOM");
-  solve
-      .add_option("-o,--output", options->output,
-                  "Solution file to write (HDF5): .h5 or .hdf5; replaces a solution, nothing else\n"
-                  "(default with --resume: the same file)")
-      ->type_name("SOLUTION");
-  CLI::Option* resume =
-      solve
-          .add_option("--resume", options->resume,
-                      "Go on with a solution that is finished, was interrupted or was killed after a\n"
-                      "checkpoint, by the stopping rules given now or else by its own (--time given\n"
-                      "now counts from what stands, else for all sittings). The result is that of one run "
-                      "without a break")
-          ->type_name("SOLUTION");
-  add_parsed_option(solve, "--checkpoint", options->checkpoint_s, parse_checkpoint, "TIME",
-                    "Save what stands at these intervals, for --resume: 30s, 10min; 0 = never")
-      ->default_str("10min");
-
-  solve.option_defaults()->group("Stopping rules");
-  add_parsed_option(solve, "--error", options->solver.error_target, parse_share, "SHARE",
-                    "Stop at this relative standard error of radiosity (area-weighted rms over zones,\n"
-                    "worst band): 1% or 0.01");
-  add_parsed_option(solve, "--time", options->solver.time_limit_s, parse_seconds, "TIME",
-                    "Stop after this wall time: 60, 60s, 2min, 1h");
-  add_parsed_option(
-      solve, "--packets", options->solver.packets, parse_count, "N",
-      "Stop after this many packets, equal parts of the power of all luminaires: 250000 or 1e6");
-
-  solve.option_defaults()->group("Method");
-  add_choice_option<SolveMethod>(
-      solve, "--method", options->solver.method,
-      {{"shooting", SolveMethod::kShooting}, {"walk", SolveMethod::kWalk}, {"matrix", SolveMethod::kMatrix}},
-      "shooting (absorb and re-emit) or walk (Russian roulette); matrix: exact form\n"
-      "factors and a linear system, a reference for up to 16384 zones, without\n"
-      "stopping rules");
-  add_choice_option<SamplingKind>(solve, "--sampling", options->solver.sampling,
-                                  {{"sobol", SamplingKind::kSobol}, {"random", SamplingKind::kRandom}},
-                                  "Points and directions of packets: low-discrepancy or random");
-  add_choice_option<Reemission>(
-      solve, "--reemit", options->solver.reemission,
-      {{"hits", Reemission::kFromHits}, {"zones", Reemission::kFromZones}},
-      "Where zones send on the light they reflect: from where it met them, or evenly\n"
-      "over each zone, which is what --method matrix solves (to compare with it)");
-  add_choice_option<DirectSource>(
-      solve, "--direct", options->solver.direct,
-      {{"best", DirectSource::kBest}, {"packets", DirectSource::kPackets}},
-      "How --method shooting finds the direct light of zones: by shadow rays where a look\n"
-      "at the room says that this pays, or by packets in any case (to compare with them)");
-  add_seed_and_threads(solve, options->solver.seed, options->solver.threads);
-
-  solve.option_defaults()->group("Room");
-  const auto zone_count = [](const std::string& text) {
-    return static_cast<int>(parse_integer(text, 1, 100'000'000));
-  };
-  CLI::Option* zones = add_parsed_option(
-      solve, "--zones", options->zones, zone_count, "N",
-      "About how many zones the room is cut into (default: 8000, 2000 for --method matrix)");
-  add_parsed_option(solve, "--zone-area", options->mesh.zone_area, parse_positive, "M2",
-                    "Cut large faces into zones of at most this area [m2] instead")
-      ->excludes(zones);
-  solve.add_flag("--two-sided", options->read.force_two_sided,
-                 "Let every face reflect on both sides (rooms with mixed winding)");
-  add_read_options(solve, options->read);
-  add_sky_options(solve, options->read);
-
-  solve.option_defaults()->group("Output");
-  solve
-      .add_option("--log", options->log,
-                  "Log of error over time: one JSON object per line and batch, written as the run goes")
-      ->type_name("FILE");
-  add_json_option(solve, options->style);
-  add_progress_options(solve, options->style);
-  // A run has one of each from its first batch to its last.
-  for (const char* settled :
-       {"--method", "--sampling", "--reemit", "--direct", "--seed", "--zones", "--zone-area", "--two-sided",
-        "--bands", "--emissive-units", "--gltf-light-efficacy", "--sky", "--sun"})
-    resume->excludes(solve.get_option(settled));
+  solve.footer(kSolveFooter);
+  add_file_options(solve, *options);
+  add_stopping_rules(solve, options->solver);
+  add_method_options(solve, options->solver);
+  add_room_group(solve, *options);
+  add_output_group(solve, *options);
+  exclude_from_resume(solve);
   solve.callback([options, &action] {
     if (options->resume.empty() && options->room.empty()) throw CLI::RequiredError("ROOM or --resume");
     if (options->output.empty()) options->output = options->resume;
