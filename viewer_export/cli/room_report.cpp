@@ -143,6 +143,47 @@ std::string counts_text(const Counts& counts) {
   return text.empty() ? "none" : text;
 }
 
+Json materials_json(const Scene& scene) {
+  Json materials = Json::array();
+  for (const Material& material : scene.materials)
+    materials.push_back(
+        {{"name", material.name},
+         {"reflectance", spectrum_json(material.reflectance)},
+         {"back_reflectance", spectrum_json(material.reflectance_of(false))},
+         {"specular_reflectance", spectrum_json(material.non_diffuse.specular_reflectance)},
+         {"specular_transmittance", spectrum_json(material.non_diffuse.specular_transmittance)},
+         {"emitted_radiance_W_sr_m2", spectrum_json(material.emitted_radiance)},
+         {"two_sided", material.two_sided},
+         {"emits_both_sides", material.emits_both_sides},
+         {"models", models_of(material)}});
+  return materials;
+}
+
+Json surfaces_json(const Scene& scene, const MeshReport& report) {
+  Json surfaces = Json::array();
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+    surfaces.push_back({{"name", scene.surfaces[s].name},
+                        {"material", scene.material_of(scene.surfaces[s]).name},
+                        {"faces", scene.surfaces[s].faces.size()},
+                        {"shapes", scene.surfaces[s].shapes.size()},
+                        {"area_m2", report.surfaces[s].input},
+                        {"removed_m2", report.surfaces[s].removed}});
+  return surfaces;
+}
+
+Json cameras_json(const Scene& scene) {
+  Json cameras = Json::array();
+  for (const Camera& camera : scene.cameras)
+    cameras.push_back({{"name", camera.name},
+                       {"eye_m", point_json(camera.eye)},
+                       {"look_at_m", point_json(camera.look_at)},
+                       {"up", point_json(camera.up)},
+                       {"vertical_fov_deg", camera.vertical_fov_deg},
+                       {"width_px", camera.width},
+                       {"height_px", camera.height}});
+  return cameras;
+}
+
 }  // namespace
 
 std::string room_text(const Scene& scene, const MeshResult& meshed) {
@@ -202,44 +243,15 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
   add_shared_zones(json, meshed.mesh);
   json["textures"] = textures_json(scene);
   for (const auto& [name, count] : repairs(meshed.report)) json["repairs"][name] = count;
-  json["materials"] = Json::array();
-  for (const Material& material : scene.materials) {
-    json["materials"].push_back(
-        {{"name", material.name},
-         {"reflectance", spectrum_json(material.reflectance)},
-         {"back_reflectance", spectrum_json(material.reflectance_of(false))},
-         {"specular_reflectance", spectrum_json(material.non_diffuse.specular_reflectance)},
-         {"specular_transmittance", spectrum_json(material.non_diffuse.specular_transmittance)},
-         {"emitted_radiance_W_sr_m2", spectrum_json(material.emitted_radiance)},
-         {"two_sided", material.two_sided},
-         {"emits_both_sides", material.emits_both_sides},
-         {"models", models_of(material)}});
-  }
+  json["materials"] = materials_json(scene);
   json["model_area_shares"] = json["model_power_shares"] = Json::object();
   for (const ModelShare& share : model_shares(scene, meshed)) {
     json["model_area_shares"][share.model] = share.area;
     json["model_power_shares"][share.model] = share.power;
   }
-  json["surfaces"] = Json::array();
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-    json["surfaces"].push_back({{"name", scene.surfaces[s].name},
-                                {"material", scene.material_of(scene.surfaces[s]).name},
-                                {"faces", scene.surfaces[s].faces.size()},
-                                {"shapes", scene.surfaces[s].shapes.size()},
-                                {"area_m2", meshed.report.surfaces[s].input},
-                                {"removed_m2", meshed.report.surfaces[s].removed}});
-  }
+  json["surfaces"] = surfaces_json(scene, meshed.report);
   add_luminaires(json, list_luminaires(scene, meshed.report), scene.bands);
-  json["cameras"] = Json::array();
-  for (const Camera& camera : scene.cameras) {
-    json["cameras"].push_back({{"name", camera.name},
-                               {"eye_m", point_json(camera.eye)},
-                               {"look_at_m", point_json(camera.look_at)},
-                               {"up", point_json(camera.up)},
-                               {"vertical_fov_deg", camera.vertical_fov_deg},
-                               {"width_px", camera.width},
-                               {"height_px", camera.height}});
-  }
+  json["cameras"] = cameras_json(scene);
   json["refused"] = counts_json(scene.refused);
   json["not_modelled"] = counts_json(scene.not_modelled);
   json["warnings"] = scene.warnings;

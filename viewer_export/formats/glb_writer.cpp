@@ -139,14 +139,8 @@ Json extras_of(const VertexData& data, const ToneMap& tone_map) {
   return extras;
 }
 
-// The JSON chunk; buffer views lie in the order of the attributes, then the indices.
-Json document(const VertexData& data, const Layout& layout, const std::vector<Attribute>& attributes,
-              const std::vector<Eigen::Vector3f>& positions, const Vec3& origin, const ToneMap& tone_map) {
-  Json gltf;
-  gltf["asset"] = {{"version", "2.0"},
-                   {"generator", "reemit " + data.info.program_version},
-                   {"extras", extras_of(data, tone_map)}};
-  gltf["extensionsUsed"] = {"KHR_materials_unlit"};
+// The views of the binary chunk: one per attribute, in their order, then the indices.
+BufferViews views_of(const Layout& layout, const std::vector<Attribute>& attributes) {
   BufferViews views;
   for (const Attribute& a : attributes) {
     const auto stride = 4 * static_cast<std::size_t>(a.components);
@@ -156,63 +150,109 @@ Json document(const VertexData& data, const Layout& layout, const std::vector<At
       3 * std::accumulate(layout.parts.begin(), layout.parts.end(), std::size_t{0},
                           [](std::size_t n, const Part& p) { return n + p.triangles.size(); });
   views.add(4 * index_count, Gltf::kElementArrayBuffer);
+  return views;
+}
 
-  Json accessors = Json::array();
-  Json meshes = Json::array();
-  Json nodes = Json::array();
-  Json materials = Json::array();
-  std::vector<int> material_number(data.material_names.size(), -1);
-  std::size_t index_offset = 0;
-  for (const Part& part : layout.parts) {
-    Json primitive;
-    for (std::size_t a = 0; a < attributes.size(); ++a) {
-      const int components = attributes[a].components;
-      Json accessor = {{"bufferView", a},
-                       {"byteOffset", part.first_vertex * 4 * static_cast<std::size_t>(components)},
-                       {"componentType", Gltf::kFloat},
-                       {"count", part.vertex_count},
-                       {"type", components == 3 ? "VEC3" : "SCALAR"}};
-      if (attributes[a].semantic == "POSITION") {
-        Eigen::Vector3f low = positions[layout.order[part.first_vertex]];
-        Eigen::Vector3f high = low;
-        for (std::size_t i = 0; i < part.vertex_count; ++i) {
-          low = low.cwiseMin(positions[layout.order[part.first_vertex + i]]);
-          high = high.cwiseMax(positions[layout.order[part.first_vertex + i]]);
-        }
-        accessor["min"] = {low.x(), low.y(), low.z()};
-        accessor["max"] = {high.x(), high.y(), high.z()};
-      }
-      primitive["attributes"][attributes[a].semantic] = accessors.size();
-      accessors.push_back(std::move(accessor));
-    }
-    primitive["indices"] = accessors.size();
-    accessors.push_back({{"bufferView", attributes.size()},
-                         {"byteOffset", index_offset},
-                         {"componentType", Gltf::kUnsignedInt},
-                         {"count", 3 * part.triangles.size()},
-                         {"type", "SCALAR"}});
-    index_offset += 12 * part.triangles.size();
-    int& material = material_number[part.material.index()];
-    if (material < 0) {
-      material = static_cast<int>(materials.size());
-      materials.push_back({{"name", data.material_names[part.material.index()]},
-                           {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
-                           {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
-    }
-    primitive["material"] = material;
-    primitive["mode"] = Gltf::kTriangles;
-    const std::string& name = data.surface_names[part.surface.index()];
-    nodes.push_back({{"name", name}, {"mesh", meshes.size()}});
-    if (origin != Vec3::Zero()) nodes.back()["translation"] = {origin.x(), origin.y(), origin.z()};
-    meshes.push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
+// What the parts of the layout are in glTF, a mesh and a node for each.
+class MeshLists {
+ public:
+  MeshLists(const VertexData& data, const Layout& layout, const std::vector<Attribute>& attributes,
+            const std::vector<Eigen::Vector3f>& positions, const Vec3& origin)
+      : data_(data),
+        layout_(layout),
+        attributes_(attributes),
+        positions_(positions),
+        origin_(origin),
+        material_number_(data.material_names.size(), -1) {
+    for (const Part& part : layout.parts) add(part);
   }
-  Json roots = Json::array();
-  for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
-  add_scene(gltf, std::move(nodes), std::move(roots), data.up);
-  gltf["meshes"] = std::move(meshes);
-  gltf["materials"] = std::move(materials);
-  gltf["accessors"] = std::move(accessors);
-  std::move(views).add_to(gltf);
+
+  void add_to(Json& gltf) && {
+    Json roots = Json::array();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) roots.push_back(i);
+    add_scene(gltf, std::move(nodes_), std::move(roots), data_.up);
+    gltf["meshes"] = std::move(meshes_);
+    gltf["materials"] = std::move(materials_);
+    gltf["accessors"] = std::move(accessors_);
+  }
+
+ private:
+  void add(const Part& part) {
+    Json primitive;
+    for (std::size_t a = 0; a < attributes_.size(); ++a) {
+      primitive["attributes"][attributes_[a].semantic] = accessors_.size();
+      accessors_.push_back(values_of(part, a));
+    }
+    primitive["indices"] = accessors_.size();
+    accessors_.push_back({{"bufferView", attributes_.size()},
+                          {"byteOffset", index_offset_},
+                          {"componentType", Gltf::kUnsignedInt},
+                          {"count", 3 * part.triangles.size()},
+                          {"type", "SCALAR"}});
+    index_offset_ += 12 * part.triangles.size();
+    primitive["material"] = number_of(part.material);
+    primitive["mode"] = Gltf::kTriangles;
+    const std::string& name = data_.surface_names[part.surface.index()];
+    nodes_.push_back({{"name", name}, {"mesh", meshes_.size()}});
+    if (origin_ != Vec3::Zero()) nodes_.back()["translation"] = {origin_.x(), origin_.y(), origin_.z()};
+    meshes_.push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
+  }
+
+  // The accessor of one attribute; readers require the bounds of positions.
+  Json values_of(const Part& part, std::size_t attribute) const {
+    const int components = attributes_[attribute].components;
+    Json accessor = {{"bufferView", attribute},
+                     {"byteOffset", part.first_vertex * 4 * static_cast<std::size_t>(components)},
+                     {"componentType", Gltf::kFloat},
+                     {"count", part.vertex_count},
+                     {"type", components == 3 ? "VEC3" : "SCALAR"}};
+    if (attributes_[attribute].semantic != "POSITION") return accessor;
+    Eigen::Vector3f low = positions_[layout_.order[part.first_vertex]];
+    Eigen::Vector3f high = low;
+    for (std::size_t i = 0; i < part.vertex_count; ++i) {
+      low = low.cwiseMin(positions_[layout_.order[part.first_vertex + i]]);
+      high = high.cwiseMax(positions_[layout_.order[part.first_vertex + i]]);
+    }
+    accessor["min"] = {low.x(), low.y(), low.z()};
+    accessor["max"] = {high.x(), high.y(), high.z()};
+    return accessor;
+  }
+
+  // Of a material, which is listed when a part first has it.
+  int number_of(MaterialId id) {
+    int& material = material_number_[id.index()];
+    if (material < 0) {
+      material = static_cast<int>(materials_.size());
+      materials_.push_back({{"name", data_.material_names[id.index()]},
+                            {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
+                            {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+    }
+    return material;
+  }
+
+  const VertexData& data_;
+  const Layout& layout_;
+  const std::vector<Attribute>& attributes_;
+  const std::vector<Eigen::Vector3f>& positions_;
+  const Vec3& origin_;
+  Json accessors_ = Json::array();
+  Json meshes_ = Json::array();
+  Json nodes_ = Json::array();
+  Json materials_ = Json::array();
+  std::vector<int> material_number_;  // -1: not listed yet
+  std::size_t index_offset_ = 0;      // [bytes]
+};
+
+// The JSON chunk.
+Json document(const VertexData& data, const Layout& layout, const std::vector<Attribute>& attributes,
+              const std::vector<Eigen::Vector3f>& positions, const Vec3& origin, const ToneMap& tone_map) {
+  Json gltf;
+  gltf["asset"] = {{"version", "2.0"},
+                   {"generator", "reemit " + data.info.program_version},
+                   {"extras", extras_of(data, tone_map)}};
+  gltf["extensionsUsed"] = {"KHR_materials_unlit"};
+  MeshLists(data, layout, attributes, positions, origin).add_to(gltf);
+  views_of(layout, attributes).add_to(gltf);
   return gltf;
 }
 
