@@ -196,20 +196,62 @@ void TileRenderer::add_sky_over_mirrors(const Vec3f& along, float pdf_per_sr, co
   }
 }
 
+/// A mirror, gloss or glass that is looked at, after others or not.
+struct TileRenderer::Look {
+  SurfacePoint x;
+  std::vector<float> through;
+  std::uint32_t steps;
+  TriangleId body;   // of glass that was looked into
+  float pdf_per_sr;  // of the ray from a lobe that still goes straight, as of SpecularPath; else 0
+  float way;         // from there
+};
+
+std::optional<TileRenderer::Look> TileRenderer::follow(const Look& from, const SpecularStep& step, int sample,
+                                                       PixelSums& sums, GatherBatch& batch) const {
+  const RayTracer& rays = room_->rays();
+  const SurfaceModel& surfaces = room_->surfaces();
+  // What a lobe about a shading normal sends into the surface is lost.
+  if (!(step.direction.dot(side_normal(rays, from.x.triangle, from.x.u, from.x.v, step.front)) > 0))
+    return {};
+  Hit hit;
+  if (!rays.closest(rays.ray_origin(from.x.triangle, from.x.u, from.x.v, step.front), step.direction, hit)) {
+    std::vector<float> through = from.through;
+    for (std::size_t b = 0; b < through.size(); ++b) through[b] *= step.share()[b] / step.chance;
+    add_sky_over_mirrors(step.direction, step.bends ? step.pdf_per_sr : from.pdf_per_sr, through.data(),
+                         sums);
+    return {};
+  }
+  Look next{seen_point(hit, step.direction),
+            from.through,
+            from.steps + 1,
+            surfaces.body_beyond(from.x.triangle, step.front, from.body),
+            step.bends ? step.pdf_per_sr : from.pdf_per_sr,
+            hit.distance};
+  if (!step.bends) next.way += from.way;
+  next.x.footprint = from.x.footprint + spot_at(static_cast<double>(hit.distance));
+  const bool is_shared = next.pdf_per_sr > 0 && sums.integrator != Integrator::kZones;
+  const float found = is_shared ? direct_.found_by_lobe(hit.triangle, next.way, next.pdf_per_sr) : 1;
+  for (std::size_t b = 0; b < next.through.size(); ++b) next.through[b] *= step.share()[b] / step.chance;
+  surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, next.body), hit.distance,
+                     next.through.data());
+  const float inside = surfaces.radiance_outside(next.body);
+  if (inside == 1) {
+    add_seen(next.x, next.through.data(), found, sample, sums, batch);
+  } else {
+    std::vector<float> outside = next.through;
+    for (float& share : outside) share *= inside;
+    add_seen(next.x, outside.data(), found, sample, sums, batch);
+  }
+  if (!surfaces.is_specular(hit.triangle, hit.front)) return {};
+  return next;
+}
+
 void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums,
                                     GatherBatch& batch) const {
   // Both ways on from glass are seen where the eye looks at it; further on one of them is chosen, and what is
   // faint ends by roulette.
   constexpr std::uint32_t kSplitSteps = 2;
   constexpr std::uint32_t kCertainSteps = 5;
-  struct Look {
-    SurfacePoint x;
-    std::vector<float> through;
-    std::uint32_t steps;
-    TriangleId body;   // of glass that was looked into
-    float pdf_per_sr;  // of the ray from a lobe that still goes straight, as of SpecularPath; else 0
-    float way;         // from there
-  };
   const RayTracer& rays = room_->rays();
   const SurfaceModel& surfaces = room_->surfaces();
   const PathKey key{sums.index, sums.batch, static_cast<std::uint32_t>(sample - sums.found.earlier), 0};
@@ -219,40 +261,8 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
   std::vector<Look> looks;
   looks.push_back({x, all_, 0, {}, 0, 0});
   surfaces.attenuate(surfaces.body_around(x.triangle, x.front, {}), way, looks.back().through.data());
-  const auto follow = [&](const Look& from) {
-    // What a lobe about a shading normal sends into the surface is lost.
-    if (!(step.direction.dot(side_normal(rays, from.x.triangle, from.x.u, from.x.v, step.front)) > 0)) return;
-    Hit hit;
-    if (!rays.closest(rays.ray_origin(from.x.triangle, from.x.u, from.x.v, step.front), step.direction,
-                      hit)) {
-      std::vector<float> through = from.through;
-      for (std::size_t b = 0; b < through.size(); ++b) through[b] *= step.share()[b] / step.chance;
-      add_sky_over_mirrors(step.direction, step.bends ? step.pdf_per_sr : from.pdf_per_sr, through.data(),
-                           sums);
-      return;
-    }
-    Look next{seen_point(hit, step.direction),
-              from.through,
-              from.steps + 1,
-              surfaces.body_beyond(from.x.triangle, step.front, from.body),
-              step.bends ? step.pdf_per_sr : from.pdf_per_sr,
-              hit.distance};
-    if (!step.bends) next.way += from.way;
-    next.x.footprint = from.x.footprint + spot_at(static_cast<double>(hit.distance));
-    const bool is_shared = next.pdf_per_sr > 0 && sums.integrator != Integrator::kZones;
-    const float found = is_shared ? direct_.found_by_lobe(hit.triangle, next.way, next.pdf_per_sr) : 1;
-    for (std::size_t b = 0; b < next.through.size(); ++b) next.through[b] *= step.share()[b] / step.chance;
-    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, next.body), hit.distance,
-                       next.through.data());
-    const float inside = surfaces.radiance_outside(next.body);
-    if (inside == 1) {
-      add_seen(next.x, next.through.data(), found, sample, sums, batch);
-    } else {
-      std::vector<float> outside = next.through;
-      for (float& share : outside) share *= inside;
-      add_seen(next.x, outside.data(), found, sample, sums, batch);
-    }
-    if (surfaces.is_specular(hit.triangle, hit.front)) looks.push_back(std::move(next));
+  const auto look_on = [&](const Look& from) {
+    if (std::optional<Look> next = follow(from, step, sample, sums, batch)) looks.push_back(std::move(*next));
   };
   while (!looks.empty() && numbers < SpecularNumbers::kMostSteps) {
     Look look = std::move(looks.back());
@@ -269,13 +279,13 @@ void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, Pixel
     if (look.steps < kSplitSteps) {
       for (const SpecularWayOn way_on : {SpecularWayOn::kMirror, SpecularWayOn::kAcross}) {
         if (surface.is_spread()) spread = specular_.spread(key, numbers++);
-        if (surface.take(look.x, way_on, spread, step)) follow(look);
+        if (surface.take(look.x, way_on, spread, step)) look_on(look);
       }
       continue;
     }
     const Survival survival = look.steps < kCertainSteps ? Survival::kCertain : Survival::kRoulette;
     if (surface.is_spread()) spread = specular_.spread(key, numbers);
-    if (surface.choose(look.x, specular_.at(key, numbers++), spread, survival, step)) follow(look);
+    if (surface.choose(look.x, specular_.at(key, numbers++), spread, survival, step)) look_on(look);
   }
 }
 

@@ -64,6 +64,7 @@ class TileRenderer {
 
  private:
   struct PixelSums;
+  struct Look;
 
   /// Of the film, that a pixel's samples add to: direct, indirect, albedo and, where they are, caustics.
   std::size_t layers() const { return has_caustics_ ? 4 : 3; }
@@ -89,6 +90,10 @@ class TileRenderer {
   float spot_at(double way) const;
   /// What is seen over x, a mirror, gloss or glass that a ray of length `way` met.
   void add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums, GatherBatch& batch) const;
+  /// Adds what is seen over `from` along a step from there; the next look, if that meets a mirror, gloss or
+  /// glass again.
+  std::optional<Look> follow(const Look& from, const SpecularStep& step, int sample, PixelSums& sums,
+                             GatherBatch& batch) const;
   /// What a camera sees of the sky where nothing stands before it.
   void add_sky(const Vec3f& along, PixelSums& sums) const;
   /// What is seen of it over mirrors, gloss or glass, of which the film gets `through` per band.
