@@ -31,6 +31,22 @@ struct Region {
   double area = 0;  // [m2]
 };
 
+struct GroupRegions {
+  std::vector<Region> regions;
+  std::vector<std::size_t> losers;  // of one region after the other
+
+  std::span<const std::size_t> losers_of(const Region& region) const {
+    return std::span(losers).subspan(region.first_loser, region.end_of_losers - region.first_loser);
+  }
+};
+
+// What a group is cut along, in its plane.
+struct Drawing {
+  std::vector<Vec2> points;
+  std::vector<std::uint32_t> ids;  // vertices of the points
+  std::vector<Segment> segments;   // between points
+};
+
 // Which outlines a group is cut along.
 enum class Lines { kInSight, kAll };
 
@@ -87,6 +103,15 @@ class GroupTriangulation {
  private:
   void triangulate(std::size_t g);
   bool emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality, Lines lines);
+  Drawing draw(const PieceGroup& group, const std::vector<Segment>& cuts, Lines lines) const;
+  GroupRegions find_regions(const PieceGroup& group, const GroupOutlines& outlines,
+                            const PlanarTriangulation& cut, Lines lines) const;
+  void add_triangles(const PieceGroup& group, const PlanarTriangulation& cut,
+                     const std::vector<std::uint32_t>& ids, GroupRegions& found);
+  // Whether parts of its outline are left out, behind pieces that win.
+  bool is_partial(std::size_t piece, Lines lines) const {
+    return lines == Lines::kInSight && groups_.hidden.any(piece);
+  }
   void cover_in_parts(std::size_t g, const GroupOutlines& outlines, std::span<const RawTriangle> triangles,
                       OverlapAreas& overlap);
   std::vector<std::uint32_t> lift(const PieceGroup& group, const PlanarTriangulation& cut,
@@ -175,46 +200,38 @@ void GroupTriangulation::cover_in_parts(std::size_t g, const GroupOutlines& outl
   });
 }
 
-// Triangulates a group; returns false, leaving no trace but unused vertices, if area was lost.
-bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality,
-                              Lines lines) {
-  const PieceGroup group = groups_[g];
-  std::vector<Vec2> points;
-  std::vector<std::uint32_t> ids;
-  std::vector<Segment> segments;
+Drawing GroupTriangulation::draw(const PieceGroup& group, const std::vector<Segment>& cuts,
+                                 Lines lines) const {
+  Drawing drawing;
   std::unordered_map<std::uint32_t, std::uint32_t> local;
   const auto local_of = [&](std::uint32_t vertex) {
-    const auto [it, is_new] = local.try_emplace(vertex, static_cast<std::uint32_t>(ids.size()));
+    const auto [it, is_new] = local.try_emplace(vertex, static_cast<std::uint32_t>(drawing.ids.size()));
     if (is_new) {
-      ids.push_back(vertex);
-      points.push_back(group.plane.project(vertices_[vertex]));
+      drawing.ids.push_back(vertex);
+      drawing.points.push_back(group.plane.project(vertices_[vertex]));
     }
     return it->second;
   };
-  const GroupOutlines outlines(vertices_, pieces_, group);
-  const auto is_partial = [&](std::size_t p) { return lines == Lines::kInSight && groups_.hidden.any(p); };
-  bool any_partial = false;
   for (const std::size_t p : group.pieces) {
-    const bool partial = is_partial(p);
-    any_partial = any_partial || partial;
+    const bool partial = is_partial(p, lines);
     for (const Loop& loop : pieces_[p].loops)
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const std::uint32_t a = loop[i];
         const std::uint32_t b = loop[(i + 1) % loop.size()];
         if (!partial || !groups_.hidden.hide(p, vertices_[a], vertices_[b]))
-          segments.push_back({local_of(a), local_of(b)});
+          drawing.segments.push_back({local_of(a), local_of(b)});
       }
   }
-  for (const Segment& s : cuts) segments.push_back({local_of(s[0]), local_of(s[1])});
+  for (const Segment& s : cuts) drawing.segments.push_back({local_of(s[0]), local_of(s[1])});
+  return drawing;
+}
 
-  const auto inside = [&](const Vec2& p) { return outlines.cover(p); };
-  TriangleQuality limited = quality;
-  limited.most_new_points = std::min(quality.most_new_points, 1000 + 10 * points.size());
-  const PlanarTriangulation cut = triangulate_planar(points, segments, inside, limited);
-  ids = lift(group, cut, std::move(ids));
-
-  std::vector<Region> regions(cut.region_point.size());
-  std::vector<std::size_t> losers;  // of one region after the other
+// Who keeps and who loses each region; their areas are 0 yet. Pieces that are not cut along all of their
+// outlines lose no region as a whole.
+GroupRegions GroupTriangulation::find_regions(const PieceGroup& group, const GroupOutlines& outlines,
+                                              const PlanarTriangulation& cut, Lines lines) const {
+  GroupRegions found;
+  found.regions.resize(cut.region_point.size());
   std::vector<std::size_t> covering(group.pieces.begin(), group.pieces.end());
   for (const std::uint32_t r : order_by_place(cut.region_point)) {
     if (group.pieces.size() > 1) {
@@ -222,41 +239,64 @@ bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, c
       if (covering.empty()) continue;
       for (std::size_t& k : covering) k = group.pieces[k];
     }
-    const Keepers& keepers = regions[r].keepers = keepers_of(scene_, pieces_, covering, room_centre_);
-    regions[r].first_loser = losers.size();
-    std::copy_if(covering.begin(), covering.end(), std::back_inserter(losers),
-                 [&](std::size_t p) { return p != keepers.winner && p != keepers.back && !is_partial(p); });
-    regions[r].end_of_losers = losers.size();
+    Region& region = found.regions[r];
+    const Keepers& keepers = region.keepers = keepers_of(scene_, pieces_, covering, room_centre_);
+    region.first_loser = found.losers.size();
+    std::copy_if(covering.begin(), covering.end(), std::back_inserter(found.losers), [&](std::size_t p) {
+      return p != keepers.winner && p != keepers.back && !is_partial(p, lines);
+    });
+    region.end_of_losers = found.losers.size();
   }
-  const auto losers_of = [&](const Region& region) {
-    return std::span(losers).subspan(region.first_loser, region.end_of_losers - region.first_loser);
-  };
-  const std::size_t before = out_.size();
+  return found;
+}
+
+// Hands the triangles to those that keep them, and books the areas of regions and pieces.
+void GroupTriangulation::add_triangles(const PieceGroup& group, const PlanarTriangulation& cut,
+                                       const std::vector<std::uint32_t>& ids, GroupRegions& found) {
   for (const std::size_t p : group.pieces) meshed_[p] = covered_[p] = 0;
   for (std::size_t i = 0; i < cut.triangles.size(); ++i) {
-    Region& region = regions[cut.region[i]];
+    Region& region = found.regions[cut.region[i]];
     const auto [winner, back] = region.keepers;
     if (winner == Keepers::kNobody) continue;
     std::array<std::uint32_t, 3> t{ids[cut.triangles[i][0]], ids[cut.triangles[i][1]],
                                    ids[cut.triangles[i][2]]};
     const double area = area_of(t);
     region.area += area;
-    for (const std::size_t p : losers_of(region)) covered_[p] += area;
+    for (const std::size_t p : found.losers_of(region)) covered_[p] += area;
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     if (pieces_[winner].plane.normal.dot(group.plane.normal) < 0) std::swap(t[1], t[2]);
     meshed_[winner] += area;
     if (back != Keepers::kNobody) meshed_[back] += area;
     out_.push_back({t, winner, back});
   }
+}
+
+// Triangulates a group; returns false, leaving no trace but unused vertices, if area was lost.
+bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality,
+                              Lines lines) {
+  const PieceGroup group = groups_[g];
+  Drawing drawing = draw(group, cuts, lines);
+  const GroupOutlines outlines(vertices_, pieces_, group);
+  const auto inside = [&](const Vec2& p) { return outlines.cover(p); };
+  TriangleQuality limited = quality;
+  limited.most_new_points = std::min(quality.most_new_points, 1000 + 10 * drawing.points.size());
+  const PlanarTriangulation cut = triangulate_planar(drawing.points, drawing.segments, inside, limited);
+  const std::vector<std::uint32_t> ids = lift(group, cut, std::move(drawing.ids));
+
+  GroupRegions found = find_regions(group, outlines, cut, lines);
+  const std::size_t before = out_.size();
+  add_triangles(group, cut, ids, found);
   OverlapAreas overlap;
-  if (any_partial) cover_in_parts(g, outlines, std::span(out_).subspan(before), overlap);
+  if (std::any_of(group.pieces.begin(), group.pieces.end(),
+                  [&](std::size_t p) { return is_partial(p, lines); }))
+    cover_in_parts(g, outlines, std::span(out_).subspan(before), overlap);
   if (!std::all_of(group.pieces.begin(), group.pieces.end(),
                    [&](std::size_t p) { return conserves_area(p); })) {
     out_.resize(before);
     return false;
   }
-  for (const Region& region : regions)
-    for (const std::size_t p : losers_of(region))
+  for (const Region& region : found.regions)
+    for (const std::size_t p : found.losers_of(region))
       overlap[pair_of(keeper_against(region.keepers, p), p)] += region.area;
   for (const auto& [pair, area] : overlap) overlap_[{pair >> 32, pair & 0xffffffff}] = area;
   return true;
