@@ -65,6 +65,60 @@ std::vector<Index> ring_loop(Index first, int segments, bool reversed) {
   return loop;
 }
 
+/// A cylinder or cone; a tip has no cap.
+struct GivenCylinder {
+  Vec3 base{0, 0, 0}, top{0, 0, 1};
+  double radius = 1, top_radius = 1;
+  bool base_cap = true, top_cap = true;
+
+  double height() const { return (top - base).norm(); }
+  Vec3 axis() const { return (top - base) / height(); }
+};
+
+Surface exact(const GivenCylinder& given) {
+  Surface shape = given.top_radius == given.radius
+                      ? exact(Cylinder{given.base, given.top, given.radius, false})
+                      : exact(Cone{given.base, given.top, given.radius, given.top_radius, false});
+  if (given.base_cap) shape.shapes.emplace_back(Disk{given.base, -given.axis(), given.radius, 0});
+  if (given.top_cap) shape.shapes.emplace_back(Disk{given.top, given.axis(), given.top_radius, 0});
+  return shape;
+}
+
+Surface tessellated(const GivenCylinder& given, int segments) {
+  const Vec3 axis = given.axis();
+  const auto frame = frame_around(axis);
+  Surface shape;
+  const Index lower = append_ring(shape, given.base, frame, given.radius, segments);
+  const bool pointed = given.top_radius == 0;
+  const Index upper = static_cast<Index>(shape.positions.size());
+  if (pointed) {
+    shape.positions.push_back(given.top);
+  } else {
+    append_ring(shape, given.top, frame, given.top_radius, segments);
+  }
+  for (int i = 0; i < segments; ++i) {
+    // The mantle rises by height while the radius changes, so its normal leans by their ratio.
+    shape.normals.push_back(
+        (direction_at(frame, i, segments) * given.height() + axis * (given.radius - given.top_radius))
+            .normalized());
+  }
+  for (int i = 0; i < segments; ++i) {
+    const auto here = static_cast<Index>(i);
+    const auto next = static_cast<Index>((i + 1) % segments);
+    if (pointed) {
+      const auto apex_normal = static_cast<Index>(shape.normals.size());
+      shape.normals.push_back((shape.normals[here] + shape.normals[next]).normalized());
+      shape.faces.push_back({{lower + here, lower + next, upper}, {}, {here, next, apex_normal}, 0});
+    } else {
+      shape.faces.push_back(
+          {{lower + here, lower + next, upper + next, upper + here}, {}, {here, next, next, here}, 0});
+    }
+  }
+  if (given.base_cap) shape.faces.push_back({ring_loop(lower, segments, true), {}, {}, 0});
+  if (given.top_cap) shape.faces.push_back({ring_loop(upper, segments, false), {}, {}, 0});
+  return shape;
+}
+
 }  // namespace
 
 Surface read_sphere(const JsonCursor& at) {
@@ -109,58 +163,19 @@ Surface read_sphere(const JsonCursor& at) {
 
 Surface read_cylinder(const JsonCursor& at) {
   at.expect_object({"base", "top", "radius", "top_radius", "segments", "caps", "inward"});
-  const Vec3 base = at.at("base").place();
-  const Vec3 top = at.at("top").place();
-  const double height = (top - base).norm();
-  if (!(height > 0)) at.at("top").fail("base and top are the same point", "Give the ends of the axis.");
-  const double radius = at.at("radius").length();
-  const auto given_top = at.find("top_radius");
-  const double top_radius = given_top ? given_top->number_in(0, limits::kFarthest) : radius;
+  GivenCylinder given;
+  given.base = at.at("base").place();
+  given.top = at.at("top").place();
+  if (!((given.top - given.base).norm() > 0))
+    at.at("top").fail("base and top are the same point", "Give the ends of the axis.");
+  given.radius = at.at("radius").length();
+  const auto top_radius = at.find("top_radius");
+  given.top_radius = top_radius ? top_radius->number_in(0, limits::kFarthest) : given.radius;
   const auto given_caps = at.find("caps");
   const std::string caps = given_caps ? given_caps->choice({"both", "base", "top", "none"}) : "both";
-  const Vec3 axis = (top - base) / height;
-  if (!at.find("segments")) {
-    Surface shape = top_radius == radius ? exact(Cylinder{base, top, radius, false})
-                                         : exact(Cone{base, top, radius, top_radius, false});
-    if (caps == "both" || caps == "base") shape.shapes.emplace_back(Disk{base, -axis, radius, 0});
-    if ((caps == "both" || caps == "top") && top_radius > 0)
-      shape.shapes.emplace_back(Disk{top, axis, top_radius, 0});
-    flip_if_inward(at, shape);
-    return shape;
-  }
-  const int segments = read_segments(at);
-  const auto frame = frame_around(axis);
-
-  Surface shape;
-  const Index lower = append_ring(shape, base, frame, radius, segments);
-  const bool pointed = top_radius == 0;
-  const Index upper = static_cast<Index>(shape.positions.size());
-  if (pointed) {
-    shape.positions.push_back(top);
-  } else {
-    append_ring(shape, top, frame, top_radius, segments);
-  }
-  for (int i = 0; i < segments; ++i) {
-    // The mantle rises by height while the radius changes, so its normal leans by their ratio.
-    shape.normals.push_back(
-        (direction_at(frame, i, segments) * height + axis * (radius - top_radius)).normalized());
-  }
-  for (int i = 0; i < segments; ++i) {
-    const auto here = static_cast<Index>(i);
-    const auto next = static_cast<Index>((i + 1) % segments);
-    if (pointed) {
-      const auto apex_normal = static_cast<Index>(shape.normals.size());
-      shape.normals.push_back((shape.normals[here] + shape.normals[next]).normalized());
-      shape.faces.push_back({{lower + here, lower + next, upper}, {}, {here, next, apex_normal}, 0});
-    } else {
-      shape.faces.push_back(
-          {{lower + here, lower + next, upper + next, upper + here}, {}, {here, next, next, here}, 0});
-    }
-  }
-  if (caps == "both" || caps == "base") shape.faces.push_back({ring_loop(lower, segments, true), {}, {}, 0});
-  if ((caps == "both" || caps == "top") && !pointed) {
-    shape.faces.push_back({ring_loop(upper, segments, false), {}, {}, 0});
-  }
+  given.base_cap = caps == "both" || caps == "base";
+  given.top_cap = (caps == "both" || caps == "top") && given.top_radius > 0;
+  Surface shape = at.find("segments") ? tessellated(given, read_segments(at)) : exact(given);
   flip_if_inward(at, shape);
   return shape;
 }

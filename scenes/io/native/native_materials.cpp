@@ -38,6 +38,46 @@ bool is_photometric(const std::string& key) {
   return key == "luminance_cd_m2" || key == "exitance_lm_m2" || key == "total_flux_lm";
 }
 
+void expect_material(const JsonCursor& at) {
+  at.expect_object({"reflectance",
+                    "back_reflectance",
+                    "radiance",
+                    "exitance",
+                    "luminance_cd_m2",
+                    "exitance_lm_m2",
+                    "total_power",
+                    "total_flux_lm",
+                    "emission_color",
+                    "emission_exponent",
+                    "sides",
+                    "emission_sides",
+                    "mirror",
+                    "metal",
+                    "transmittance",
+                    "diffuse_transmittance",
+                    "glass",
+                    "roughness",
+                    "lobe",
+                    "texture",
+                    "emission_texture",
+                    "opacity",
+                    "opacity_texture",
+                    "opacity_cutoff"});
+}
+
+void read_reflectances(const JsonCursor& at, const BandSet& bands, Material& material) {
+  const auto reflectance = at.find("reflectance");
+  material.reflectance = reflectance ? read_reflectance(*reflectance, bands)
+                                     : Spectrum(Spectrum::Zero(static_cast<Eigen::Index>(bands.count())));
+  const auto back = at.find("back_reflectance");
+  if (!back) return;
+  material.back_reflectance = read_reflectance(*back, bands);
+  const auto sides = at.find("sides");
+  if (sides && sides->choice({"both", "front"}) == "front")
+    back->fail("the back of this material absorbs everything",
+               "Remove \"back_reflectance\", or \"sides\": \"front\".");
+}
+
 void read_sides(const JsonCursor& at, Material& material) {
   const std::vector<std::string> choices{"front", "both"};
   if (const auto sides = at.find("sides")) material.two_sided = sides->choice(choices) == "both";
@@ -142,80 +182,51 @@ NativeMaterials::NativeMaterials(const JsonCursor& materials, const std::filesys
                                  Scene& scene) {
   NativeTextures textures(folder, scene);
   for (const auto& [name, at] : materials.members()) {
-    at.expect_object({"reflectance",
-                      "back_reflectance",
-                      "radiance",
-                      "exitance",
-                      "luminance_cd_m2",
-                      "exitance_lm_m2",
-                      "total_power",
-                      "total_flux_lm",
-                      "emission_color",
-                      "emission_exponent",
-                      "sides",
-                      "emission_sides",
-                      "mirror",
-                      "metal",
-                      "transmittance",
-                      "diffuse_transmittance",
-                      "glass",
-                      "roughness",
-                      "lobe",
-                      "texture",
-                      "emission_texture",
-                      "opacity",
-                      "opacity_texture",
-                      "opacity_cutoff"});
+    expect_material(at);
     if (name.empty()) at.fail("a material needs a name", "Name it.");
     Material material;
     material.name = name;
-    material.reflectance = Spectrum::Zero(static_cast<Eigen::Index>(scene.bands.count()));
-    material.emitted_radiance = material.reflectance;
-    if (const auto reflectance = at.find("reflectance")) {
-      material.reflectance = read_reflectance(*reflectance, scene.bands);
-    }
-    if (const auto back = at.find("back_reflectance")) {
-      material.back_reflectance = read_reflectance(*back, scene.bands);
-      const auto sides = at.find("sides");
-      if (sides && sides->choice({"both", "front"}) == "front")
-        back->fail("the back of this material absorbs everything",
-                   "Remove \"back_reflectance\", or \"sides\": \"front\".");
-    }
+    read_reflectances(at, scene.bands, material);
     read_specular(at, scene.bands, material);
     read_gloss(at, material.non_diffuse);
     read_sides(at, material);
     const MaterialId id(scene.materials.size());
-    const char* emission = emission_key(at);
-    const std::string key = emission ? emission : "";
-    const auto colour = at.find("emission_color");
-    if (colour && !is_photometric(key)) {
-      colour->fail("a colour without a photometric emission",
-                   "Use it with luminance_cd_m2, exitance_lm_m2 or total_flux_lm.");
-    }
-    if (const auto exponent = at.find("emission_exponent")) {
-      if (!emission)
-        exponent->fail("an exponent without an emission", "Say how much it emits, or remove the exponent.");
-      material.emission_exponent = exponent->number_in(0, 1e4);
-    }
-    if (emission) {
-      const JsonCursor given = at.at(emission);
-      const Spectrum value = is_photometric(key) ? photometric_emission(given.strength(), colour, scene.bands)
-                                                 : read_emission(given, scene.bands);
-      if (!(value > 0).any())
-        given.fail(fmt::format("the material \"{}\" emits nothing, though its emission is given", name),
-                   "Remove the emission or give it power.");
-      if (key == "total_power" || key == "total_flux_lm") {
-        totals_.push_back({given, id, value});
-      } else {
-        const bool is_exitance = key == "exitance" || key == "exitance_lm_m2";
-        material.emitted_radiance = is_exitance ? radiance_of_exitance(value, material) : value;
-        check_strength(material.emitted_radiance, given);
-      }
-    }
+    read_emission_of(at, id, scene.bands, material);
     textures.read(at, material);
     ids_.emplace(name, id);
     scene.materials.push_back(std::move(material));
   }
+}
+
+void NativeMaterials::read_emission_of(const JsonCursor& at, MaterialId id, const BandSet& bands,
+                                       Material& material) {
+  const char* emission = emission_key(at);
+  const std::string key = emission ? emission : "";
+  const auto colour = at.find("emission_color");
+  if (colour && !is_photometric(key)) {
+    colour->fail("a colour without a photometric emission",
+                 "Use it with luminance_cd_m2, exitance_lm_m2 or total_flux_lm.");
+  }
+  if (const auto exponent = at.find("emission_exponent")) {
+    if (!emission)
+      exponent->fail("an exponent without an emission", "Say how much it emits, or remove the exponent.");
+    material.emission_exponent = exponent->number_in(0, 1e4);
+  }
+  material.emitted_radiance = Spectrum::Zero(static_cast<Eigen::Index>(bands.count()));
+  if (!emission) return;
+  const JsonCursor given = at.at(emission);
+  const Spectrum value = is_photometric(key) ? photometric_emission(given.strength(), colour, bands)
+                                             : read_emission(given, bands);
+  if (!(value > 0).any())
+    given.fail(fmt::format("the material \"{}\" emits nothing, though its emission is given", material.name),
+               "Remove the emission or give it power.");
+  if (key == "total_power" || key == "total_flux_lm") {
+    totals_.push_back({given, id, value});
+    return;
+  }
+  const bool is_exitance = key == "exitance" || key == "exitance_lm_m2";
+  material.emitted_radiance = is_exitance ? radiance_of_exitance(value, material) : value;
+  check_strength(material.emitted_radiance, given);
 }
 
 MaterialId NativeMaterials::find(const JsonCursor& name) const {

@@ -51,6 +51,10 @@ class NativeMaterials {
     MaterialId material;
     Spectrum power;  // [W] per band.
   };
+  /// The radiance and lobe of a material, of which all but the emission is read; what needs the area of its
+  /// surfaces is put down for later.
+  void read_emission_of(const JsonCursor& at, MaterialId id, const BandSet& bands, Material& material);
+
   std::map<std::string, MaterialId> ids_;
   std::vector<TotalPower> totals_;
 };
