@@ -19,6 +19,23 @@ bool is_polygonal(std::string_view keyword) {
   return keyword == "f" || keyword == "fh" || keyword == "prism";
 }
 
+/// Arguments of a geometric entity by their place in its line, from 1.
+class MgfArguments {
+ public:
+  MgfArguments(const MgfContexts& contexts, const TextLine& line, const std::string& where)
+      : contexts_(contexts), line_(line), where_(where) {}
+
+  const MgfVertex& vertex(std::size_t index) const {
+    return contexts_.vertices.find(line_.words[index], where_);
+  }
+  double number(std::size_t index) const { return mgf_number(line_, index, where_); }
+
+ private:
+  const MgfContexts& contexts_;
+  const TextLine& line_;
+  const std::string& where_;
+};
+
 }  // namespace
 
 bool MgfInterpreter::run_geometry(const File& file, const TextLine& line, const std::string& where) {
@@ -37,10 +54,7 @@ bool MgfInterpreter::run_geometry(const File& file, const TextLine& line, const 
 
 std::vector<Polygon> MgfInterpreter::faces_of(const TextLine& line, const std::string& where) {
   const std::string_view keyword = line.words[0];
-  const auto vertex = [&](std::size_t index) -> const MgfVertex& {
-    return contexts_.vertices.find(line.words[index], where);
-  };
-  const auto number = [&](std::size_t index) { return mgf_number(line, index, where); };
+  const MgfArguments given(contexts_, line, where);
   const auto roundness = [&](double radius) {
     const double scale = std::cbrt(std::abs(transform_.linear().determinant()));
     return mgf_roundness(scale * std::abs(radius), contexts_.materials.current().ed.value > 0);
@@ -53,32 +67,31 @@ std::vector<Polygon> MgfInterpreter::faces_of(const TextLine& line, const std::s
   if (keyword == "fh") return face_with_holes(line, where);
   if (keyword == "prism") {
     check_argument_count(line, 4, kMostArguments, where);
-    return mgf_prism(vertices_of(line, 1, last - 1, where), number(last), where);
+    return mgf_prism(vertices_of(line, 1, last - 1, where), given.number(last), where);
   }
   check_argument_count(line, 3, 3, where);
-  return mgf_torus(vertex(1), number(2), number(3), roundness(number(3)), where);
+  return mgf_torus(given.vertex(1), given.number(2), given.number(3), roundness(given.number(3)), where);
 }
 
 CurvedShape MgfInterpreter::curved_shape_of(const TextLine& line, const std::string& where) {
   const std::string_view keyword = line.words[0];
-  const auto vertex = [&](std::size_t index) -> const MgfVertex& {
-    return contexts_.vertices.find(line.words[index], where);
-  };
-  const auto number = [&](std::size_t index) { return mgf_number(line, index, where); };
+  const MgfArguments given(contexts_, line, where);
   if (keyword == "sph") {
     check_argument_count(line, 2, 2, where);
-    return mgf_sphere(vertex(1).position, number(2), where);
+    return mgf_sphere(given.vertex(1).position, given.number(2), where);
   }
   if (keyword == "cyl") {
     check_argument_count(line, 3, 3, where);
-    return mgf_cone(vertex(1).position, number(2), vertex(3).position, number(2), where);
+    return mgf_cone(given.vertex(1).position, given.number(2), given.vertex(3).position, given.number(2),
+                    where);
   }
   if (keyword == "cone") {
     check_argument_count(line, 4, 4, where);
-    return mgf_cone(vertex(1).position, number(2), vertex(3).position, number(4), where);
+    return mgf_cone(given.vertex(1).position, given.number(2), given.vertex(3).position, given.number(4),
+                    where);
   }
   check_argument_count(line, 3, 3, where);
-  return mgf_ring(vertex(1), number(2), number(3), where);
+  return mgf_ring(given.vertex(1), given.number(2), given.number(3), where);
 }
 
 std::vector<MgfVertex> MgfInterpreter::vertices_of(const TextLine& line, std::size_t first, std::size_t last,

@@ -57,13 +57,19 @@ class ObjChecker {
     }
   }
 
-  // x y z, then anything numeric: w, or a colour some programs add.
-  void check_numbers(const TextLine& line) {
+  // Before a comment, if one follows; all must be numbers.
+  std::size_t count_numbers(const TextLine& line) const {
     std::size_t count = 0;
     for (std::size_t i = 1; i < line.words.size() && line.words[i][0] != '#'; ++i, ++count)
       if (!parse_number(line.words[i]))
         throw InputError(where_, fmt::format("'{}' is not a finite number", line.words[i]),
                          "Was the file cut off?");
+    return count;
+  }
+
+  // x y z, then anything numeric: w, or a colour some programs add.
+  void check_numbers(const TextLine& line) {
+    const std::size_t count = count_numbers(line);
     if (line.words[0] == "v" && count >= 3) {
       const std::string problem = place_problem(
           {*parse_number(line.words[1]), *parse_number(line.words[2]), *parse_number(line.words[3])});
@@ -76,11 +82,7 @@ class ObjChecker {
 
   // u, then v and w or not.
   void check_texture_point(const TextLine& line) {
-    std::size_t count = 0;
-    for (std::size_t i = 1; i < line.words.size() && line.words[i][0] != '#'; ++i, ++count)
-      if (!parse_number(line.words[i]))
-        throw InputError(where_, fmt::format("'{}' is not a finite number", line.words[i]),
-                         "Was the file cut off?");
+    const std::size_t count = count_numbers(line);
     if (count < 1 || count > 3)
       throw InputError(where_, fmt::format("'vt' has {} numbers", count), "Give u and v.");
     clean_ += fmt::format("vt {} {}\n", line.words[1], count > 1 ? line.words[2] : "0");
