@@ -4,7 +4,6 @@
 #include <map>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "mesh/contact/contact_split.h"
@@ -21,6 +20,7 @@
 #include "mesh/triangulate/triangulate_groups.h"
 #include "mesh/zones/zone_sizing.h"
 #include "scenes/model/error.h"
+#include "scenes/model/measures.h"
 #include "scenes/model/memory.h"
 
 namespace reemit {
@@ -34,8 +34,7 @@ constexpr double kFreeLength = 3;
 constexpr double kFreeArea = 0.5;
 
 double area_of(const VertexTable& vertices, const RawTriangle& t) {
-  const Vec3& p0 = vertices[t.vertex[0]];
-  return 0.5 * (vertices[t.vertex[1]] - p0).cross(vertices[t.vertex[2]] - p0).norm();
+  return triangle_area(vertices[t.vertex[0]], vertices[t.vertex[1]], vertices[t.vertex[2]]);
 }
 
 void book_areas(const VertexTable& vertices, const std::vector<FacePiece>& pieces, const GroupTriangles& cut,

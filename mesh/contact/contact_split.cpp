@@ -14,6 +14,7 @@
 #include "mesh/pieces/plane_boxes.h"
 #include "mesh/pieces/segment_crossings.h"
 #include "mesh/shapes/shape_contacts.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {

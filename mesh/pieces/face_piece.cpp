@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "scenes/model/measures.h"
+
 namespace reemit {
 
 PlaneFrame PlaneFrame::make(const Vec3& origin, const Vec3& normal) {
@@ -36,26 +38,11 @@ Vec3 FacePiece::shading_normal(const VertexTable& vertices, const Vec3& p) const
   return length > 1e-6 ? Vec3(sum / length) : plane.normal;
 }
 
-Vec3 vector_area(const VertexTable& vertices, const Loop& loop) {
-  const Vec3& origin = vertices[loop[0]];  // relative to a corner, so that rooms far from 0 keep their digits
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < loop.size(); ++i)
-    sum += (vertices[loop[i]] - origin).cross(vertices[loop[i + 1]] - origin);
-  return 0.5 * sum;
-}
-
 int winding_number(const std::vector<Vec2>& loop, const Vec2& p) {
   int winding = 0;
   for (std::size_t i = 0; i < loop.size(); ++i)
     winding += winding_of_edge(loop[i], loop[(i + 1) % loop.size()], p);
   return winding;
-}
-
-double squared_distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return (a + t * along - p).squaredNorm();
 }
 
 PlanarLoops::PlanarLoops(const VertexTable& vertices, const FacePiece& piece, const PlaneFrame& plane) {

@@ -56,9 +56,6 @@ struct FacePiece {
   Vec3 shading_normal(const VertexTable& vertices, const Vec3& p) const;
 };
 
-/// Half the sum of cross products around a loop: its length is the area, its direction the normal (Newell).
-Vec3 vector_area(const VertexTable& vertices, const Loop& loop);
-
 /// What the edge from a to b contributes to the winding number around p: +1 upwards left of p, -1 downwards.
 inline int winding_of_edge(const Vec2& a, const Vec2& b, const Vec2& p) {
   if ((a.y() <= p.y()) == (b.y() <= p.y())) return 0;
@@ -69,8 +66,6 @@ inline int winding_of_edge(const Vec2& a, const Vec2& b, const Vec2& p) {
 
 /// Winding number of the loop around p: 0 outside, +1 inside of a counter-clockwise simple loop.
 int winding_number(const std::vector<Vec2>& loop, const Vec2& p);
-
-double squared_distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b);
 
 /// The loops of a piece in the coordinates of some plane.
 struct PlanarLoops {

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "scenes/model/measures.h"
+
 namespace reemit {
 namespace {
 
@@ -17,12 +19,6 @@ const Vec3& place(const Surface& surface, const Face& face, std::uint32_t corner
 Vec3 twice_area(const Surface& surface, const Face& face, const Corners& t) {
   const Vec3& a = place(surface, face, t[0]);
   return (place(surface, face, t[1]) - a).cross(place(surface, face, t[2]) - a);
-}
-
-Vec3 newell_normal(const Surface& surface, const Face& face) {
-  Vec3 sum = Vec3::Zero();
-  for (std::uint32_t i = 1; i + 1 < face.outer.size(); ++i) sum += twice_area(surface, face, {0, i, i + 1});
-  return sum;
 }
 
 /// Of three corners that follow each other or not, those that span the most.
@@ -91,7 +87,7 @@ bool has_affine_texture(const Surface& surface, const Face& face) {
 std::vector<Corners> texture_triangles(const Surface& surface, const Face& face) {
   if (face.outer.size() <= 3) return {{0, 1, 2}};
   if (has_affine_texture(surface, face)) return {widest_triangle(surface, face)};
-  const Vec3 normal = newell_normal(surface, face);
+  const Vec3 normal = outline_area(surface.positions, face.outer);
   std::vector<std::uint32_t> left(face.outer.size());
   for (std::uint32_t i = 0; i < left.size(); ++i) left[i] = i;
   std::vector<Corners> triangles;

@@ -12,6 +12,7 @@
 #include "mesh/pieces/texture_split.h"
 #include "scenes/io/common/polygon_loops.h"
 #include "scenes/model/error.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
@@ -28,15 +29,8 @@ struct FaceLoops {
   std::vector<std::vector<Corner>> loops;
 };
 
-double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return 0.5 * (b - a).cross(c - a).norm();
-}
-
 Vec3 vector_area_as_read(const std::vector<Corner>& loop) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < loop.size(); ++i)
-    sum += (loop[i].read - loop[0].read).cross(loop[i + 1].read - loop[0].read);
-  return 0.5 * sum;
+  return loop_area(loop, [](const Corner& corner) -> const Vec3& { return corner.read; });
 }
 
 class PolygonRepair {
@@ -186,7 +180,7 @@ bool PolygonRepair::finish_plane(FacePiece& piece, const FaceLoops& polygon, dou
     sum += vertices_[v] - vertices_[outline[0]];
   }
   piece.diameter = (high - low).norm();
-  const Vec3 area = vector_area(vertices_, outline);
+  const Vec3 area = outline_area(vertices_, outline);
   const double smallest = std::max(kSmallestArea * tolerances_.diagonal * tolerances_.diagonal,
                                    0.5 * tolerances_.weld * piece.diameter);
   if (area.norm() <= smallest) return false;

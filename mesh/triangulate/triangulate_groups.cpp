@@ -10,13 +10,13 @@
 #include <unordered_map>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "mesh/contact/group_outlines.h"
 #include "mesh/pieces/face_notes.h"
 #include "mesh/pieces/plane_boxes.h"
 #include "scenes/model/error.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
@@ -132,7 +132,7 @@ class GroupTriangulation {
   void report_lamps_turned_away();
 
   double area_of(const std::array<std::uint32_t, 3>& t) const {
-    return 0.5 * (vertices_[t[1]] - vertices_[t[0]]).cross(vertices_[t[2]] - vertices_[t[0]]).norm();
+    return triangle_area(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]);
   }
 
   const Scene& scene_;

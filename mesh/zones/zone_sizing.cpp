@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
@@ -58,10 +58,9 @@ void size_zones(BaseMesh& mesh, double zone_area, const std::vector<bool>& dark)
   while (least > 1 && patches * least * least > kCheap) least /= 2;
   double zones = 0;
   for (BaseTriangle& t : mesh.triangles) {
-    const Vec3& p0 = mesh.vertices[t.vertex[0]];
-    const double area =
-        t.is_curved() ? curved[t.shape].patch_area()
-                      : 0.5 * (mesh.vertices[t.vertex[1]] - p0).cross(mesh.vertices[t.vertex[2]] - p0).norm();
+    const double area = t.is_curved() ? curved[t.shape].patch_area()
+                                      : triangle_area(mesh.vertices[t.vertex[0]], mesh.vertices[t.vertex[1]],
+                                                      mesh.vertices[t.vertex[2]]);
     const TriangleId id(static_cast<std::size_t>(&t - mesh.triangles.data()));
     if (!dark.empty() && dark[id.index()]) {
       zones += (t.two_sided ? 2.0 : 1.0) * t.divisions * t.divisions;

@@ -9,6 +9,7 @@
 
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
@@ -317,15 +318,10 @@ void check_luminous_surfaces(const Scene& scene) {
     if (!scene.material_of(surface).emits() || !surface.shapes.empty()) continue;
     const bool has_area = std::any_of(surface.faces.begin(), surface.faces.end(), [&](const Face& face) {
       const Vec3& first = surface.positions[face.outer[0]];
-      Vec3 twice = Vec3::Zero();
       double size2 = 0;
-      for (std::size_t i = 1; i < face.outer.size(); ++i) {
-        const Vec3 a = surface.positions[face.outer[i]] - first;
-        const Vec3 b = surface.positions[face.outer[(i + 1) % face.outer.size()]] - first;
-        twice += a.cross(b);
-        size2 = std::max(size2, a.squaredNorm());
-      }
-      return twice.norm() > kFlat * size2;
+      for (const std::uint32_t v : face.outer)
+        size2 = std::max(size2, (surface.positions[v] - first).squaredNorm());
+      return 2 * outline_area(surface.positions, face.outer).norm() > kFlat * size2;
     });
     if (!has_area)
       throw InputError(in_file(scene, fmt::format("surface '{}'", surface.name)),

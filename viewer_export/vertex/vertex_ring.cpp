@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "mesh/zones/zone_cells.h"
+#include "scenes/model/measures.h"
 #include "viewer_export/vertex/kept_cells.h"
 
 namespace reemit {
@@ -73,14 +74,10 @@ struct RingBlock {
 };
 constexpr std::size_t kVerticesPerBlock = 1024;
 
-double turn_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return 0.5 * (b - a).cross(c - a).norm();
-}
-
 /// Area over the square of the longest edge: small for slivers.
 double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return longest > 0 ? turn_area(a, b, c) / longest : 0;
+  return longest > 0 ? triangle_area(a, b, c) / longest : 0;
 }
 
 }  // namespace

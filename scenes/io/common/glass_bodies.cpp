@@ -15,20 +15,12 @@
 #include <fmt/format.h>
 
 #include "scenes/io/common/surface_geometry.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
 
 using Triangle = std::array<Vec3, 3>;
-
-/// Towards where the loop runs counter-clockwise; of twice its area.
-Vec3 direction_of(const Surface& surface, const std::vector<std::uint32_t>& loop) {
-  const Vec3& a = surface.positions[loop[0]];
-  Vec3 twice = Vec3::Zero();
-  for (std::size_t k = 2; k < loop.size(); ++k)
-    twice += (surface.positions[loop[k - 1]] - a).cross(surface.positions[loop[k]] - a);
-  return twice;
-}
 
 /// A closed surface of glass: faces of one material that share corners, or a sphere.
 struct GlassBody {
@@ -85,9 +77,9 @@ class GlassNet {
       const Face& face = surface.faces[f];
       Part part{0, number, f, {}};
       part.corner = add_loop(surface, face.outer, part.triangles);
-      const Vec3 area = direction_of(surface, face.outer);
+      const Vec3 area = outline_area(surface.positions, face.outer);
       for (std::vector<std::uint32_t> hole : face.holes) {
-        if (direction_of(surface, hole).dot(area) > 0) std::reverse(hole.begin(), hole.end());
+        if (outline_area(surface.positions, hole).dot(area) > 0) std::reverse(hole.begin(), hole.end());
         join(part.corner, add_loop(surface, hole, part.triangles));
       }
       parts_.push_back(std::move(part));

@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "scenes/model/measures.h"
+
 namespace reemit {
 namespace {
 
@@ -50,26 +52,17 @@ std::vector<Loop> cut_at_repeated_corners(const Polygon& polygon) {
   return loops;
 }
 
-using Point = std::array<double, 2>;
+using Point = Eigen::Vector2d;
 
 // A loop seen along the largest component of the polygon's area.
 struct FlatLoop {
   std::vector<Point> points;
 
   FlatLoop(const std::vector<Vec3>& corners, Eigen::Index dropped) {
-    for (const Vec3& c : corners) points.push_back({c[(dropped + 1) % 3], c[(dropped + 2) % 3]});
+    for (const Vec3& c : corners) points.emplace_back(c[(dropped + 1) % 3], c[(dropped + 2) % 3]);
   }
   const Point& next(std::size_t i) const { return points[(i + 1) % points.size()]; }
 };
-
-double squared_distance_to_edge(const Point& p, const Point& a, const Point& b) {
-  const Point along{b[0] - a[0], b[1] - a[1]};
-  const Point from{p[0] - a[0], p[1] - a[1]};
-  const double length2 = along[0] * along[0] + along[1] * along[1];
-  const double t =
-      length2 > 0 ? std::clamp((from[0] * along[0] + from[1] * along[1]) / length2, 0.0, 1.0) : 0.0;
-  return std::pow(from[0] - t * along[0], 2) + std::pow(from[1] - t * along[1], 2);
-}
 
 bool contains(const FlatLoop& loop, const Point& p) {
   bool inside = false;
@@ -85,11 +78,11 @@ bool contains(const FlatLoop& loop, const Point& p) {
 // that is farthest from the rim of the outer one.
 bool encloses(const FlatLoop& outer, const FlatLoop& inner) {
   double farthest = -1;
-  Point asked{};
+  Point asked(0, 0);
   const auto consider = [&](const Point& p) {
     double to_rim = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < outer.points.size(); ++k)
-      to_rim = std::min(to_rim, squared_distance_to_edge(p, outer.points[k], outer.next(k)));
+      to_rim = std::min(to_rim, squared_distance_to_segment(p, outer.points[k], outer.next(k)));
     if (to_rim <= farthest) return;
     farthest = to_rim;
     asked = p;
@@ -97,7 +90,7 @@ bool encloses(const FlatLoop& outer, const FlatLoop& inner) {
   for (std::size_t i = 0; i < inner.points.size(); ++i) {
     const Point &a = inner.points[i], &b = inner.next(i);
     consider(a);
-    consider({0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])});
+    consider(0.5 * (a + b));
   }
   return contains(outer, asked);
 }
@@ -122,12 +115,6 @@ void turn(Loop& loop) {
 }
 
 }  // namespace
-
-Vec3 loop_area(const std::vector<Vec3>& loop) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < loop.size(); ++i) sum += (loop[i] - loop[0]).cross(loop[i + 1] - loop[0]);
-  return sum / 2;
-}
 
 std::vector<Polygon> split_at_seams(Polygon polygon) {
   std::vector<Loop> loops = cut_at_repeated_corners(polygon);

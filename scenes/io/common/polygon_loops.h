@@ -14,9 +14,6 @@ struct Polygon {
   std::vector<TexturePoint> texture_points = {};  ///< One per outer corner, or none.
 };
 
-/// Area times unit normal of a closed loop (Newell's sum): exact for planar loops, the mean for others.
-Vec3 loop_area(const std::vector<Vec3>& loop);
-
 /// Cuts an outline that visits a corner more than once into simple loops: a hole that is tied to its outline
 /// by a seam (an edge traversed both ways) becomes a proper hole, dangling edges and repeated corners vanish,
 /// islands joined by seams become polygons of their own. How deep the loops lie in each other decides which

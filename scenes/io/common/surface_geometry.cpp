@@ -2,18 +2,11 @@
 
 #include <algorithm>
 
+#include "scenes/model/measures.h"
+
 namespace reemit {
 
 namespace {
-
-double loop_area(const Surface& surface, const std::vector<std::uint32_t>& loop) {
-  const Vec3& origin = surface.positions[loop[0]];  // Keeps the products small far from the room's origin.
-  Vec3 twice = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-    twice += (surface.positions[loop[i]] - origin).cross(surface.positions[loop[i + 1]] - origin);
-  }
-  return 0.5 * twice.norm();
-}
 
 void reverse_loops(Surface& surface) {
   for (Face& face : surface.faces) {
@@ -27,8 +20,8 @@ void reverse_loops(Surface& surface) {
 }  // namespace
 
 double face_area(const Surface& surface, const Face& face) {
-  double area = loop_area(surface, face.outer);
-  for (const auto& hole : face.holes) area -= loop_area(surface, hole);
+  double area = outline_area(surface.positions, face.outer).norm();
+  for (const auto& hole : face.holes) area -= outline_area(surface.positions, hole).norm();
   return std::max(area, 0.0);
 }
 

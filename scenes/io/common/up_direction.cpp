@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "scenes/io/common/text_parse.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
@@ -18,16 +19,6 @@ std::string extension_of(const Scene& scene) {
   return lower_case_extension(scene.source);
 }
 
-/// Twice the area of a face times its normal.
-Vec3 doubled_area_vector(const Surface& surface, const Face& face) {
-  Vec3 sum(0, 0, 0);
-  const Vec3& origin = surface.positions[face.outer.front()];
-  for (std::size_t i = 1; i + 1 < face.outer.size(); ++i) {
-    sum += (surface.positions[face.outer[i]] - origin).cross(surface.positions[face.outer[i + 1]] - origin);
-  }
-  return sum;
-}
-
 /// Mean of the normals of emitting faces, weighted by power: of unit length if all look the same way.
 Vec3 mean_emission_direction(const Scene& scene) {
   Vec3 sum(0, 0, 0);
@@ -36,12 +27,12 @@ Vec3 mean_emission_direction(const Scene& scene) {
     const Material& material = scene.material_of(surface);
     if (!material.emits()) continue;
     for (const Face& face : surface.faces) {
-      const Vec3 weighted = material.emitted_radiance.sum() * doubled_area_vector(surface, face);
+      const Vec3 weighted = material.emitted_radiance.sum() * outline_area(surface.positions, face.outer);
       total += weighted.norm();
       if (!material.emits_both_sides) sum += weighted;
     }
     for (const CurvedShape& shape : surface.shapes) {  // all but disks emit to all sides alike
-      const double power = material.emitted_radiance.sum() * 2 * shape_area(shape);
+      const double power = material.emitted_radiance.sum() * shape_area(shape);
       total += power;
       const auto* disk = std::get_if<Disk>(&shape);
       if (disk != nullptr && !material.emits_both_sides) sum += power * disk->normal;

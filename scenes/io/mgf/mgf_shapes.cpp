@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 #include "scenes/io/common/polygon_loops.h"
+#include "scenes/model/measures.h"
 #include "scenes/model/scene.h"
 
 namespace reemit::test {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/model/measures.h"
 #include "tests/scenes/io/face_area.h"
 
 namespace reemit {
