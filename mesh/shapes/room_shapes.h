@@ -27,6 +27,7 @@ struct RoomShapes {
   std::optional<Scene> faceted;      ///< The room with flat faces in place of the other shapes, if any.
   FacetedShapes facets;
 
+  // Of the surface that exact shape i belongs to.
   bool emits(const Scene& scene, std::size_t i) const {
     return scene.material_of(scene.surfaces[surface[i].index()]).emits();
   }

@@ -19,6 +19,9 @@ struct ZoneTopologyTraits : OpenMesh::DefaultTraits {
 /// does not cross. Vertex normals are the shading normals (towards the side of the cell).
 using ZoneTopology = OpenMesh::PolyMesh_ArrayKernelT<ZoneTopologyTraits>;
 
+/// Of all cells of the mesh. Flat faces that meet along an edge share its vertices where their normals are at
+/// most this angle [degree] apart, as MeshSettings::crease_angle_deg [0, 180]; round shapes are smooth in
+/// themselves whatever it is.
 ZoneTopology make_zone_topology(const ZoneMesh& mesh, double crease_angle_deg);
 
 }  // namespace reemit

@@ -10,6 +10,7 @@ namespace reemit {
 /// BandSet.
 using Spectrum = Eigen::ArrayXd;
 
+/// What the bands of a room are.
 enum class BandKind { kGrey, kRgb, kSpectral };
 
 /// A range of wavelengths [nm], from <= to.
@@ -23,6 +24,7 @@ struct WavelengthRange {
 /// A radiometric value of a band is the power *within* that band, not a density per nanometre.
 class BandSet {
  public:
+  /// One band, and three of linear Rec.709 [ITU709].
   static BandSet grey();
   static BandSet rgb();
   /// Centres [nm], strictly increasing, at least one; throws std::invalid_argument otherwise.

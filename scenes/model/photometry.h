@@ -22,6 +22,7 @@ enum class PhotometricType : std::uint8_t {
 struct GoniometerAxes {
   Vec3 pole, zero, ninety;
 };
+/// As the angles of each type are defined above [LM63].
 GoniometerAxes goniometer_axes(PhotometricType type);
 
 /// Integral over [a,b] of f(t) sin(t) dt, f linear from f(a) = fa to f(b) = fb; angles in radians. Closed

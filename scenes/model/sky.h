@@ -82,8 +82,11 @@ struct Sky {
   Vec3 towards_sun() const { return towards(sun->altitude, sun->azimuth); }
 };
 
-/// What falls on a horizontal plane outside [W/m2] per band: from the sky alone, and from the sun.
+/// What falls on a horizontal plane outside from the sky alone [W/m2] per band; of an image, the integral of
+/// its upper half.
 Spectrum horizontal_sky_irradiance(const Sky& sky, const BandSet& bands);
+/// What comes there from the sun: its irradiance across the beam times the sine of its altitude [W/m2] per
+/// band; 0 if no sun shines.
 Spectrum horizontal_sun_irradiance(const Sky& sky, const BandSet& bands);
 /// Radiance of the ground below the horizon [W/(m2 sr)]. Pre: it has a reflectance.
 Spectrum ground_radiance(const Sky& sky, const BandSet& bands);

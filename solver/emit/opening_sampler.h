@@ -17,6 +17,7 @@ struct FlatOpening {
   Vec3 along0, along1;
   Vec3 point(double u0, double u1) const { return (u0 - 0.5) * along0 + (u1 - 0.5) * along1; }
 };
+/// Nothing for an opening of another form.
 std::optional<FlatOpening> flat_opening(const LuminousOpening& opening);
 
 /// Greatest of length, width and height [m]; 0 for a point.

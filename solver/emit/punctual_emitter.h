@@ -14,6 +14,7 @@ namespace reemit {
 /// members that the functions below call; a further kind is a further file and a further name here.
 using PunctualEmitter = std::variant<PointEmitter, SpotEmitter, DirectionalEmitter, PhotometricEmitter>;
 
+/// `rays`: of the room, for its normalised space.
 PunctualEmitter make_punctual_emitter(const PunctualLight& light, const RayTracer& rays);
 
 /// Intensity [W/sr] on the axis, irradiance [W/m2] across the beam of a directional light, or intensity per

@@ -5,6 +5,7 @@ namespace reemit {
 /// Light over an area from points that were looked at twice, with noise that is independent.
 class LightSpread {
  public:
+  /// A point by its two looks, in any unit.
   void add(double first_look, double second_look) {
     first_ += first_look;
     second_ += second_look;

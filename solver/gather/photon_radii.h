@@ -14,6 +14,7 @@ namespace reemit {
 /// Radius of the kernel of a photon [normalised: half the longest side of the room is 1], from a byte: 0 for
 /// the largest, each step a 24th of an octave less.
 inline constexpr float kLargestPhotonRadius = 0.025F;
+/// [normalised], in (0, kLargestPhotonRadius].
 float photon_radius(std::uint8_t code);
 
 /// Photons of all parts together that lie in the radius of one, if that is not the largest.
@@ -21,6 +22,7 @@ inline constexpr int kPhotonsInRadius = 160;
 
 /// Radii that halve from one to the next, from the largest on.
 inline constexpr std::size_t kRadiusLevels = 6;
+/// [normalised]. Pre: level < kRadiusLevels.
 constexpr float radius_of_level(std::size_t level) {
   return kLargestPhotonRadius / static_cast<float>(1U << level);
 }

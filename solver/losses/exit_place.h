@@ -13,6 +13,9 @@ struct ExitPlace {
   std::set<SurfaceId> surfaces;  ///< That make the rim.
 };
 
+/// `origin`, unit `direction` [normalised]: of a ray that met nothing. Rays tilted in eight directions about
+/// it, more and more up to some 76 degrees, look for the rim; the width is infinite where no two opposite
+/// ones meet it. Deterministic.
 ExitPlace find_exit(const RayTracer& rays, const Vec3f& origin, const Vec3f& direction);
 
 /// True if nothing, or next to nothing, lies in the half space before the start of a ray that left the room.

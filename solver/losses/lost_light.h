@@ -22,13 +22,14 @@ struct LightLoss {
   std::vector<SurfaceId> surfaces;  ///< That make the rim of a gap, or that the light left from; two at most.
 };
 
-/// Places where light leaves the room, by probes that leave luminaires and zones as their light does; largest
-/// first. Deterministic. Throws Interrupted when `stop` (may be null) is requested.
+/// Light that leaves the room.
 struct EscapedLight {
-  std::vector<LightLoss> places;
-  double through_gaps = 0;      ///< Share of the emitted power [0,1], by probes.
-  double through_openings = 0;  ///< Share of the emitted power [0,1], by probes.
+  std::vector<LightLoss> places;  ///< Where it does so; largest first.
+  double through_gaps = 0;        ///< Share of the emitted power [0,1], by probes.
+  double through_openings = 0;    ///< Share of the emitted power [0,1], by probes.
 };
+/// By probes that leave luminaires and zones as their light does. Deterministic. Throws Interrupted when
+/// `stop` (may be null) is requested.
 EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emission,
                           const Solution& solution, const StopToken* stop = nullptr);
 

@@ -29,6 +29,7 @@ class FormFactors {
   double factor(std::size_t i, std::size_t j) const { return exchange_area(i, j) / areas_[i]; }
   /// Its standard error: 0 for exact pairs, and for those that all rays found clear or hidden.
   double factor_error(std::size_t i, std::size_t j) const;
+  /// By zone, the sum of its factors to all others [1]: 1 where nothing leaks.
   Eigen::VectorXd row_sums() const;
 
   const SymmetricTable<double>& exchange() const { return exchange_; }

@@ -27,13 +27,17 @@ class ZoneLeaks {
   ZoneLeaks() = default;
   explicit ZoneLeaks(std::vector<std::vector<LeakAccount>> of_zone) : of_zone_(std::move(of_zone)) {}
 
+  /// No two of the same account; empty if all rays met zones.
   std::span<const LeakAccount> of(std::size_t zone) const { return of_zone_[zone]; }
+  /// All rays met zones.
   bool closed(std::size_t zone) const { return of_zone_[zone].empty(); }
 
  private:
   std::vector<std::vector<LeakAccount>> of_zone_;
 };
 
+/// By kRaysPerZone rays from uniform points of every zone, in the task arena of the caller. The same for the
+/// same seed on any number of threads.
 ZoneLeaks trace_leaks(const RayTracer& rays, std::uint64_t seed);
 
 inline constexpr std::uint32_t kRaysPerLight = 16384;

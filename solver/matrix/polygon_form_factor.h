@@ -9,6 +9,7 @@ struct FacingPair {
   ConvexPolygon a, b;
   bool empty() const { return a.count == 0 || b.count == 0; }
 };
+/// Pre: both have corners, less than ConvexPolygon::kMostCorners.
 FacingPair facing_parts(const ConvexPolygon& a, const ConvexPolygon& b);
 
 /// Area times form factor A_a F_ab = A_b F_ba [m2] of two facing parts with nothing between them: the double

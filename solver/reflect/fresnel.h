@@ -47,6 +47,7 @@ struct PaneShares {
   double reflected;
   double transmitted;
 };
+/// Pre: r and once in [0,1].
 inline PaneShares pane_shares(double r, double once) {
   const double open = (1 - r) * (1 - r) / std::max(1 - r * r * once * once, 1e-12);
   // At grazing incidence both surfaces reflect everything, and what is between them does not matter.

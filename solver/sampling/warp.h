@@ -56,6 +56,7 @@ inline Vec3f sample_cosine_hemisphere(float u0, float u1) {
   const Point2 d = sample_disk(u0, u1);
   return {d.x, d.y, std::sqrt(std::max(0.0F, 1 - d.x * d.x - d.y * d.y))};
 }
+/// [1/sr]; 0 below the horizon.
 inline float cosine_hemisphere_pdf_per_sr(float cos_theta) {
   return std::max(0.0F, cos_theta) * std::numbers::inv_pi_v<float>;
 }

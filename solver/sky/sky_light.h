@@ -39,6 +39,7 @@ class SkyLight {
   /// Share of the light from there that is left to rays drawn with this density [1/sr] from a lobe, shadow
   /// rays counting the rest: the balance heuristic [VG95] against directions drawn by brightness alone.
   float sky_found_by_lobe(const Vec3f& towards, float pdf_per_sr) const;
+  /// The same of the sun. Pre: has_sun().
   float sun_found_by_lobe(float pdf_per_sr) const;
 
   // Shadow rays.
@@ -52,6 +53,7 @@ class SkyLight {
   const Spectrum& sun_strength() const { return sun_irradiance_; }
   /// About what arrives at x per unit of strength; never 0 for the sky.
   float expected_from_sky(const Vec3f& x, const Vec3f& normal) const;
+  /// The cosine to the middle of the sun; a little above 0 while only its rim is up. Pre: has_sun().
   float expected_from_sun(const Vec3f& normal) const;
   Sample sample_sky(const Vec3f& x, const Vec3f& normal, float u0, float u1) const;
   Sample sample_sun(const Vec3f& normal, float u0, float u1) const;
@@ -76,6 +78,7 @@ class SkyLight {
   /// mean_need().
   double worth() const { return survey().worth; }
   double mean_need() const { return survey().mean_need; }
+  /// A packet of a cell, by uniform numbers in [0,1).
   SkyRay start(std::size_t cell, float u0, float u1, float u2, float u3) const;
 
   /// How many packets light that leaves a surface at x should be carried on by, over those of a surface that

@@ -30,7 +30,7 @@ struct BandAudit {
   double roulette_gain = 0;
 
   RunQuanta total_absorbed() const;  ///< Fronts and backs of all surfaces.
-  RunQuanta total_escaped() const;
+  RunQuanta total_escaped() const;   ///< In all directions.
   /// unshot over emitted; 0 if nothing was emitted.
   double unshot_share() const;
   /// emitted - absorbed - escaped - unshot + roulette; 0 unless the program is wrong; what 64 bits do not
@@ -68,9 +68,9 @@ struct EnergyAudit {
   std::int64_t weight = 0;  ///< Of all batches together (ZoneSums).
   RareEvents events;        ///< None are counted by the matrix method.
 
-  bool balanced() const;
-  double unshot_share() const;  ///< Of all bands together, each band counting alike.
-  double worst_unshot_share() const;
+  bool balanced() const;              ///< BandAudit::balance of every channel is 0.
+  double unshot_share() const;        ///< Of all bands together, each band counting alike.
+  double worst_unshot_share() const;  ///< Of the band with most.
   /// Power [W] of a number of quanta of this band.
   double watts(const BandAudit& band, RunQuanta quanta) const {
     return watts(band, static_cast<double>(quanta));

@@ -13,6 +13,7 @@ namespace reemit {
 /// hex digits.
 std::string seal_of(std::string_view bytes);
 
+/// What the last line of a file says: the right checksum, nothing, or a wrong one.
 enum class Seal { kIntact, kMissing, kBroken };
 
 /// Reads a whole file and compares. A file that cannot be read has no seal.

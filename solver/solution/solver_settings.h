@@ -4,7 +4,9 @@
 
 namespace reemit {
 
+/// How the light of zones is found.
 enum class SolveMethod { kShooting, kWalk, kMatrix };
+/// Where the numbers of packets come from: independent ones, or sequences of low discrepancy.
 enum class SamplingKind { kRandom, kSobol };
 /// Where packets leave a zone that reflects them: where light met it, or anywhere in it with equal odds, as
 /// the matrix method has it.

@@ -14,6 +14,7 @@ struct ZoneSummary {
   double sealed_area = 0;        ///< [m2]
 };
 
+/// Counts the zones of a mesh.
 ZoneSummary summarise_zones(const ZoneMesh& mesh);
 
 /// The part of all incident light that came to sealed zones; 0 if all is as it should be. Worst band.

@@ -25,10 +25,12 @@ struct Seen {
   float first_look, second_look;
 };
 
+/// A point of a cell and what was seen there.
 struct SeenPoint {
-  InCell at;  ///< Of a cell.
+  InCell at;
   Seen seen;
 };
+/// The light over the area that the points are spread over evenly. Its variance needs two points.
 LightSpread spread_of(std::span<const SeenPoint> points);
 
 /// A quick solution on coarse zones, and what it says about the light on other cells of the same triangles:
@@ -50,6 +52,7 @@ class PilotLight {
   /// What cells are looked at with. One per thread.
   class Looker {
    public:
+    /// `pilot` must outlive it.
     explicit Looker(const PilotLight& pilot);
     /// Looks at points of the cell, twice at each, with halves of the pilot solution. The same for the same
     /// cell and effort; what is seen at points of cells of one side can be compared, for all send the same

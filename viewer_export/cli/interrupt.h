@@ -20,6 +20,7 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
+  /// From here on signals are its own.
   void begin();
   /// Becomes true at the first signal.
   const std::atomic<bool>& requested() const;

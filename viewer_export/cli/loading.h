@@ -13,15 +13,19 @@ namespace reemit::cli {
 // What comes before a command can begin, with a line of progress where it takes longer than a second. Nothing
 // guards it: a signal ends the program at once.
 
+/// As read_scene.
 Scene load_room(const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                 const OutputStyle& style);
+/// As build_zones.
 MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style);
 /// True for a solution file, also one that is cut short at its start, empty or not there.
 bool is_meant_as_solution(const std::filesystem::path& file);
+/// As reemit::load_solution.
 Solution load_solution(const std::filesystem::path& file, const OutputStyle& style);
 /// As read_room_of.
 Scene load_room_of(const Solution& solution, const std::filesystem::path& solution_file,
                    const std::vector<std::filesystem::path>& override, const OutputStyle& style);
+/// Scene and mesh must outlive the room.
 Room build_room(const Scene& scene, const ZoneMesh& mesh, const OutputStyle& style);
 
 }  // namespace reemit::cli

@@ -27,10 +27,12 @@ class RunLog {
   static void check(const std::filesystem::path& file, const std::filesystem::path& room,
                     const std::filesystem::path& solution);
 
+  /// Replaces the file and writes the first line. Throws OutputError when that cannot be done.
   RunLog(const std::filesystem::path& file, const Run& run);
 
   /// A batch, or for the matrix method a further hundredth of the work.
   void add(const SolveProgress& now);
+  /// The last line.
   void finish(const Solution& solution);
 
  private:

@@ -29,6 +29,7 @@ nlohmann::ordered_json solve_json(const Scene& scene, const Solution& solution,
 /// What `info` says about a solution. `room_status` in words: whether the room is still the one solved.
 std::string solution_text(const Solution& solution, const std::filesystem::path& file,
                           const std::string& room_status);
+/// The same as the document of `info --json` (docs/command_line.md).
 nlohmann::ordered_json solution_json(const Solution& solution, const std::filesystem::path& file,
                                      const std::string& room_status);
 

@@ -24,6 +24,7 @@ struct FormFactorData {
 struct FormFactorFormat {
   std::string_view extension;    ///< Lower case with the dot: ".csv".
   std::string_view description;  ///< For --help.
+  /// Throws InputError for more than the format holds, ResourceError when the file cannot be written.
   void (*write)(const FormFactorData& data, OutputFile& file);
 };
 

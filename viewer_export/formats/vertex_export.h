@@ -28,6 +28,7 @@ struct VertexColours {
     return tone_map(Eigen::Array3d(rgb[3 * vertex], rgb[3 * vertex + 1], rgb[3 * vertex + 2]));
   }
 };
+/// Pre: the data has its tone map.
 VertexColours colours_of(const VertexData& data);
 
 /// How far the backs of two-sided surfaces are moved off their fronts in files made for viewing [m]: 1/20,000

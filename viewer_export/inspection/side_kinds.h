@@ -34,6 +34,7 @@ struct SideKindStyle {
 
   std::string hex() const;  ///< "#d4148c".
 };
+/// The same for every picture.
 const SideKindStyle& style_of(SideKind kind);
 
 /// By side (mesh/zones/side.h); of sides without zones, which no picture shows, that of their front.
@@ -41,6 +42,7 @@ std::vector<SideKind> kinds_of_sides(const Scene& scene, const MeshResult& meshe
 
 /// A side without light (ZoneMesh::is_sealed of its zones).
 bool is_sealed(const ZoneMesh& mesh, SideId side);
+/// Whether that side is of a luminaire.
 bool emits(const Scene& scene, const ZoneMesh& mesh, SideId side);
 
 /// Of one kind, the sides that have zones.

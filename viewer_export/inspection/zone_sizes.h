@@ -7,6 +7,7 @@
 
 namespace reemit {
 
+/// What a zone is made of.
 enum class ZoneKind : std::uint8_t {
   kCell,    ///< A cell of one side of a base triangle.
   kShared,  ///< A group of small sides.
@@ -14,6 +15,7 @@ enum class ZoneKind : std::uint8_t {
 };
 inline constexpr ZoneKind kZoneKinds[] = {ZoneKind::kCell, ZoneKind::kShared, ZoneKind::kSealed};
 
+/// Of a zone, and what it is called in lists and JSON.
 ZoneKind kind_of(const ZoneMesh& mesh, ZoneId zone);
 const char* name_of(ZoneKind kind);
 

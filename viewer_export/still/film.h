@@ -62,6 +62,7 @@ class Film {
   // Pre of both: all replicates of the pixel have begun.
   /// Mean radiance and the square of its standard error, infinite with one replicate.
   ReplicateMean replicate_mean(std::size_t pixel, std::size_t band) const;
+  /// Mean radiance alone [W/(m2 sr)].
   double radiance(std::size_t pixel, std::size_t band) const;
   /// Size, bands and the layers that hold means already: direct, caustic, albedo, samples.
   const StillImage& image() const { return image_; }

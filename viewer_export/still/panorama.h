@@ -23,10 +23,12 @@ std::uint64_t surface_cell(const Vec3f& point, const Vec3f& normal, float size);
 /// without being luminaires.
 class LitCells {
  public:
+  /// `space`: what is lit of the room; both are read here only.
   LitCells(const SurfaceModel& surfaces, const LitSpace& space);
   std::uint64_t cell(const Vec3f& point, const Vec3f& normal) const {
     return surface_cell(point, normal, size_);
   }
+  /// `surface`: that the point of the cell lies on.
   bool is_lit(std::uint64_t cell, SurfaceId surface) const {
     return !emits_[surface.index()] && lit_.contains(cell);
   }

@@ -44,17 +44,18 @@ class JsonCursor {
   /// Demands an array of at least `least` and at most `most` values.
   void expect_array(std::size_t least, std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
+  /// Nothing if the object does not have the key.
   std::optional<JsonCursor> find(const char* key) const;
   JsonCursor at(const char* key) const;  ///< The key is required.
   std::size_t size() const;              ///< Of an array; demands one.
   JsonCursor operator[](std::size_t i) const;
   std::vector<std::pair<std::string, JsonCursor>> members() const;  ///< Of an object, sorted by key.
 
-  double number() const;
-  double number_in(double least, double most) const;
-  double strength() const;  ///< Of light: not below 0. Who needs more than nothing looks.
-  double length() const;    ///< Above 0, at most limits::kFarthest.
-  int integer_in(int least, int most) const;
+  double number() const;                              ///< Any finite number.
+  double number_in(double least, double most) const;  ///< In [least, most].
+  double strength() const;                    ///< Of light: not below 0. Who needs more than nothing looks.
+  double length() const;                      ///< Above 0, at most limits::kFarthest.
+  int integer_in(int least, int most) const;  ///< In [least, most].
   bool boolean() const;
   const std::string& string() const;
   /// One of `choices`.
@@ -65,6 +66,7 @@ class JsonCursor {
 
   /// File and JSON pointer, as in room.json#/objects/3/box/min.
   std::string where() const;
+  /// Throws an InputError about this value.
   [[noreturn]] void fail(const std::string& problem, const std::string& advice) const;
 
  private:

@@ -12,11 +12,14 @@ namespace reemit {
 /// Collects polygons into one Surface; corners and normals with the same coordinates are stored once.
 class SurfaceBuilder {
  public:
+  /// `source`: the file, for messages.
   SurfaceBuilder(std::string name, std::string source, MaterialId material);
 
+  /// `source_line`: in the file; 0 = not known.
   void add(const Polygon& polygon, std::uint32_t source_line);
   void add(const CurvedShape& shape) { surface_.shapes.push_back(shape); }
   const Surface& surface() const { return surface_; }
+  /// The builder is empty afterwards.
   Surface take() { return std::move(surface_); }
 
  private:

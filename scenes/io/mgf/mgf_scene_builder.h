@@ -28,6 +28,7 @@ class MgfSceneBuilder {
   /// Places faces in the room; a mirroring transform keeps fronts on their side. Throws InputError when the
   /// room grows beyond kMostFaces.
   void add(const std::vector<Polygon>& faces, const Eigen::Affine3d& transform, const Target& target);
+  /// The same for a shape, which transforms of MGF leave what it is.
   void add(const CurvedShape& shape, const Eigen::Affine3d& transform, const Target& target);
   static constexpr std::size_t kMostFaces = 4'000'000;
 

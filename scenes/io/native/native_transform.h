@@ -17,6 +17,7 @@ struct ArrayPlacement {
   Eigen::Affine3d transform;
   std::vector<int> index;  ///< One per counter.
 };
+/// In order, the last counter the fastest.
 std::vector<ArrayPlacement> read_array(const JsonCursor& at);
 
 }  // namespace reemit

@@ -20,6 +20,7 @@ struct IesGrid {
 struct IesComplaint {
   std::string problem, advice;
 };
+/// Pre of both: the grid has an angle.
 IesComplaint check_vertical_angles(const IesGrid& grid);
 IesComplaint check_horizontal_angles(const IesGrid& grid);
 

@@ -5,7 +5,9 @@
 
 namespace reemit {
 
+/// How values behind the header are written.
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
+/// Types of values, by either of the names that a header may use: "char" or "int8".
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
 std::size_t size_of(PlyType type);  ///< [byte]

@@ -44,6 +44,7 @@ struct ProgramOutline {
   std::vector<CommandOutline> commands;
 };
 
+/// Of all that is declared; nothing is parsed or run.
 ProgramOutline outline_of(const CLI::App& program);
 
 }  // namespace reemit::cli
