@@ -12,6 +12,7 @@
 #include "bench/contact_sheet.h"
 #include "bench/program_options.h"
 #include "solver/room/room.h"
+#include "solver/run/schedule.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/still/default_cameras.h"
@@ -47,8 +48,7 @@ void add_room(const Settings& settings, std::size_t number, bench::ContactSheet&
   const Room walls(scene, solution.mesh);
   const auto start = std::chrono::steady_clock::now();
   const std::vector<Camera> cameras = default_cameras(walls);
-  fmt::print("{}: {:.3f} s\n", file.stem().string(),
-             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  fmt::print("{}: {:.3f} s\n", file.stem().string(), seconds_since(start));
   sheet.label(left, top + kLabel - 5, file.stem().string());
   const std::atomic<bool> no_interrupt{false};
   for (std::size_t i = 0; i < cameras.size(); ++i) {

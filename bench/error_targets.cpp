@@ -14,6 +14,7 @@
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "solver/run/schedule.h"
 #include "solver/zoning/build_zones.h"
 #include "viewer_export/still/render_still.h"
 
@@ -166,9 +167,9 @@ void measure(const Options& options) {
     const auto begin = std::chrono::steady_clock::now();
     const StillImage image =
         render_still(walls, solutions[static_cast<std::size_t>(seed - 1)], camera, still, {}, never);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    stills.push_back({true_still_error(image, traced, still.error_floor, &reference_error), image.info.error,
-                      seconds.count()});
+    const double seconds = seconds_since(begin);
+    stills.push_back(
+        {true_still_error(image, traced, still.error_floor, &reference_error), image.info.error, seconds});
   }
   print(fmt::format("render --error {:g}% --size {}x{}, against path tracing", 100 * options.render_target,
                     options.size, options.size),

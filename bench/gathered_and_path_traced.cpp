@@ -23,6 +23,7 @@
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "solver/run/schedule.h"
 #include "solver/zoning/build_zones.h"
 #include "viewer_export/still/default_cameras.h"
 #include "viewer_export/still/render_still.h"
@@ -142,7 +143,7 @@ View render(const std::filesystem::path& file, const Settings& settings) {
       Runs& runs = is_path ? view.path_traced : view.gathered;
       const auto start = std::chrono::steady_clock::now();
       runs.add(render_still(walls, solution, camera, still, {}, never), settings.runs);
-      runs.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      runs.seconds += seconds_since(start);
     }
   }
   return view;

@@ -18,6 +18,7 @@
 #include "bench/program_options.h"
 #include "solver/emit/area_luminaire.h"
 #include "solver/emit/selection.h"
+#include "solver/run/schedule.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/warp.h"
 
@@ -108,8 +109,7 @@ double shortest_seconds(const Work& work) {
   for (int run = 0; run < kRuns; ++run) {
     const auto start = std::chrono::steady_clock::now();
     work();
-    shortest =
-        std::min(shortest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    shortest = std::min(shortest, seconds_since(start));
   }
   return shortest;
 }
@@ -131,7 +131,7 @@ void print_times(std::size_t most, int receivers) {
     const auto bounds = bounds_of(random_lamps(count, true, false, count));
     const auto start = std::chrono::steady_clock::now();
     const LightTree tree(bounds);
-    const double build = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double build = seconds_since(start);
 
     const Vec3f up = Vec3f::UnitY();
     Numbers random(1);

@@ -22,6 +22,7 @@
 #include "scenes/io/scene_reader.h"
 #include "solver/losses/open_room.h"
 #include "solver/room/room.h"
+#include "solver/run/schedule.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/tally/batch_plan.h"
 #include "solver/zoning/build_zones.h"
@@ -29,10 +30,6 @@
 namespace {
 
 using namespace reemit;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Embree alone over the base triangles, with the scene settings that the solver uses.
 class BareEmbree {

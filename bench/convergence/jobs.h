@@ -10,6 +10,7 @@
 #include "bench/convergence/reference.h"
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
+#include "solver/run/schedule.h"
 
 namespace reemit::bench {
 
@@ -60,7 +61,7 @@ template <class Call>
 double seconds_of(Call&& call) {
   const auto start = std::chrono::steady_clock::now();
   call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return seconds_since(start);
 }
 
 /// Seed of everything that goes into references; measured runs use 1, 2, ...

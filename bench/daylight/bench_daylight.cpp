@@ -24,6 +24,7 @@
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/progressive_solver.h"
+#include "solver/run/schedule.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/zoning/build_zones.h"
 
@@ -133,10 +134,6 @@ void daylight_factors(const Settings& settings) {
         straight.value + traced.value, std::hypot(straight.error, traced.error),
         (gathered.value - traced.value) / std::hypot(gathered.error, traced.error));
   }
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// What the sky sends straight to zones, first band [W/m2].

@@ -12,6 +12,7 @@
 #include "bench/validation/families.h"
 #include "bench/validation/plots.h"
 #include "bench/validation/report.h"
+#include "solver/run/schedule.h"
 
 namespace {
 
@@ -33,12 +34,12 @@ std::vector<ValidationRow> measure(const std::vector<ReferenceCase>& cases, cons
       if (!only.empty() && only != kind) continue;
       const auto start = std::chrono::steady_clock::now();
       const std::vector<ValidationRow> rows = family.evaluate(cases_of(cases, {kind}), effort);
-      const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+      const double time = reemit::seconds_since(start);
       for (const ValidationRow& r : rows)
         if (!only.empty() || std::fabs(r.deviation()) > kLimit) print_row(r);
       const RowSummary s = summarize(rows);
       fmt::print("{:<22} {:>4} rows, largest deviation {:>5.2f}, standard errors up to {:.3f} %, {:.1f} s\n",
-                 kind, s.rows, s.largest_deviation, 100 * s.largest_relative_error, time.count());
+                 kind, s.rows, s.largest_deviation, 100 * s.largest_relative_error, time);
       std::fflush(stdout);
       all.insert(all.end(), rows.begin(), rows.end());
     }

@@ -20,6 +20,7 @@
 #include "solver/gather/discretisation.h"
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/progressive_solver.h"
+#include "solver/run/schedule.h"
 #include "solver/zoning/build_zones.h"
 
 namespace {
@@ -30,10 +31,6 @@ using namespace reemit::bench;
 constexpr std::size_t kProbes = 16'384;
 constexpr std::size_t kExportPoints = 8'192;
 const std::atomic<bool> kNever{false};
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 struct Plan {
   bool fitting = false;

@@ -12,6 +12,7 @@
 
 #include "scenes/model/error.h"
 #include "solver/losses/open_room.h"
+#include "solver/run/schedule.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"
@@ -127,7 +128,7 @@ ExitCode run_export(const ExportOptions& options) {
   if (interrupt.requested() && !options.style.quiet) {
     print_note("interrupted; vertices not yet reached hold the mean of their zones");
   }
-  report(options, data, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  report(options, data, seconds_since(start));
   return ExitCode::kDone;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tbb/task_arena.h>
 
+#include "solver/run/schedule.h"
 #include "solver/solution/solution_file.h"
 #include "solver/solution/thread_count.h"
 #include "viewer_export/cli/interrupt.h"
@@ -67,7 +68,7 @@ ExitCode export_form_factors(const FormFactorExport& options) {
                        options.output);
   });
 
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = seconds_since(start);
   if (options.style.json) {
     nlohmann::ordered_json json = form_factor_json(report);
     json["file"] = options.output.string();

@@ -19,6 +19,7 @@
 #include "scenes/model/memory.h"
 #include "solver/losses/open_room.h"
 #include "solver/progressive_solver.h"
+#include "solver/run/schedule.h"
 #include "solver/solution/thread_count.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
@@ -126,8 +127,7 @@ class Renderer {
     write_output(
         [&] { arena.execute([&] { written = write_still_image(image, job.file, options_.tone_map); }); });
     if (!options_.style.quiet) explain_missed_target(job, image);
-    report(job, image, *written,
-           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    report(job, image, *written, seconds_since(start));
   }
 
   bool interrupted() const { return interrupt_.requested(); }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "scenes/model/memory.h"
+#include "solver/run/schedule.h"
 #include "viewer_export/cli/messages.h"
 
 namespace reemit::cli {
@@ -15,8 +16,8 @@ StepNote::StepNote(std::string step, const OutputStyle& style)
 StepNote::~StepNote() {
   if (!verbose_ || std::uncaught_exceptions() > exceptions_) return;
   constexpr double kMegabyte = 1e6;
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
-  print_note(fmt::format("{} took {:.2f} s; memory so far at most {:.0f} MB", step_, seconds.count(),
+  const double seconds = seconds_since(start_);
+  print_note(fmt::format("{} took {:.2f} s; memory so far at most {:.0f} MB", step_, seconds,
                          static_cast<double>(peak_memory()) / kMegabyte));
 }
 

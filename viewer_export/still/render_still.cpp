@@ -14,6 +14,7 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/stop_token.h"
+#include "solver/run/schedule.h"
 #include "solver/solution/thread_count.h"
 #include "viewer_export/output/refinement.h"
 #include "viewer_export/still/smoothed_refinement.h"
@@ -192,7 +193,7 @@ class Rendering {
     const double by_error =
         refines_tiles_ ? std::min(1.0, std::pow(settings_.error_target / progress_now_.error, 2)) : 0.0;
     progress_now_.fraction = std::max({progress_now_.fraction, of_samples, by_error});
-    progress_now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    progress_now_.seconds = seconds_since(start_);
     progress_(progress_now_);
   }
 
