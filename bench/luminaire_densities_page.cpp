@@ -6,15 +6,10 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include "bench/processor_name.h"
+
 namespace reemit::bench {
 namespace {
-
-std::string processor() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown processor";
-}
 
 constexpr double kTime = 1e6;  // [ns] that errors are stated for
 
@@ -58,7 +53,7 @@ void write_solid_angle_against_area(const std::vector<Row>& rows, double ray, st
 
 void write_csv(const std::vector<Row>& rows, double ray, const std::filesystem::path& file) {
   std::ofstream out(file);
-  fmt::print(out, "# {}, shadow ray {:.0f} ns\n", processor(), ray);
+  fmt::print(out, "# {}, shadow ray {:.0f} ns\n", processor_name(), ray);
   fmt::print(out,
              "shape,distance_sizes,density,relative_variance,relative_variance_penumbra,ns_one_sample,"
              "ns_of_{}_samples,error_1ms_one,error_1ms_one_with_ray,error_1ms_many_with_ray\n",
@@ -98,7 +93,7 @@ void write_page(const std::vector<Row>& rows, double ray, const Options& options
       "relative, after 1 ms of samples at such places, half of them in penumbra; without and with the "
       "{:.0f} ns\n  of a shadow ray{} added to every sample (one sample per "
       "place).\n\n",
-      processor(), options.places, options.samples, kReuse, ray,
+      processor_name(), options.places, options.samples, kReuse, ray,
       options.ray_ns > 0 ? " (assumed)" : " in the Cornell box");
   fmt::print(out, "## Least error in a given time, with a shadow ray\n\n| shape |");
   for (const double d : kDistances) fmt::print(out, " {:g} |", d);

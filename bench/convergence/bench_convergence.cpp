@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "bench/convergence/jobs.h"
 #include "bench/convergence/report.h"
+#include "bench/processor_name.h"
 #include "bench/program_options.h"
 
 namespace reemit::bench {
@@ -21,13 +21,6 @@ void report(const Measurement& row, Table& table) {
 }
 
 namespace {
-
-std::string processor_name() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown processor";
-}
 
 std::string machine_note(const Options& options) {
   double load = 0;

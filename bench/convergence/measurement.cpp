@@ -1,11 +1,13 @@
 #include "bench/convergence/measurement.h"
 
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+
+#include "bench/convergence/csv_table.h"
 
 namespace reemit::bench {
 namespace {
@@ -13,13 +15,6 @@ namespace {
 constexpr const char* kHeader =
     "room,quantity,method,seed,level,seconds,work,work_unit,error_rms,error_median,reference_rms,reference_"
     "median";
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-  return cells;
-}
 
 }  // namespace
 
@@ -35,36 +30,20 @@ void write_table(const Table& table, const std::filesystem::path& file) {
 }
 
 Table read_table(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{} cannot be read", file.string()));
+  CsvTable cells = read_csv(file, kHeader);
   Table table;
-  bool header_seen = false;
-  int number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (line.starts_with("# ")) {
-      table.notes.push_back(line.substr(2));
-    } else if (!header_seen) {
-      if (line != kHeader) break;
-      header_seen = true;
-    } else {
-      const std::vector<std::string> c = cells_of(line);
-      if (c.size() != 12)
-        throw std::runtime_error(fmt::format("{}:{}: 12 columns expected", file.string(), number));
-      table.rows.push_back({c[0],
-                            c[1],
-                            c[2],
-                            std::stoull(c[3]),
-                            std::stoi(c[4]),
-                            std::stod(c[5]),
-                            std::stod(c[6]),
-                            c[7],
-                            {std::stod(c[8]), std::stod(c[9])},
-                            {std::stod(c[10]), std::stod(c[11])}});
-    }
-  }
-  if (!header_seen)
-    throw std::runtime_error(fmt::format("{} is not a table that this program has written", file.string()));
+  table.notes = std::move(cells.notes);
+  for (const std::vector<std::string>& c : cells.rows)
+    table.rows.push_back({c[0],
+                          c[1],
+                          c[2],
+                          number_of<std::uint64_t>(c[3], file),
+                          number_of<int>(c[4], file),
+                          number_of<double>(c[5], file),
+                          number_of<double>(c[6], file),
+                          c[7],
+                          {number_of<double>(c[8], file), number_of<double>(c[9], file)},
+                          {number_of<double>(c[10], file), number_of<double>(c[11], file)}});
   return table;
 }
 

@@ -1,38 +1,18 @@
 #include "bench/many_luminaires/figures.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "bench/convergence/csv_table.h"
+
 namespace reemit::bench {
 namespace {
 
 constexpr const char* kHeader = "part,subject,count,selection,quantity,median,least,most";
-constexpr std::size_t kFields = 8;
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields;
-  for (std::size_t from = 0;;) {
-    const std::size_t comma = line.find(',', from);
-    fields.push_back(line.substr(from, comma - from));
-    if (comma == std::string::npos) return fields;
-    from = comma + 1;
-  }
-}
-
-template <class Number>
-Number number_of(const std::string& text, const std::filesystem::path& file) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw std::runtime_error(fmt::format("{}: '{}' is not a number", file.string(), text));
-  return value;
-}
-
 }  // namespace
 
 void Figures::add(Figure row) {
@@ -61,23 +41,10 @@ void write_figures(const Figures& figures, const std::filesystem::path& file) {
 }
 
 Figures read_figures(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{} cannot be read", file.string()));
+  CsvTable table = read_csv(file, kHeader);
   Figures figures;
-  bool header = false;
-  for (std::string line; std::getline(in, line);) {
-    if (!header && line.starts_with("# ")) {
-      figures.notes.push_back(line.substr(2));
-      continue;
-    }
-    if (!header) {
-      if (line != kHeader) break;
-      header = true;
-      continue;
-    }
-    const std::vector<std::string> f = fields_of(line);
-    if (f.size() != kFields)
-      throw std::runtime_error(fmt::format("{}: '{}' does not have {} fields", file.string(), line, kFields));
+  figures.notes = std::move(table.notes);
+  for (const std::vector<std::string>& f : table.rows)
     figures.rows.push_back(
         {f[0],
          f[1],
@@ -85,8 +52,6 @@ Figures read_figures(const std::filesystem::path& file) {
          f[3],
          f[4],
          {number_of<double>(f[5], file), number_of<double>(f[6], file), number_of<double>(f[7], file)}});
-  }
-  if (!header) throw std::runtime_error(fmt::format("{} is not a table of figures", file.string()));
   return figures;
 }
 
