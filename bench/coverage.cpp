@@ -62,73 +62,97 @@ struct Options {
   double error = 0.03;
 };
 
-void measure(const Options& options) {
-  const test::VariableFurnace furnace(8);
-  const test::RoomBuilder& room = furnace.room();
-  const ZoneMesh mesh = room.mesh().mesh;
-  const Room walls(room.scene(), mesh);
-  const std::atomic<bool> never{false};
-  const Camera camera = test::VariableFurnace::camera();
+constexpr int kVertexFreedom = static_cast<int>(ZoneSums::kGroups) - 1;
+constexpr int kPixelFreedom = static_cast<int>(Film::kReplicates) - 1;
 
-  Coverage zones{"zones, shooting", 15};
-  Coverage walk{"zones, walk", 15};
-  constexpr int kVertexFreedom = static_cast<int>(ZoneSums::kGroups) - 1;
-  Coverage vertices{"vertices, gathered", kVertexFreedom};
-  Coverage averaged{"vertices, zone averages", kVertexFreedom};
-  constexpr int kPixelFreedom = static_cast<int>(Film::kReplicates) - 1;
-  Coverage coarse{"pixels, 16 samples", kPixelFreedom};
-  Coverage fine{"pixels, 64 samples", kPixelFreedom};
-  Coverage target{"pixels, --error 2%", kPixelFreedom};
-  Coverage path{"pixels, path tracing, 64 samples", kPixelFreedom};
-  for (int seed = 1; seed <= options.seeds; ++seed) {
+/// Zones, vertices and pixels of one room over many seeds.
+class FurnaceCoverage {
+ public:
+  FurnaceCoverage()
+      : furnace_(8), mesh_(furnace_.room().mesh().mesh), walls_(furnace_.room().scene(), mesh_) {}
+
+  void add_seed(const Options& options, int seed) {
     SolverSettings settings;
     settings.error_target = options.error;
     settings.seed = static_cast<std::uint64_t>(seed);
+    const Solution solution = add_zones(settings);
+    add_vertices(solution);
+    add_pixels(solution);
+  }
+
+  void print(const Options& options) const {
+    fmt::print("Furnace of reflectances 0.2 to 0.9, {} zones, solved to {:g} %, {} seeds.\n\n",
+               mesh_.zone_count(), 100 * options.error, options.seeds);
+    fmt::print(
+        "| values | degrees of freedom | trials | within the 95 % interval | within 1.96 standard errors |"
+        " stated / true rms | mean deviation |\n|---|---|---|---|---|---|---|\n");
+    for (const Coverage* c : {&zones_, &walk_, &vertices_, &averaged_, &coarse_, &fine_, &target_, &path_})
+      c->print();
+  }
+
+ private:
+  /// Returns the solution by shooting.
+  Solution add_zones(SolverSettings settings) {
     Solution solution;
     for (const SolveMethod method : {SolveMethod::kWalk, SolveMethod::kShooting}) {
       settings.method = method;
-      solution = solve(room.scene(), room.mesh(), settings, {}, never);
-      Coverage& all = method == SolveMethod::kWalk ? walk : zones;
+      solution = solve(furnace_.room().scene(), furnace_.room().mesh(), settings, {}, never_);
+      Coverage& all = method == SolveMethod::kWalk ? walk_ : zones_;
       all.degrees_of_freedom = static_cast<int>(solution.sums.batches) - 1;
       for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) {
         const Estimate e = solution.irradiance(ZoneId(z), 0);
         all.add(e.mean, e.stderr_of_mean, kRadiosity);
       }
     }
+    return solution;
+  }
+
+  void add_vertices(const Solution& solution) {
     VertexSettings gather;
-    gather.seed = settings.seed;
+    gather.seed = solution.settings.seed;
     for (const bool average : {false, true}) {
       gather.average_zones = average;
-      const VertexData data = gather_vertices(walls, solution, gather, {}, never);
+      const VertexData data = gather_vertices(walls_, solution, gather, {}, never_);
       for (std::size_t v = 0; v < data.vertex_count(); ++v)
-        (average ? averaged : vertices)
+        (average ? averaged_ : vertices_)
             .add(std::numbers::pi * static_cast<double>(data.radiance[v]),
                  std::numbers::pi * static_cast<double>(data.radiance_stderr[v]), kRadiosity);
     }
+  }
+
+  void add_pixels(const Solution& solution) {
     StillSettings still;
-    still.seed = settings.seed;
+    still.seed = solution.settings.seed;
     const auto render = [&](Coverage& coverage) {
-      const StillImage image = render_still(walls, solution, camera, still, {}, never);
+      const StillImage image =
+          render_still(walls_, solution, test::VariableFurnace::camera(), still, {}, never_);
       for (std::size_t p = 0; p < image.pixel_count(); ++p)
         coverage.add(std::numbers::pi * static_cast<double>(image.radiance[p]),
                      std::numbers::pi * static_cast<double>(image.radiance_stderr[p]), kRadiosity);
     };
-    render(coarse);
+    render(coarse_);
     still.spp = 64;
-    render(fine);
+    render(fine_);
     still.integrator = Integrator::kPath;
-    render(path);
+    render(path_);
     still.integrator = Integrator::kGather;
     still.error_target = 0.02;
-    render(target);
+    render(target_);
   }
-  fmt::print("Furnace of reflectances 0.2 to 0.9, {} zones, solved to {:g} %, {} seeds.\n\n",
-             mesh.zone_count(), 100 * options.error, options.seeds);
-  fmt::print(
-      "| values | degrees of freedom | trials | within the 95 % interval | within 1.96 standard errors |"
-      " stated / true rms | mean deviation |\n|---|---|---|---|---|---|---|\n");
-  for (const Coverage* c : {&zones, &walk, &vertices, &averaged, &coarse, &fine, &target, &path}) c->print();
-}
+
+  test::VariableFurnace furnace_;
+  ZoneMesh mesh_;
+  Room walls_;
+  std::atomic<bool> never_{false};
+  Coverage zones_{"zones, shooting", 15};
+  Coverage walk_{"zones, walk", 15};
+  Coverage vertices_{"vertices, gathered", kVertexFreedom};
+  Coverage averaged_{"vertices, zone averages", kVertexFreedom};
+  Coverage coarse_{"pixels, 16 samples", kPixelFreedom};
+  Coverage fine_{"pixels, 64 samples", kPixelFreedom};
+  Coverage target_{"pixels, --error 2%", kPixelFreedom};
+  Coverage path_{"pixels, path tracing, 64 samples", kPixelFreedom};
+};
 
 }  // namespace
 
@@ -140,7 +164,9 @@ int main(int argc, char** argv) {
   app.add_option("--error", options.error, "Target of the solve, as a fraction").show_default();
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   try {
-    measure(options);
+    FurnaceCoverage coverage;
+    for (int seed = 1; seed <= options.seeds; ++seed) coverage.add_seed(options, seed);
+    coverage.print(options);
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;

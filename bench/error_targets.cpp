@@ -114,50 +114,49 @@ double true_still_error(const StillImage& image, const StillImage& reference, do
   return worst;
 }
 
-void measure(const Options& options) {
-  const Scene scene = read_scene(options.room);
-  MeshSettings mesh_settings;
-  if (options.zone_area > 0) mesh_settings.zone_area = options.zone_area;
-  const MeshResult mesh = build_zones(scene, mesh_settings);
-  const std::atomic<bool> never{false};
-  fmt::print("{}: {} zones, {} seeds\n\n", options.room, mesh.mesh.zone_count(), options.seeds);
-  fmt::print(
-      "| command | target | met by the true error | mean true error | least .. most | mean stated error |"
-      " error of the reference | median time [s] |\n|---|---|---|---|---|---|---|---|---|\n");
+/// A solution of each seed that meets the target, and one that all are compared with.
+struct Solves {
+  Solution reference;
+  std::vector<Solution> by_seed;
+};
 
+Solves measure_solves(const Scene& scene, const MeshResult& mesh, const Options& options) {
+  const std::atomic<bool> never{false};
   SolverSettings settings;
   settings.direct = DirectSource::kPackets;
   settings.error_target = options.solve_target / 6;
   settings.seed = 1'000'000;
-  const Solution reference = solve(scene, mesh, settings, {}, never);
+  Solves solves{solve(scene, mesh, settings, {}, never), {}};
   settings.error_target = options.solve_target;
   std::vector<Outcome> by_packets;
-  std::vector<Outcome> solves;
-  std::vector<Solution> solutions;
+  std::vector<Outcome> outcomes;
   for (int seed = 1; seed <= options.seeds; ++seed) {
     settings.seed = static_cast<std::uint64_t>(seed);
     const auto outcome = [&](const Solution& s) {
-      return Outcome{true_zone_error(s, reference), s.record.error, s.record.seconds};
+      return Outcome{true_zone_error(s, solves.reference), s.record.error, s.record.seconds};
     };
     settings.direct = DirectSource::kPackets;
     by_packets.push_back(outcome(solve(scene, mesh, settings, {}, never)));
     settings.direct = DirectSource::kBest;
-    solutions.push_back(solve(scene, mesh, settings, {}, never));
-    solves.push_back(outcome(solutions.back()));
+    solves.by_seed.push_back(solve(scene, mesh, settings, {}, never));
+    outcomes.push_back(outcome(solves.by_seed.back()));
   }
   const std::string command = fmt::format("solve --error {:g}%", 100 * options.solve_target);
-  print(command + " --direct packets", options.solve_target, by_packets, reference.record.error);
-  print(command, options.solve_target, solves, reference.record.error);
-  if (options.only_solve) return;
+  print(command + " --direct packets", options.solve_target, by_packets, solves.reference.record.error);
+  print(command, options.solve_target, outcomes, solves.reference.record.error);
+  return solves;
+}
 
-  const Room walls(scene, solutions.front().mesh);
+void measure_stills(const Scene& scene, const Solves& solves, const Options& options) {
+  const std::atomic<bool> never{false};
+  const Room walls(scene, solves.by_seed.front().mesh);
   StillSettings still;
   still.width = still.height = options.size;
   still.integrator = Integrator::kPath;
   still.spp = options.reference_samples;
   still.seed = 1'000'000;
   const Camera& camera = scene.cameras.at(0);
-  const StillImage traced = render_still(walls, reference, camera, still, {}, never);
+  const StillImage traced = render_still(walls, solves.reference, camera, still, {}, never);
   still.integrator = Integrator::kGather;
   still.error_target = options.render_target;
   double reference_error = 0;
@@ -166,7 +165,7 @@ void measure(const Options& options) {
     still.seed = static_cast<std::uint64_t>(seed);
     const auto begin = std::chrono::steady_clock::now();
     const StillImage image =
-        render_still(walls, solutions[static_cast<std::size_t>(seed - 1)], camera, still, {}, never);
+        render_still(walls, solves.by_seed[static_cast<std::size_t>(seed - 1)], camera, still, {}, never);
     const double seconds = seconds_since(begin);
     stills.push_back(
         {true_still_error(image, traced, still.error_floor, &reference_error), image.info.error, seconds});
@@ -174,6 +173,19 @@ void measure(const Options& options) {
   print(fmt::format("render --error {:g}% --size {}x{}, against path tracing", 100 * options.render_target,
                     options.size, options.size),
         options.render_target, stills, reference_error);
+}
+
+void measure(const Options& options) {
+  const Scene scene = read_scene(options.room);
+  MeshSettings mesh_settings;
+  if (options.zone_area > 0) mesh_settings.zone_area = options.zone_area;
+  const MeshResult mesh = build_zones(scene, mesh_settings);
+  fmt::print("{}: {} zones, {} seeds\n\n", options.room, mesh.mesh.zone_count(), options.seeds);
+  fmt::print(
+      "| command | target | met by the true error | mean true error | least .. most | mean stated error |"
+      " error of the reference | median time [s] |\n|---|---|---|---|---|---|---|---|---|\n");
+  const Solves solves = measure_solves(scene, mesh, options);
+  if (!options.only_solve) measure_stills(scene, solves, options);
 }
 
 }  // namespace

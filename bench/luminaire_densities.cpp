@@ -88,6 +88,70 @@ std::vector<Place> places_around(const Make& make, double distance, int count) {
   return places;
 }
 
+/// Variances of one sample relative to the square of its mean, over all places: with nothing in the way, and
+/// in the penumbra of an edge.
+template <class Make>
+void measure_variance(const Make& make, const std::vector<Place>& places, int samples, Row& row) {
+  double variance = 0;
+  double penumbra = 0;
+  double squares = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Place& place = places[k];
+    const auto sampler = make(place.x, place.n, kDensities[row.density]);
+    Numbers numbers(100 + k);
+    std::array<double, 2> sum{};
+    std::array<double, 2> sum2{};
+    for (int i = 0; i < samples; ++i) {
+      const auto u = numbers.pair();
+      const ShapePoint s = sampler.sample(u[0], u[1]);
+      const bool seen = place.shadow.dot(s.point - place.x) > 0;
+      const std::array<double, 2> v{s.irradiance, seen ? s.irradiance : 0.0};
+      for (std::size_t j = 0; j < 2; ++j) {
+        sum[j] += v[j];
+        sum2[j] += v[j] * v[j];
+      }
+    }
+    const double n = samples;
+    const auto spread = [&](std::size_t j) {
+      return std::max(0.0, (sum2[j] - sum[j] * sum[j] / n) / (n - 1));
+    };
+    variance += spread(0);
+    penumbra += spread(1);
+    squares += sum[0] * sum[0] / (n * n);
+  }
+  row.variance = variance / squares;
+  row.in_penumbra = penumbra / squares;
+}
+
+/// Shortest times of a sample over the repeats: with a sampler of its own, and with one for many. Returns the
+/// sum of what was drawn, so that drawing cannot be left out.
+template <class Make>
+double measure_time(const Make& make, const std::vector<Place>& places, int repeats, Row& row) {
+  std::vector<std::array<double, 2>> numbers;
+  Numbers source(5);
+  for (int i = 0; i < 1024; ++i) numbers.push_back(source.pair());
+  double sink = 0;
+  row.ns_one = row.ns_many = std::numeric_limits<double>::infinity();
+  for (int r = 0; r < repeats; ++r) {
+    for (const int per_place : {1, kReuse}) {
+      const int rounds = 20'000 / per_place / static_cast<int>(places.size()) + 1;
+      const double start = now_ns();
+      std::size_t next = 0;
+      for (int round = 0; round < rounds; ++round)
+        for (const Place& place : places) {
+          const auto sampler = make(place.x, place.n, kDensities[row.density]);
+          for (int i = 0; i < per_place; ++i) {
+            const auto& u = numbers[next++ % numbers.size()];
+            sink += sampler.sample(u[0], u[1]).irradiance;
+          }
+        }
+      double& best = per_place == 1 ? row.ns_one : row.ns_many;
+      best = std::min(best, (now_ns() - start) / static_cast<double>(next));
+    }
+  }
+  return sink;
+}
+
 template <class Make>
 void measure_shape(const std::string& name, const Make& make, const Options& options,
                    std::vector<Row>& rows) {
@@ -98,59 +162,9 @@ void measure_shape(const std::string& name, const Make& make, const Options& opt
       row.shape = name;
       row.distance = distance;
       row.density = d;
-      double variance = 0;
-      double penumbra = 0;
-      double squares = 0;
-      for (std::size_t k = 0; k < places.size(); ++k) {
-        const Place& place = places[k];
-        const auto sampler = make(place.x, place.n, kDensities[d]);
-        Numbers numbers(100 + k);
-        std::array<double, 2> sum{};
-        std::array<double, 2> sum2{};
-        for (int i = 0; i < options.samples; ++i) {
-          const auto u = numbers.pair();
-          const ShapePoint s = sampler.sample(u[0], u[1]);
-          const bool seen = place.shadow.dot(s.point - place.x) > 0;
-          const std::array<double, 2> v{s.irradiance, seen ? s.irradiance : 0.0};
-          for (std::size_t j = 0; j < 2; ++j) {
-            sum[j] += v[j];
-            sum2[j] += v[j] * v[j];
-          }
-        }
-        const double n = options.samples;
-        const auto spread = [&](std::size_t j) {
-          return std::max(0.0, (sum2[j] - sum[j] * sum[j] / n) / (n - 1));
-        };
-        variance += spread(0);
-        penumbra += spread(1);
-        squares += sum[0] * sum[0] / (n * n);
-      }
-      row.variance = variance / squares;
-      row.in_penumbra = penumbra / squares;
-
-      std::vector<std::array<double, 2>> numbers;
-      Numbers source(5);
-      for (int i = 0; i < 1024; ++i) numbers.push_back(source.pair());
-      double sink = 0;
-      row.ns_one = row.ns_many = std::numeric_limits<double>::infinity();
-      for (int r = 0; r < options.repeats; ++r) {
-        for (const int per_place : {1, kReuse}) {
-          const int rounds = 20'000 / per_place / static_cast<int>(places.size()) + 1;
-          const double start = now_ns();
-          std::size_t next = 0;
-          for (int round = 0; round < rounds; ++round)
-            for (const Place& place : places) {
-              const auto sampler = make(place.x, place.n, kDensities[d]);
-              for (int i = 0; i < per_place; ++i) {
-                const auto& u = numbers[next++ % numbers.size()];
-                sink += sampler.sample(u[0], u[1]).irradiance;
-              }
-            }
-          double& best = per_place == 1 ? row.ns_one : row.ns_many;
-          best = std::min(best, (now_ns() - start) / static_cast<double>(next));
-        }
-      }
-      if (!std::isfinite(sink)) throw std::runtime_error(name + ": a sample is not finite");
+      measure_variance(make, places, options.samples, row);
+      if (!std::isfinite(measure_time(make, places, options.repeats, row)))
+        throw std::runtime_error(name + ": a sample is not finite");
       rows.push_back(row);
     }
   }

@@ -106,6 +106,48 @@ struct Case {
   SolveMethod method;
 };
 
+/// Rays per second in one round.
+struct Rates {
+  std::vector<double> solver;
+  std::vector<double> embree;
+};
+
+/// `run` traces `rays` rays, as `bare` does those in whole blocks.
+template <class Run>
+Rates rates_of(const Run& run, std::uint64_t rays, const BareEmbree& bare, const std::vector<Ray16>& blocks,
+               int rounds) {
+  Rates rates;
+  for (int round = 0; round <= rounds; ++round) {
+    auto start = std::chrono::steady_clock::now();
+    run(nullptr);
+    const double solver = static_cast<double>(rays) / seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    if (bare.trace(blocks) == 0) throw std::logic_error("bare Embree hit nothing");
+    const double embree = 16.0 * static_cast<double>(blocks.size()) / seconds_since(start);
+    if (round == 0) continue;  // warm-up
+    rates.solver.push_back(solver);
+    rates.embree.push_back(embree);
+  }
+  return rates;
+}
+
+double median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+void print(const Case& c, const ZoneMesh& mesh, std::uint64_t rays, std::uint64_t left_out,
+           const Rates& rates) {
+  std::vector<double> ratio;
+  for (std::size_t i = 0; i < rates.solver.size(); ++i) ratio.push_back(rates.solver[i] / rates.embree[i]);
+  fmt::print("{:<9} {:>8} {:>10} {:>10.2f} {:>8.2f} {:>8.2f} {:>8.2f} .. {:<8.2f} {:>8.2f}%\n",
+             to_string(c.method), mesh.zone_count(), mesh.triangle_count(), static_cast<double>(rays) / 1e6,
+             median(rates.solver) / 1e6, median(rates.embree) / 1e6, median(ratio),
+             *std::min_element(ratio.begin(), ratio.end()),
+             100.0 * static_cast<double>(left_out) / static_cast<double>(rays));
+  std::fflush(stdout);
+}
+
 void measure(const Case& c, int threads, int rounds) {
   const Scene scene = read_scene(c.room);
   MeshSettings mesh_settings;
@@ -129,7 +171,6 @@ void measure(const Case& c, int threads, int rounds) {
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::enumerable_thread_specific<std::vector<Ray16>> recorded;
-    std::size_t partial = 0;
     const RayObserver record = [&](const RayBlock& block) {
       if (block.count == 16) recorded.local().push_back(block.rays);
     };
@@ -139,33 +180,9 @@ void measure(const Case& c, int threads, int rounds) {
       blocks.insert(blocks.end(), part.begin(), part.end());
       part = {};
     }
-    partial = books.rays - 16 * blocks.size();
+    const std::uint64_t rays = books.rays;
     const BareEmbree bare(built.mesh, walls.rays());
-    std::vector<double> ours;
-    std::vector<double> theirs;
-    for (int round = 0; round <= rounds; ++round) {
-      auto start = std::chrono::steady_clock::now();
-      run(nullptr);
-      const double solver = static_cast<double>(books.rays) / seconds_since(start);
-      start = std::chrono::steady_clock::now();
-      if (bare.trace(blocks) == 0) throw std::logic_error("bare Embree hit nothing");
-      const double embree = 16.0 * static_cast<double>(blocks.size()) / seconds_since(start);
-      if (round == 0) continue;  // warm-up
-      ours.push_back(solver);
-      theirs.push_back(embree);
-    }
-    std::vector<double> ratio;
-    for (std::size_t i = 0; i < ours.size(); ++i) ratio.push_back(ours[i] / theirs[i]);
-    const auto median = [](std::vector<double> v) {
-      std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-      return v[v.size() / 2];
-    };
-    fmt::print("{:<9} {:>8} {:>10} {:>10.2f} {:>8.2f} {:>8.2f} {:>8.2f} .. {:<8.2f} {:>8.2f}%\n",
-               to_string(c.method), built.mesh.zone_count(), built.mesh.triangle_count(),
-               static_cast<double>(books.rays) / 1e6, median(ours) / 1e6, median(theirs) / 1e6, median(ratio),
-               *std::min_element(ratio.begin(), ratio.end()),
-               100.0 * static_cast<double>(partial) / static_cast<double>(books.rays));
-    std::fflush(stdout);
+    print(c, built.mesh, rays, rays - 16 * blocks.size(), rates_of(run, rays, bare, blocks, rounds));
   });
 }
 

@@ -46,29 +46,29 @@ std::optional<std::filesystem::path> find_below(const std::filesystem::path& fol
   return *std::min_element(found.begin(), found.end());
 }
 
+std::vector<StudiedRoom> cornell_boxes(const std::filesystem::path& library) {
+  StudiedRoom box;
+  box.name = "cornell_box";
+  box.scene = read_scene(library / "cornell_box.json");
+  box.camera = first_camera(box.scene);
+  box.picture_size = 256;
+  box.tile_stride = 8;
+  box.reference_samples = 4096;
+  box.path_samples = {16, 64, 256};
+  box.vertex_stride = 13;
+  box.vertex_zone_area = 3.1e-5;
+  StudiedRoom grey_box = box;
+  grey_box.name = "cornell_box grey";
+  grey_box.scene = grey(box.scene);
+  grey_box.stills_only = true;
+  return {std::move(box), std::move(grey_box)};
+}
+
 }  // namespace
 
 std::vector<StudiedRoom> find_rooms(const Options& options, Table& table) {
   const std::filesystem::path library = std::filesystem::path(REEMIT_SOURCE_DIR) / "scenes/library";
-  std::vector<StudiedRoom> rooms;
-  {
-    StudiedRoom box;
-    box.name = "cornell_box";
-    box.scene = read_scene(library / "cornell_box.json");
-    box.camera = first_camera(box.scene);
-    box.picture_size = 256;
-    box.tile_stride = 8;
-    box.reference_samples = 4096;
-    box.path_samples = {16, 64, 256};
-    box.vertex_stride = 13;
-    box.vertex_zone_area = 3.1e-5;
-    StudiedRoom grey_box = box;
-    grey_box.name = "cornell_box grey";
-    grey_box.scene = grey(box.scene);
-    grey_box.stills_only = true;
-    rooms.push_back(std::move(box));
-    rooms.push_back(std::move(grey_box));
-  }
+  std::vector<StudiedRoom> rooms = cornell_boxes(library);
   const auto add = [&](const std::string& name, const std::filesystem::path& file,
                        double vertex_zone_area) -> StudiedRoom& {
     StudiedRoom room;

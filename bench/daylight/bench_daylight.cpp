@@ -73,6 +73,64 @@ SurfacePoint surface_below(const Room& room, const Vec3& point, const Vec3& norm
   return surface_point(room.rays(), hit, direction);
 }
 
+/// Daylight factors of points in a solved room [%].
+class DaylightFactors {
+ public:
+  /// `rays` of each run. Scene and solution must outlive it.
+  DaylightFactors(const Scene& scene, const Solution& solution, int rays)
+      : room_(scene, solution.mesh),
+        direct_(room_),
+        field_(room_, solution, 16),
+        gather_(field_, direct_, {.caustics = true}),
+        paths_(room_, direct_, 7),
+        rays_(rays),
+        efficacy_(scene.bands.efficacy_lm_per_w()),
+        outside_((efficacy_ * horizontal_sky_irradiance(*scene.sky, scene.bands)).sum()) {}
+
+  /// Straight from the sky, the rest by gathering or by paths.
+  enum class Part { kDirect, kGathered, kTraced };
+
+  const Room& room() const { return room_; }
+  /// `p`: number of the point, for random numbers.
+  Mean at(const SurfacePoint& x, int p, Part part) const {
+    return mean_of_runs([&](int r) { return run(x, p, r, part); });
+  }
+
+ private:
+  double run(const SurfacePoint& x, int p, int r, Part part) const {
+    const std::size_t bands = room_.band_count();
+    const PointSampler sampler(99, RngPurpose::kProbe, static_cast<std::uint64_t>(p), r, 20);
+    std::vector<float> arrived(bands, 0.0F);
+    const std::vector<float> weight(bands, 1.0F / static_cast<float>(rays_));
+    GatherBatch batch(gather_);
+    for (int i = 0; i < rays_; ++i) {
+      const std::array<float, 2> u = sampler.hemisphere(i, 0, 1);
+      const PathKey key{static_cast<std::uint64_t>(p), static_cast<std::uint32_t>(r),
+                        static_cast<std::uint32_t>(i),
+                        static_cast<std::uint32_t>(r % 16) % static_cast<std::uint32_t>(field_.parts())};
+      std::vector<float> used = weight;
+      if (part == Part::kDirect) direct_.add_sample(x, sampler.light(i, 0, 1), weight.data(), arrived.data());
+      if (part == Part::kGathered) batch.add(x, u[0], u[1], key, weight.data(), arrived.data());
+      if (part == Part::kTraced) paths_.add_indirect(x, u[0], u[1], key, used.data(), arrived.data());
+    }
+    batch.flush();
+    const double factor = (part == Part::kDirect ? 100 : 100 * std::numbers::pi) / outside_;
+    double sum = 0;
+    for (std::size_t b = 0; b < bands; ++b)
+      sum += factor * efficacy_[static_cast<Eigen::Index>(b)] * static_cast<double>(arrived[b]);
+    return sum;
+  }
+
+  Room room_;
+  DirectLight direct_;
+  RadianceField field_;
+  HemisphereGather gather_;
+  PathTracer paths_;
+  int rays_;
+  Spectrum efficacy_;
+  double outside_;  // on a horizontal plane [lx]
+};
+
 void daylight_factors(const Settings& settings) {
   const Scene scene = read_scene(settings.room, settings.read);
   if (!scene.sky) throw std::invalid_argument("the room has no sky: --sky");
@@ -80,56 +138,25 @@ void daylight_factors(const Settings& settings) {
   solver.packets = settings.packets;
   const std::atomic<bool> never{false};
   const Solution solution = solve_zones(scene, zones_of(scene, settings.zones), solver, {}, never);
-  const Room room(scene, solution.mesh);
-  const DirectLight direct(room);
-  const RadianceField field(room, solution, 16);
-  const HemisphereGather gather(field, direct, {.caustics = true});
-  const PathTracer paths(room, direct, 7);
-  const std::size_t bands = room.band_count();
-  const Spectrum& efficacy = scene.bands.efficacy_lm_per_w();
-  const double outside = (efficacy * horizontal_sky_irradiance(*scene.sky, scene.bands)).sum();
+  const DaylightFactors factors(scene, solution, settings.rays / 32);
+  const Room& room = factors.room();
   fmt::print(
       "| depth [m] | place [m] | direct [%] | gathered [%] | path traced [%] | difference [standard errors] "
       "|\n"
       "|---|---|---|---|---|---|\n");
-  const auto lux = [&](const std::vector<float>& values, double factor) {
-    double sum = 0;
-    for (std::size_t b = 0; b < bands; ++b)
-      sum += factor * efficacy[static_cast<Eigen::Index>(b)] * static_cast<double>(values[b]);
-    return sum;
-  };
+  const Vec3 from = bench::vector_of(settings.from);
+  const Vec3 to = bench::vector_of(settings.to);
   for (int p = 0; p < settings.points; ++p) {
     const double t = (p + 0.5) / settings.points;
-    const Vec3 place = bench::vector_of(settings.from) +
-                       t * (bench::vector_of(settings.to) - bench::vector_of(settings.from));
-    const SurfacePoint x = surface_below(room, place, bench::vector_of(settings.normal));
-    const auto run = [&](int r, int what) {
-      const PointSampler sampler(99, RngPurpose::kProbe, static_cast<std::uint64_t>(p), r, 20);
-      std::vector<float> arrived(bands, 0.0F);
-      const int rays = settings.rays / 32;
-      const std::vector<float> weight(bands, 1.0F / static_cast<float>(rays));
-      GatherBatch batch(gather);
-      for (int i = 0; i < rays; ++i) {
-        const std::array<float, 2> u = sampler.hemisphere(i, 0, 1);
-        const PathKey key{static_cast<std::uint64_t>(p), static_cast<std::uint32_t>(r),
-                          static_cast<std::uint32_t>(i),
-                          static_cast<std::uint32_t>(r % 16) % static_cast<std::uint32_t>(field.parts())};
-        std::vector<float> used = weight;
-        if (what == 0) direct.add_sample(x, sampler.light(i, 0, 1), weight.data(), arrived.data());
-        if (what == 1) batch.add(x, u[0], u[1], key, weight.data(), arrived.data());
-        if (what == 2) paths.add_indirect(x, u[0], u[1], key, used.data(), arrived.data());
-      }
-      batch.flush();
-      return lux(arrived, what == 0 ? 100 / outside : 100 * std::numbers::pi / outside);
-    };
-    const Mean straight = mean_of_runs([&](int r) { return run(r, 0); });
-    const Mean gathered = mean_of_runs([&](int r) { return run(r, 1); });
-    const Mean traced = mean_of_runs([&](int r) { return run(r, 2); });
+    const SurfacePoint x = surface_below(room, from + t * (to - from), bench::vector_of(settings.normal));
+    const Mean straight = factors.at(x, p, DaylightFactors::Part::kDirect);
+    const Mean gathered = factors.at(x, p, DaylightFactors::Part::kGathered);
+    const Mean traced = factors.at(x, p, DaylightFactors::Part::kTraced);
     const Vec3 at = room.rays().in_room(room.rays().point(x.triangle, x.u, x.v));
     fmt::print(
         "| {:.2f} | {:.2f} {:.2f} {:.2f} | {:.4g} +- {:.1g} | {:.4g} +- {:.1g} | {:.4g} +- {:.1g} | {:+.1f} "
         "|\n",
-        (at - bench::vector_of(settings.from)).norm(), at.x(), at.y(), at.z(), straight.value, straight.error,
+        (at - from).norm(), at.x(), at.y(), at.z(), straight.value, straight.error,
         straight.value + gathered.value, std::hypot(straight.error, gathered.error),
         straight.value + traced.value, std::hypot(straight.error, traced.error),
         (gathered.value - traced.value) / std::hypot(gathered.error, traced.error));

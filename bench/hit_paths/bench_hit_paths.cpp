@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -98,78 +99,92 @@ std::size_t compare(const std::string& name, const Scene& scene, const Compariso
   return different;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  bench::ProgramOptions app(
-      "Compares 16 x 16 blocks of stills with paths that only hit luminaires.\n"
-      "Exit code 1 if a block differs by more than 5 standard errors and 3 %.");
+struct Arguments {
   std::vector<std::filesystem::path> rooms;
   bool generated = false;
   bool one_room = false;
   bool flat = false;
   CameraChoice cameras;
   ComparisonSettings settings;
-  app.add_option("rooms", rooms, "Room files").existing_file();
-  app.add_flag("--generated", generated, "Compare the 20 generated rooms with touching lamps");
-  app.add_flag("--one-room", one_room, "All files together are one room (MGF)");
-  app.add_option("--photometry", settings.photometry,
+};
+
+void add_arguments(bench::ProgramOptions& app, Arguments& to) {
+  app.add_option("rooms", to.rooms, "Room files").existing_file();
+  app.add_flag("--generated", to.generated, "Compare the 20 generated rooms with touching lamps");
+  app.add_flag("--one-room", to.one_room, "All files together are one room (MGF)");
+  app.add_option("--photometry", to.settings.photometry,
                  "IES file of the measured luminaires, read anew for the reference")
       .existing_file();
-  app.add_flag("--flat", flat,
+  app.add_flag("--flat", to.flat,
                "Leave out what the reference does not know: normals of files, images and colours of\n"
                "vertices on surfaces");
-  app.add_option("--cameras", cameras.most, "Cameras of each room");
-  app.add_option("--camera", cameras.name, "Camera by name, auto-1, auto-2, ... of rooms without any");
+  app.add_option("--cameras", to.cameras.most, "Cameras of each room");
+  app.add_option("--camera", to.cameras.name, "Camera by name, auto-1, auto-2, ... of rooms without any");
   app.add_option(
-         "--still", settings.stills,
+         "--still", to.settings.stills,
          "Check this EXR file of `reemit render` instead of rendering. Several are of the same view,\n"
          "each of a solution with another seed; of one alone the noise of its zones is not known")
       .existing_file();
-  app.add_option("--width", settings.width, "Of pictures that are rendered [px]").show_default();
-  app.add_option("--height", settings.height, "[px]").show_default();
-  app.add_option("--seconds", settings.seconds, "For the reference of one picture [s]").show_default();
-  app.add_option("--passes", settings.passes,
+  app.add_option("--width", to.settings.width, "Of pictures that are rendered [px]").show_default();
+  app.add_option("--height", to.settings.height, "[px]").show_default();
+  app.add_option("--seconds", to.settings.seconds, "For the reference of one picture [s]").show_default();
+  app.add_option("--passes", to.settings.passes,
                  "Paths per pixel of the reference instead, a multiple of 8: the same on any machine");
-  app.add_option("--reference-error", settings.reference_error,
+  app.add_option("--reference-error", to.settings.reference_error,
                  "Median over blocks at which the reference stops sooner")
       .show_default();
-  app.add_option("--packets", settings.packets, "Of the zone solutions, all together").show_default();
-  app.add_option("--spp", settings.spp, "Of the checked stills, all together").show_default();
-  app.add_option("--zone-area", settings.zone_area, "[m2]");
-  app.add_option("--seed", settings.seed, "Of the first room; each has numbers of its own").show_default();
-  app.add_option("--bias", settings.planted_bias, "Planted in the checked still, as a share");
-  app.add_flag("--walk", settings.by_walks, "Solve the zones by walks instead of shooting");
-  app.add_flag("--path", settings.by_path, "Check the path tracer instead of the gathered still");
+  app.add_option("--packets", to.settings.packets, "Of the zone solutions, all together").show_default();
+  app.add_option("--spp", to.settings.spp, "Of the checked stills, all together").show_default();
+  app.add_option("--zone-area", to.settings.zone_area, "[m2]");
+  app.add_option("--seed", to.settings.seed, "Of the first room; each has numbers of its own").show_default();
+  app.add_option("--bias", to.settings.planted_bias, "Planted in the checked still, as a share");
+  app.add_flag("--walk", to.settings.by_walks, "Solve the zones by walks instead of shooting");
+  app.add_flag("--path", to.settings.by_path, "Check the path tracer instead of the gathered still");
+}
+
+/// Number of blocks that differ, of all rooms.
+std::size_t compare_all(Arguments given) {
+  fmt::print(
+      "| room | camera | blocks | reference error of blocks, median / largest [%] | paths [1e6] "
+      "| mean of the picture [%] | largest deviation [standard errors] "
+      "| largest beyond 5 standard errors [%] | blocks that differ |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  std::size_t different = 0;
+  const auto compare_next = [&](const std::string& name, Scene scene) {
+    // Among them what paths lack, and so the reference.
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}: {}\n", name, warning);
+    if (given.flat) drop_details(scene);
+    different += compare(name, scene, given.settings, given.cameras);
+    ++given.settings.seed;
+  };
+  if (given.generated)
+    for (const std::uint32_t i : kTouchingLampsRooms)
+      compare_next(fmt::format("touching lamps {}", i), touching_lamps_room(i));
+  if (given.one_room) {
+    compare_next(given.rooms.front().stem().string(), read_scene(given.rooms));
+  } else {
+    for (const auto& file : given.rooms) compare_next(file.stem().string(), read_scene(file));
+  }
+  return different;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bench::ProgramOptions app(
+      "Compares 16 x 16 blocks of stills with paths that only hit luminaires.\n"
+      "Exit code 1 if a block differs by more than 5 standard errors and 3 %.");
+  Arguments given;
+  add_arguments(app, given);
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
-  if (rooms.empty()) one_room = false;
-  if (!settings.stills.empty() && (generated || cameras.most != 1 || (rooms.size() != 1 && !one_room))) {
+  if (given.rooms.empty()) given.one_room = false;
+  if (!given.settings.stills.empty() &&
+      (given.generated || given.cameras.most != 1 || (given.rooms.size() != 1 && !given.one_room))) {
     fmt::print(stderr, "bench_hit_paths: stills are of one camera in one room\n");
     return 2;
   }
   try {
-    fmt::print(
-        "| room | camera | blocks | reference error of blocks, median / largest [%] | paths [1e6] "
-        "| mean of the picture [%] | largest deviation [standard errors] "
-        "| largest beyond 5 standard errors [%] | blocks that differ |\n"
-        "|---|---|---|---|---|---|---|---|---|\n");
-    std::size_t different = 0;
-    const auto compare_next = [&](const std::string& name, Scene scene) {
-      // Among them what paths lack, and so the reference.
-      for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}: {}\n", name, warning);
-      if (flat) drop_details(scene);
-      different += compare(name, scene, settings, cameras);
-      ++settings.seed;
-    };
-    if (generated)
-      for (const std::uint32_t i : kTouchingLampsRooms)
-        compare_next(fmt::format("touching lamps {}", i), touching_lamps_room(i));
-    if (one_room) {
-      compare_next(rooms.front().stem().string(), read_scene(rooms));
-    } else {
-      for (const auto& file : rooms) compare_next(file.stem().string(), read_scene(file));
-    }
-    return different == 0 ? 0 : 1;
+    return compare_all(std::move(given)) == 0 ? 0 : 1;
   } catch (const std::exception& e) {
     fmt::print(stderr, "bench_hit_paths: {}\n", e.what());
     return 2;
