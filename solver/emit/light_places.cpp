@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "mesh/geometry/box_pairs.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
@@ -26,13 +27,6 @@ Vec3* position_of(PunctualLight& light) {
       light);
 }
 
-double squared_distance_to_edge(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return (a + t * along - p).squaredNorm();
-}
-
 /// A flat triangle near a light, with the normal of the side that the light is to shine on.
 struct NearFace {
   std::array<Vec3, 3> corner;
@@ -45,7 +39,7 @@ struct NearFace {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& a = corner[k];
       const Vec3& b = corner[(k + 1) % 3];
-      if (squared_distance_to_edge(p, a, b) < distance * distance) return true;
+      if (squared_distance_to_segment(p, a, b) < distance * distance) return true;
       const Vec3 inwards = normal.cross(b - a);
       inside = inside && (inwards.dot(p - a) > 0) == (inwards.dot(corner[(k + 2) % 3] - a) > 0);
     }

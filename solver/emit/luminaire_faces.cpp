@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/zones/zone_cells.h"
+#include "scenes/model/measures.h"
 #include "solver/sampling/shapes/clipped_polygon.h"
 
 namespace reemit {
@@ -14,20 +15,12 @@ namespace {
 
 constexpr double kSlack = 1e-6;
 
-/// Half the sum of cross products around the corners: its length is the area (Newell); 0 for no corners.
-Vec3 vector_area(const std::vector<Vec3>& corners) {
-  Vec3 twice = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-    twice += (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]);
-  return 0.5 * twice;
-}
-
 /// Corners of a face if it is a planar convex polygon without holes; empty otherwise.
 std::vector<Vec3> convex_corners(const Surface& surface, const Face& face) {
   if (!face.holes.empty() || face.outer.size() > kMostCorners) return {};
   std::vector<Vec3> corners;
   for (const std::uint32_t i : face.outer) corners.push_back(surface.positions[i]);
-  const Vec3 area = vector_area(corners);
+  const Vec3 area = loop_area(corners);
   const double size = std::sqrt(area.norm());
   if (!(size > 0)) return {};
   const Vec3 normal = area.normalized();
@@ -80,7 +73,7 @@ std::vector<LuminaireFace> luminaire_faces(const Room& room) {
     const bool both_sides = room.surfaces().emits(pieces.triangles.front(), false);
     std::vector<Vec3> corners;
     if (key.second < surface.faces.size()) corners = convex_corners(surface, surface.faces[key.second]);
-    const Vec3 outline_area = vector_area(corners);
+    const Vec3 outline_area = loop_area(corners);
     if (!corners.empty() && std::abs(outline_area.norm() - pieces.area) <= kSlack * pieces.area) {
       // The outline knows the plane, the mesh which of its sides is the front.
       const Vec3 normal = outline_area.normalized();
