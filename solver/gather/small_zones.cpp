@@ -285,6 +285,111 @@ PacketLight packet_light(const Room& room, const Solution& solution, ZoneId zone
   return result;
 }
 
+/// One gather of small zones: a pilot of all, the choice of those that it is worthwhile for, and their
+/// gather.
+class SmallZoneRun {
+ public:
+  SmallZoneRun(const Room& room, const SmallZoneLimits& limits, Solution& solution, const StopToken& stop)
+      : room_(room),
+        limits_(limits),
+        solution_(solution),
+        gatherer_(room, solution, stop),
+        packet_rays_(static_cast<double>(solution.record.rays)),
+        watts_per_ray_(power_per_ray(solution, limits.direct_is_sampled)),
+        affordable_(limits.solver_rays / cost_per_point(gatherer_.luminaires_weighed())) {}
+
+  /// True if the clock had a say in what was gathered.
+  bool run(std::vector<ZoneId> zones) {
+    // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
+    zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable_ / 3)));
+    std::vector<GatheredLight> pilots(zones.size());
+    if (!pilot(zones, pilots)) return true;
+    choose(zones, pilots);
+    if (chosen_.empty()) return clock_had_a_say_;
+    const std::size_t gathered = gather();
+    return clock_had_a_say_ || gathered < chosen_.size();
+  }
+
+ private:
+  /// Sets how many points are left. False if it was cut off.
+  bool pilot(const std::vector<ZoneId>& zones, std::vector<GatheredLight>& pilots) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t piloted =
+        gatherer_.gather(zones, 1, RngPurpose::kSmallZonePilot,
+                         [&](std::size_t i, const std::vector<ZoneReplicates>& by_band) {
+                           pilots[i] = gathered_light(by_band, limits_.direct_is_sampled);
+                         });
+    count_rays(piloted * kRaysPerPoint);
+    if (piloted < zones.size()) return false;
+    points_left_ = affordable_ - static_cast<double>(piloted);
+    if (!limits_.seconds) return true;
+    // The pilot has shown how long a point takes.
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double in_time = (*limits_.seconds / spent - 1) * static_cast<double>(piloted);
+    clock_had_a_say_ = in_time < points_left_;
+    points_left_ = std::min(points_left_, in_time);
+    return true;
+  }
+
+  void choose(const std::vector<ZoneId>& zones, const std::vector<GatheredLight>& pilots) {
+    const double gain = whole_points(points_left_ / static_cast<double>(zones.size()));
+    for (std::size_t i = 0; i < zones.size(); ++i) {
+      if (!is_worthwhile(pilots[i], gain, solution_.mesh.zone_area(zones[i]), watts_per_ray_)) continue;
+      chosen_.push_back(zones[i]);
+      packets_.push_back(packet_light(room_, solution_, zones[i], limits_.direct_is_sampled, watts_per_ray_));
+    }
+    chosen_.resize(std::min(chosen_.size(), static_cast<std::size_t>(std::max(0.0, points_left_))));
+  }
+
+  int points_per_replicate() const {
+    // As many rays as the mean zone meets packets leave about its error. But few shadow rays find a window,
+    // and zones that are few are sensors: more cost next to nothing then.
+    const auto count = static_cast<double>(chosen_.size());
+    const double enough = packet_rays_ / static_cast<double>(solution_.mesh.zone_count() * kRaysPerPoint);
+    const double cheap = std::min(kMostTimesEnough * enough, kCheap * affordable_ / count);
+    return whole_points(std::min(std::max(enough, cheap), points_left_ / count));
+  }
+
+  /// Returns how many of the chosen zones it came to.
+  std::size_t gather() {
+    const int points = points_per_replicate();
+    const std::size_t bands = room_.band_count();
+    solution_.gathered.keep(solution_.sums, chosen_);
+    std::atomic<std::size_t> surprises{0};
+    const std::size_t gathered = gatherer_.gather(
+        chosen_, points, RngPurpose::kSmallZone,
+        [&](std::size_t i, const std::vector<ZoneReplicates>& by_band) {
+          if (!packets_[i].agree_with(gathered_light(by_band, limits_.direct_is_sampled).brought)) {
+            ++surprises;
+            return;
+          }
+          for (std::size_t b = 0; b < bands; ++b)
+            store_replicates(solution_.sums, chosen_[i].index() * bands + b, by_band[b].direct,
+                             by_band[b].indirect);
+        });
+    solution_.record.gathered_zones = gathered - surprises;
+    count_rays(gathered * kRaysPerPoint * static_cast<std::uint64_t>(points));
+    return gathered;
+  }
+
+  void count_rays(std::uint64_t rays) {
+    solution_.gathered.rays += rays;
+    solution_.record.rays += rays;
+  }
+
+  const Room& room_;
+  const SmallZoneLimits& limits_;
+  Solution& solution_;
+  Gatherer gatherer_;
+  double packet_rays_;    // of the solve
+  double watts_per_ray_;  // of them
+  double affordable_;     // points per replicate of all zones together
+  double points_left_ = 0;
+  bool clock_had_a_say_ = false;
+  std::vector<ZoneId> chosen_;
+  std::vector<PacketLight> packets_;  // of each
+};
+
 }  // namespace
 
 std::size_t small_zone_count(const ZoneMesh& mesh) {
@@ -298,70 +403,10 @@ std::vector<ZoneId> zones_left_to_packets(const ZoneMesh& mesh) {
 bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solution& solution,
                         const StopToken& stop) {
   if (solution.sums.batches < static_cast<std::int64_t>(kReplicates)) return false;
-  const ZoneMesh& mesh = solution.mesh;
   std::vector<ZoneId> zones = small_zones(room);
   if (zones.empty()) return false;
-  const Gatherer gatherer(room, solution, stop);
-  const double affordable = limits.solver_rays / cost_per_point(gatherer.luminaires_weighed());
-  // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
-  zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable / 3)));
-  const std::size_t bands = room.band_count();
-
-  const auto start = std::chrono::steady_clock::now();
-  std::vector<GatheredLight> pilots(zones.size());
-  const std::size_t piloted = gatherer.gather(zones, 1, RngPurpose::kSmallZonePilot,
-                                              [&](std::size_t i, const std::vector<ZoneReplicates>& by_band) {
-                                                pilots[i] = gathered_light(by_band, limits.direct_is_sampled);
-                                              });
-  const auto packet_rays = static_cast<double>(solution.record.rays);
-  const double watts_per_ray = power_per_ray(solution, limits.direct_is_sampled);
-  solution.gathered.rays = piloted * kRaysPerPoint;
-  solution.record.rays += solution.gathered.rays;
-  if (piloted < zones.size()) return true;
-
-  double points_left = affordable - static_cast<double>(piloted);
-  bool clock_had_a_say = false;
-  if (limits.seconds) {
-    // The pilot has shown how long a point takes.
-    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const double in_time = (*limits.seconds / spent - 1) * static_cast<double>(piloted);
-    clock_had_a_say = in_time < points_left;
-    points_left = std::min(points_left, in_time);
-  }
-  const double gain = whole_points(points_left / static_cast<double>(zones.size()));
-  std::vector<ZoneId> chosen;
-  std::vector<PacketLight> packets;  // of each
-  for (std::size_t i = 0; i < zones.size(); ++i) {
-    if (!is_worthwhile(pilots[i], gain, mesh.zone_area(zones[i]), watts_per_ray)) continue;
-    chosen.push_back(zones[i]);
-    packets.push_back(packet_light(room, solution, zones[i], limits.direct_is_sampled, watts_per_ray));
-  }
-  chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(std::max(0.0, points_left))));
-  if (chosen.empty()) return clock_had_a_say;
-
-  // As many rays as the mean zone meets packets leave about its error. But few shadow rays find a window, and
-  // zones that are few are sensors: more cost next to nothing then.
-  const auto chosen_count = static_cast<double>(chosen.size());
-  const double enough = packet_rays / static_cast<double>(mesh.zone_count() * kRaysPerPoint);
-  const double cheap = std::min(kMostTimesEnough * enough, kCheap * affordable / chosen_count);
-  const int points = whole_points(std::min(std::max(enough, cheap), points_left / chosen_count));
-  solution.gathered.keep(solution.sums, chosen);
-  std::atomic<std::size_t> surprises{0};
-  const std::size_t gathered = gatherer.gather(
-      chosen, points, RngPurpose::kSmallZone, [&](std::size_t i, const std::vector<ZoneReplicates>& by_band) {
-        if (!packets[i].agree_with(gathered_light(by_band, limits.direct_is_sampled).brought)) {
-          ++surprises;
-          return;
-        }
-        for (std::size_t b = 0; b < bands; ++b)
-          store_replicates(solution.sums, chosen[i].index() * bands + b, by_band[b].direct,
-                           by_band[b].indirect);
-      });
-  solution.record.gathered_zones = gathered - surprises;
-  const std::uint64_t gather_rays = gathered * kRaysPerPoint * static_cast<std::uint64_t>(points);
-  solution.gathered.rays += gather_rays;
-  solution.record.rays += gather_rays;
-  return clock_had_a_say || gathered < chosen.size();
+  solution.gathered.rays = 0;
+  return SmallZoneRun(room, limits, solution, stop).run(std::move(zones));
 }
 
 }  // namespace reemit

@@ -29,48 +29,57 @@ std::vector<bool> lit_faces(const Solution& solution) {
   return lit;
 }
 
+struct Side {
+  SideId id;
+  bool is_dark;
+};
+
+/// All that have zones.
+std::vector<Side> sides_with_zones(const Solution& solution, const SurfaceModel& surfaces) {
+  const ZoneMesh& mesh = solution.mesh;
+  const std::vector<bool> lit = lit_faces(solution);
+  std::vector<Side> sides;
+  for (std::size_t s = 0; s < mesh.side_count(); ++s) {
+    const SideId side(s);
+    if (!mesh.has_zones(side)) continue;
+    const TriangleId t = triangle_of(side);
+    const bool sealed = mesh.is_sealed(mesh.first_zone(t, is_front(side)));
+    sides.push_back({side, (sealed || !lit[face_of(mesh, side)]) && !surfaces.emits(t, is_front(side))});
+  }
+  return sides;
+}
+
 /// What rays say of the dark sides of a face.
 struct Outlook {
   double area = 0;    // [m2]
   double chords = 0;  // sum over rays that met something; all stand for the same area
   std::uint32_t rays = 0;
   std::uint32_t misses = 0;
+
+  bool encloses_space() const { return rays > 0 && 2 * misses <= rays; }
 };
 
-}  // namespace
-
-DarkSpace find_dark_space(const PacketRoom& transport, const Solution& solution, const StopToken* stop) {
-  end_if_requested(stop);
-  const ZoneMesh& mesh = solution.mesh;
-  const RayTracer& rays = transport.rays();
-  const SurfaceModel& surfaces = transport.surface_model();
-  const std::vector<bool> lit = lit_faces(solution);
-  std::vector<SideId> sides;
-  std::vector<bool> is_dark;
-  std::vector<Outlook> dark(lit.size());
-  double all_area = 0;
-  for (std::size_t s = 0; s < mesh.side_count(); ++s) {
-    const SideId side(s);
-    const TriangleId t = triangle_of(side);
-    if (!mesh.has_zones(side)) continue;
-    const std::size_t face = face_of(mesh, side);
-    const bool sealed = mesh.is_sealed(mesh.first_zone(t, is_front(side)));
-    sides.push_back(side);
-    is_dark.push_back((sealed || !lit[face]) && !surfaces.emits(t, is_front(side)));
-    all_area += mesh.triangle_area(t);
-    if (is_dark.back()) dark[face].area += mesh.triangle_area(t);
-  }
-  const CounterRng rng(0, RngPurpose::kProbe);
+struct Outlooks {
+  std::vector<Outlook> dark;  // by face
   double lit_chords = 0;
+};
+
+/// Rays from all sides, as many from each square metre.
+Outlooks look_out(const RayTracer& rays, const ZoneMesh& mesh, const std::vector<Side>& sides,
+                  std::size_t faces, const StopToken* stop) {
+  constexpr std::uint32_t kNowAndThen = 1024;
+  double all_area = 0;
+  for (const Side& side : sides) all_area += mesh.triangle_area(triangle_of(side.id));
+  Outlooks found{std::vector<Outlook>(faces)};
+  const CounterRng rng(0, RngPurpose::kProbe);
   double running = 0;
   std::uint32_t sent = 0;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const SideId side = sides[i];
-    running += mesh.triangle_area(triangle_of(side));
+  for (const auto& [side, is_dark] : sides) {
+    const double area = mesh.triangle_area(triangle_of(side));
+    Outlook outlook;
+    running += area;
     const auto upto = static_cast<std::uint32_t>(std::floor(running / all_area * kSideRays + 0.5));
-    Outlook& outlook = dark[face_of(mesh, side)];
     while (sent < upto) {
-      constexpr std::uint32_t kNowAndThen = 1024;
       if (sent % kNowAndThen < 16) end_if_requested(stop);
       const int count = static_cast<int>(std::min<std::uint32_t>(16, upto - sent));
       Ray16 some;
@@ -81,21 +90,37 @@ DarkSpace find_dark_space(const PacketRoom& transport, const Solution& solution,
         some.set(lane, ray_origin(rays, x), Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3])));
       }
       trace_probes(rays, some, count, [&](int, const ProbeRay& probe) {
-        const double chord = probe.met ? static_cast<double>(probe.hit.distance) : 0;
-        if (!is_dark[i]) {
-          lit_chords += chord;
-          return;
-        }
         ++outlook.rays;
-        outlook.chords += chord;
-        if (!probe.met) ++outlook.misses;
+        if (probe.met)
+          outlook.chords += static_cast<double>(probe.hit.distance);
+        else
+          ++outlook.misses;
       });
     }
+    if (!is_dark) {
+      found.lit_chords += outlook.chords;
+      continue;
+    }
+    Outlook& of_face = found.dark[face_of(mesh, side)];
+    of_face.area += area;
+    of_face.chords += outlook.chords;
+    of_face.rays += outlook.rays;
+    of_face.misses += outlook.misses;
   }
+  return found;
+}
+
+}  // namespace
+
+DarkSpace find_dark_space(const PacketRoom& transport, const Solution& solution, const StopToken* stop) {
+  end_if_requested(stop);
+  const std::vector<Side> sides = sides_with_zones(solution, transport.surface_model());
+  const auto [dark, lit_chords] =
+      look_out(transport.rays(), solution.mesh, sides, 2 * solution.surface_names.size(), stop);
   DarkSpace found;
   double dark_chords = 0;
   for (std::size_t f = 0; f < dark.size(); ++f) {
-    if (dark[f].rays == 0 || 2 * dark[f].misses > dark[f].rays) continue;
+    if (!dark[f].encloses_space()) continue;
     dark_chords += dark[f].chords;
     found.faces.push_back({SurfaceId(f / 2), f % 2 == 0, dark[f].area});
   }

@@ -47,6 +47,12 @@ double open_or_least(double open) {
   return std::max(kLeastOpen, open);
 }
 
+double worth_of(const std::vector<UsefulLight>& light) {
+  double sum = 0;
+  for (const UsefulLight& l : light) sum += static_cast<double>(l.worth);
+  return sum;
+}
+
 }  // namespace
 
 SkyLight::SkyLight(const Scene& scene, const ZoneMesh& mesh, const RayTracer& rays,
@@ -198,19 +204,39 @@ const SkyLight::Survey& SkyLight::survey() const {
 }
 
 void SkyLight::make_survey() const {
-  Survey& found = survey_;
+  std::vector<std::vector<UsefulLight>> useful = useful_sky();
+  std::vector<UsefulLight> of_sun;
+  if (beam_) of_sun = useful_sun();
+  for (const auto& light : useful) survey_.worth += worth_of(light);
+  survey_.worth += worth_of(of_sun);
+  double all = 0;
+  const auto add = [&](std::size_t source, std::vector<UsefulLight>& light) {
+    if (!(flux(source) > 0)) return;
+    for (const NumberCell& numbers : divide_numbers(light, survey_.worth / kCells))
+      survey_.cells.push_back({source, numbers, 0});
+    all += flux(source);
+  };
+  for (std::size_t s = 0; s < useful.size(); ++s) add(s, useful[s]);
+  if (beam_) add(kSunSource, of_sun);
+  const double undirected = survey_.worth > 0 ? kUndirected : 1;
+  for (PacketCell& c : survey_.cells) {
+    c.packets = undirected * c.numbers.volume() * flux(c.source) / all;
+    if (survey_.worth > 0) c.packets += (1 - undirected) * c.numbers.worth / survey_.worth;
+  }
+}
+
+std::vector<std::vector<UsefulLight>> SkyLight::useful_sky() const {
   std::vector<SkySight> sights;
   survey_sky(
       *mesh_, *rays_, *surfaces_, table_.to_local(),
-      [this](const Vec3f& towards) { return table_.brightness(cell(towards)); }, found.view, sights);
-  found.view.finish();
-  const double metres2 = rays_->metres_per_unit() * rays_->metres_per_unit();
+      [this](const Vec3f& towards) { return table_.brightness(cell(towards)); }, survey_.view, sights);
+  survey_.view.finish();
   std::vector<std::vector<UsefulLight>> useful(entries_.size() * SkyEntry::kFaces);
   double seen_area = 0;
   double needed = 0;
   for (const SkySight& sight : sights) {
-    const double open = open_or_least(found.view.open_share(sight.place));
-    const double area = static_cast<double>(sight.area) * metres2;
+    const double open = open_or_least(survey_.view.open_share(sight.place));
+    const double area = square_metres(sight);
     seen_area += area;
     needed += area / open;
     for (std::size_t e = 0; e < entries_.size(); ++e) {
@@ -223,47 +249,32 @@ void SkyLight::make_survey() const {
       if (light.worth > 0) useful[e * SkyEntry::kFaces + face].push_back(light);
     }
   }
-  if (seen_area > 0) found.mean_need = needed / seen_area;
-  std::vector<UsefulLight> of_sun;
-  if (beam_) {
-    sights.clear();
-    survey_sun(
-        *mesh_, *rays_, *surfaces_,
-        [this](float u0, float u1) {
-          return Vec3f(beam_->sample(static_cast<double>(u0), static_cast<double>(u1)).cast<float>());
-        },
-        found.view, sights);
-    for (const SkySight& sight : sights) {
-      const double open =
-          sight.place == SkyView::kUnknown ? 1 : open_or_least(found.view.open_share(sight.place));
-      UsefulLight light{};
-      beam_->invert(sight.point.cast<double>(), sight.towards.cast<double>(), light.u);
-      light.worth =
-          static_cast<float>(static_cast<double>(sight.area) * metres2 * sun_irradiance_.sum() / open);
-      of_sun.push_back(light);
-    }
+  if (seen_area > 0) survey_.mean_need = needed / seen_area;
+  return useful;
+}
+
+std::vector<UsefulLight> SkyLight::useful_sun() const {
+  std::vector<SkySight> sights;
+  survey_sun(
+      *mesh_, *rays_, *surfaces_,
+      [this](float u0, float u1) {
+        return Vec3f(beam_->sample(static_cast<double>(u0), static_cast<double>(u1)).cast<float>());
+      },
+      survey_.view, sights);
+  std::vector<UsefulLight> useful;
+  for (const SkySight& sight : sights) {
+    const double open =
+        sight.place == SkyView::kUnknown ? 1 : open_or_least(survey_.view.open_share(sight.place));
+    UsefulLight light{};
+    beam_->invert(sight.point.cast<double>(), sight.towards.cast<double>(), light.u);
+    light.worth = static_cast<float>(square_metres(sight) * sun_irradiance_.sum() / open);
+    useful.push_back(light);
   }
-  const auto worth_of = [](const std::vector<UsefulLight>& light) {
-    double sum = 0;
-    for (const UsefulLight& l : light) sum += static_cast<double>(l.worth);
-    return sum;
-  };
-  for (const auto& light : useful) found.worth += worth_of(light);
-  found.worth += worth_of(of_sun);
-  double all = 0;
-  const auto add = [&](std::size_t source, std::vector<UsefulLight>& light) {
-    if (!(flux(source) > 0)) return;
-    for (const NumberCell& numbers : divide_numbers(light, found.worth / kCells))
-      found.cells.push_back({source, numbers, 0});
-    all += flux(source);
-  };
-  for (std::size_t s = 0; s < useful.size(); ++s) add(s, useful[s]);
-  if (beam_) add(kSunSource, of_sun);
-  const double undirected = found.worth > 0 ? kUndirected : 1;
-  for (PacketCell& c : found.cells) {
-    c.packets = undirected * c.numbers.volume() * flux(c.source) / all;
-    if (found.worth > 0) c.packets += (1 - undirected) * c.numbers.worth / found.worth;
-  }
+  return useful;
+}
+
+double SkyLight::square_metres(const SkySight& sight) const {
+  return static_cast<double>(sight.area) * (rays_->metres_per_unit() * rays_->metres_per_unit());
 }
 
 std::shared_ptr<const SkyLight> make_sky_light(const Scene& scene, const ZoneMesh& mesh,

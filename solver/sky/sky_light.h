@@ -16,6 +16,8 @@
 
 namespace reemit {
 
+struct SkySight;
+
 /// Sky, ground and sun as packets, shadow rays and rays that leave the room meet them. What the room sees of
 /// them is surveyed once, when it is first asked for. Const members may be called from any thread.
 class SkyLight {
@@ -107,6 +109,11 @@ class SkyLight {
   Vec3 local(const Vec3f& v) const { return table_.to_local() * v.cast<double>(); }
   const Survey& survey() const;
   void make_survey() const;
+  /// Parts of it, which fill its view: what of the sky is of use, by entry and face of its box, and what of
+  /// the sun. Pre (the latter): beam_, after useful_sky().
+  std::vector<std::vector<UsefulLight>> useful_sky() const;
+  std::vector<UsefulLight> useful_sun() const;
+  double square_metres(const SkySight& sight) const;
   double flux(std::size_t source) const;
   double pdf_per_sr(std::uint32_t place, const Vec3& local) const;
 

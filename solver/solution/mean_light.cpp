@@ -64,73 +64,106 @@ void scatter(const Material& material, GroupedMean& side, const GroupedMean& oth
   if (lets_through) side.scatters += tau;
 }
 
-/// Index surface * 2 + (0 front, 1 back); of area 0 where a side has no zones.
-std::vector<GroupedMean> gather_sides(const Solution& solution) {
-  const ZoneMesh& mesh = solution.mesh;
-  const ZoneSums& sums = solution.sums;
-  const std::size_t bands = solution.bands.count();
-  const std::size_t values = sums.direct.size();
-  std::vector<GroupedMean> sides(2 * solution.surface_names.size(), GroupedMean(bands));
-  const bool varies = !solution.zone_reflectances.empty();
-  const auto side_of = [&](ZoneId z) -> GroupedMean& {
-    return sides[2 * mesh.zone_surface(z).index() + (mesh.zone_shows_front(z) ? 0 : 1)];
-  };
-  // Reflectance of a zone over that of its material, which scatter() takes.
-  const auto excess = [&](std::size_t i) {
-    const ZoneId z(i / bands);
-    const Spectrum& mean = solution.zone_material(z).reflectance_of(mesh.zone_shows_front(z));
-    return solution.zone_reflectances[i] - mean[static_cast<Eigen::Index>(i % bands)];
-  };
-  const auto add_up = [&](auto&& value_of, auto&& into) {
-    for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
+/// Sides by index surface * 2 + (0 front, 1 back); of area 0 where a side has no zones.
+class Sides {
+ public:
+  explicit Sides(const Solution& solution)
+      : solution_(solution),
+        mesh_(solution.mesh),
+        sums_(solution.sums),
+        bands_(solution.bands.count()),
+        sides_(2 * solution.surface_names.size(), GroupedMean(bands_)) {}
+
+  std::vector<GroupedMean> gather() {
+    add_emission();
+    add_irradiance();
+    for (std::size_t s = 0; s < sides_.size(); ++s)
+      scatter(solution_.materials[solution_.surface_materials[s / 2].index()], sides_[s], sides_[s ^ 1U],
+              s % 2 == 0);
+    if (reflectance_varies()) add_what_zones_reflect_beyond_the_mean();
+    return std::move(sides_);
+  }
+
+ private:
+  bool reflectance_varies() const { return !solution_.zone_reflectances.empty(); }
+
+  GroupedMean& side_of(ZoneId z) {
+    return sides_[2 * mesh_.zone_surface(z).index() + (mesh_.zone_shows_front(z) ? 0 : 1)];
+  }
+
+  /// Of value zone * channels + channel in one group of batches.
+  double of_group(std::size_t group, std::size_t i) const {
+    return static_cast<double>(sums_.group_total[group * sums_.direct.size() + i]);
+  }
+
+  template <class Value, class Into>
+  void add_up(const Value& value_of, const Into& into) {
+    for (std::size_t z = 0; z < mesh_.zone_count(); ++z) {
       Spectrum& sum = into(side_of(ZoneId(z)));
-      const double area = mesh.zone_area(ZoneId(z));
-      for (std::size_t b = 0; b < bands; ++b)
-        sum[static_cast<Eigen::Index>(b)] += area * sums.channels.over_groups(b, [&](std::size_t c) {
-          return value_of(z * sums.channels.count() + c);
+      const double area = mesh_.zone_area(ZoneId(z));
+      for (std::size_t b = 0; b < bands_; ++b)
+        sum[static_cast<Eigen::Index>(b)] += area * sums_.channels.over_groups(b, [&](std::size_t c) {
+          return value_of(z * sums_.channels.count() + c);
         });
     }
-  };
-  for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
-    GroupedMean& side = side_of(ZoneId(z));
-    side.area += mesh.zone_area(ZoneId(z));
-    for (std::size_t b = 0; b < bands; ++b) {
-      double& emitted = side.emitted[static_cast<Eigen::Index>(b)];
-      const double here = solution.emitted_radiosity(ZoneId(z), b);
-      emitted = varies ? emitted + mesh.zone_area(ZoneId(z)) / side.area * (here - emitted) : here;
+  }
+
+  void add_emission() {
+    for (std::size_t z = 0; z < mesh_.zone_count(); ++z) {
+      GroupedMean& side = side_of(ZoneId(z));
+      side.area += mesh_.zone_area(ZoneId(z));
+      for (std::size_t b = 0; b < bands_; ++b) {
+        double& emitted = side.emitted[static_cast<Eigen::Index>(b)];
+        const double here = solution_.emitted_radiosity(ZoneId(z), b);
+        emitted =
+            reflectance_varies() ? emitted + mesh_.zone_area(ZoneId(z)) / side.area * (here - emitted) : here;
+      }
     }
   }
-  add_up([&](std::size_t i) { return sums.total(i); },
-         [](GroupedMean& side) -> Spectrum& { return side.all.irradiance; });
-  for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
-    add_up([&](std::size_t i) { return static_cast<double>(sums.group_total[g * values + i]); },
-           [g](GroupedMean& side) -> Spectrum& { return side.groups[g].irradiance; });
-  for (GroupedMean& side : sides) {
-    if (!(side.area > 0)) continue;
-    if (sums.batches > 0) side.all.irradiance /= side.area * static_cast<double>(sums.weight());
-    for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
-      side.groups[g].irradiance /= side.area * static_cast<double>(sums.group_weight[g]);
+
+  void add_irradiance() {
+    add_up([&](std::size_t i) { return sums_.total(i); },
+           [](GroupedMean& side) -> Spectrum& { return side.all.irradiance; });
+    for (std::size_t g = 0; g < kGroups && sums_.group_weight[g] > 0; ++g)
+      add_up([&](std::size_t i) { return of_group(g, i); },
+             [g](GroupedMean& side) -> Spectrum& { return side.groups[g].irradiance; });
+    for (GroupedMean& side : sides_) {
+      if (!(side.area > 0)) continue;
+      if (sums_.batches > 0) side.all.irradiance /= side.area * static_cast<double>(sums_.weight());
+      for (std::size_t g = 0; g < kGroups && sums_.group_weight[g] > 0; ++g)
+        side.groups[g].irradiance /= side.area * static_cast<double>(sums_.group_weight[g]);
+    }
   }
-  for (std::size_t s = 0; s < sides.size(); ++s)
-    scatter(solution.materials[solution.surface_materials[s / 2].index()], sides[s], sides[s ^ 1U],
-            s % 2 == 0);
-  if (!varies) return sides;
-  // What zones reflect is not the mean reflectance times the mean irradiance.
-  const auto own = [](GroupedMean::Light& light, const GroupedMean& side, double weight) {
-    if (side.area > 0 && weight > 0) light.scattered += light.reflected / (side.area * weight);
-  };
-  add_up([&](std::size_t i) { return excess(i) * sums.total(i); },
-         [](GroupedMean& side) -> Spectrum& { return side.all.reflected; });
-  for (std::size_t g = 0; g < kGroups && sums.group_weight[g] > 0; ++g)
-    add_up([&](std::size_t i) { return excess(i) * static_cast<double>(sums.group_total[g * values + i]); },
-           [g](GroupedMean& side) -> Spectrum& { return side.groups[g].reflected; });
-  for (GroupedMean& side : sides) {
-    own(side.all, side, static_cast<double>(sums.weight()));
-    for (std::size_t g = 0; g < kGroups; ++g)
-      own(side.groups[g], side, static_cast<double>(sums.group_weight[g]));
+
+  /// What zones reflect is not the mean reflectance times the mean irradiance.
+  void add_what_zones_reflect_beyond_the_mean() {
+    // Reflectance of a zone over that of its material, which scatter() takes.
+    const auto excess = [&](std::size_t i) {
+      const ZoneId z(i / bands_);
+      const Spectrum& mean = solution_.zone_material(z).reflectance_of(mesh_.zone_shows_front(z));
+      return solution_.zone_reflectances[i] - mean[static_cast<Eigen::Index>(i % bands_)];
+    };
+    add_up([&](std::size_t i) { return excess(i) * sums_.total(i); },
+           [](GroupedMean& side) -> Spectrum& { return side.all.reflected; });
+    for (std::size_t g = 0; g < kGroups && sums_.group_weight[g] > 0; ++g)
+      add_up([&](std::size_t i) { return excess(i) * of_group(g, i); },
+             [g](GroupedMean& side) -> Spectrum& { return side.groups[g].reflected; });
+    const auto own = [](GroupedMean::Light& light, const GroupedMean& side, double weight) {
+      if (side.area > 0 && weight > 0) light.scattered += light.reflected / (side.area * weight);
+    };
+    for (GroupedMean& side : sides_) {
+      own(side.all, side, static_cast<double>(sums_.weight()));
+      for (std::size_t g = 0; g < kGroups; ++g)
+        own(side.groups[g], side, static_cast<double>(sums_.group_weight[g]));
+    }
   }
-  return sides;
-}
+
+  const Solution& solution_;
+  const ZoneMesh& mesh_;
+  const ZoneSums& sums_;
+  std::size_t bands_;
+  std::vector<GroupedMean> sides_;
+};
 
 /// Weights of the groups that have batches.
 struct GroupWeights {
@@ -186,7 +219,7 @@ MeanLight finished(const Solution& solution, const GroupedMean& grouped) {
 }  // namespace
 
 RoomLight mean_light(const Solution& solution) {
-  const std::vector<GroupedMean> sides = gather_sides(solution);
+  const std::vector<GroupedMean> sides = Sides(solution).gather();
   std::vector<GroupedMean> by_material(solution.materials.size(), GroupedMean(solution.bands.count()));
   RoomLight room;
   for (std::size_t s = 0; s < solution.surface_names.size(); ++s) {
