@@ -77,7 +77,8 @@ void add_vertices(bool average_zones, Intervals& intervals) {
   VertexSettings settings;
   settings.average_zones = average_zones;
   settings.gather_rays = 128;
-  settings.light_samples = 32;
+  // Four in a replicate. With two their skewness shows: 93.3 % of 23,520 intervals.
+  settings.light_samples = 64;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Solution s = solve_furnace(furnace, SolveMethod::kShooting, seed);
     settings.seed = seed;
