@@ -77,7 +77,7 @@ class Comparison {
     compare(suspects, settings_.points, settings_.seed, {0, 0.8});
     // Where a luminaire shows in a thousandth of a zone only, few points may all miss that and know of no
     // error.
-    std::erase_if(suspects, [&](std::size_t i) { return !differs(found_[i].difference); });
+    std::erase_if(suspects, [&](std::size_t i) { return !found_[i].difference.differs(); });
     const std::size_t times = kMostZonesAgain / std::max<std::size_t>(1, suspects.size());
     const auto points_again = static_cast<int>(std::min<std::size_t>(
         std::clamp<std::size_t>(times, 4, 64) * static_cast<std::size_t>(settings_.points), 1 << 24));
@@ -97,7 +97,7 @@ class Comparison {
       audit.surfaces[s].by_packets += area * d.by_packets;
       audit.surfaces[s].by_samples += area * d.by_samples;
       variances[s] += area * area * variance;
-      if (differs(d)) audit.different.push_back(d);
+      if (d.differs()) audit.different.push_back(d);
     }
     for (std::size_t s = 0; s < audit.surfaces.size(); ++s)
       audit.surfaces[s].limit =
@@ -120,8 +120,6 @@ class Comparison {
   struct ProgressRange {
     double begin, end;
   };
-
-  static bool differs(const DirectDifference& d) { return std::abs(d.by_packets - d.by_samples) > d.limit; }
 
   /// What chance explains of a mean that comes in packets of `per_packet`, with a variance of the samples on
   /// top.

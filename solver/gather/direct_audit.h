@@ -25,6 +25,7 @@ struct DirectDifference {
   double by_packets = 0;  ///< What first hits of packets brought.
   double by_samples = 0;  ///< What shadow rays to sampled luminaire points find, on average over the zone.
   double limit = 0;       ///< Largest difference that chance explains.
+  bool differs() const { return std::abs(by_packets - by_samples) > limit; }
 };
 
 /// Power straight from the luminaires on the compared zones of one surface, all bands together [W].

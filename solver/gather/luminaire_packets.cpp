@@ -32,12 +32,6 @@ struct WeightSums {
   double mean_weight(double of_none) const { return weights > 0 ? squares / weights : of_none; }
 };
 
-double emitted_watts(const PacketSources& emission) {
-  double sum = 0;
-  for (std::size_t s = 0; s < emission.sources.size(); ++s) sum += emission.watts_of(s);
-  return sum;
-}
-
 /// The same sources, each with its power times that of one of `packets` packets [W2].
 PacketSources weighted_by_packets(const PacketSources& emission, double packets) {
   const Channels channels = emission.channels;
@@ -62,17 +56,17 @@ bool LuminairePackets::are_shot_for(const Solution& solution) {
 
 LuminairePackets::LuminairePackets(const Room& room, const Solution& solution,
                                    const std::atomic<bool>& interrupt)
-    : solution_(solution) {
+    : solution_(solution),
+      mean_watts_(solution.audit.emitted_watts() / static_cast<double>(solution.record.packets)) {
+  if (!are_shot_for(solution))
+    for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+      irradiance_.push_back(direct_irradiance_of(solution, ZoneId(z)));
+  const bool may_be_unlike = room.sky() != nullptr;
+  if (!are_shot_for(solution) && !may_be_unlike) return;
   tbb::task_arena().execute([&] {
     const PacketRoom transport(room, Channels(solution.bands.count()));
     const PacketSources emission = collect_packet_sources(transport);
-    mean_watts_ = emitted_watts(emission) / static_cast<double>(solution.record.packets);
-    if (are_shot_for(solution)) {
-      irradiance_ = shoot(transport, emission, interrupt);
-    } else {
-      for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
-        irradiance_.push_back(direct_irradiance_of(solution, ZoneId(z)));
-    }
+    if (are_shot_for(solution)) irradiance_ = shoot(transport, emission, interrupt);
     if (!emission.packet_share.empty()) weigh(transport, emission, interrupt);
   });
 }

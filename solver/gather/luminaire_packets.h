@@ -37,9 +37,9 @@ class LuminairePackets {
   void weigh(const PacketRoom& transport, const PacketSources& emission, const std::atomic<bool>& interrupt);
 
   const Solution& solution_;
+  double mean_watts_;               // of all packets
   std::vector<double> irradiance_;  // by zone
   double largest_sky_irradiance_ = 0;
-  double mean_watts_ = 0;  // of all packets
   // Packets there [W]; empty: all have the same power.
   std::vector<double> of_zone_;
   std::vector<double> of_surface_;

@@ -26,12 +26,6 @@ constexpr std::uint32_t kProbes = 1U << 16;
 constexpr std::size_t kMostLosses = 512;
 constexpr std::size_t kMostPlaces = 3;
 
-double emitted_watts(const EnergyAudit& audit) {
-  double sum = 0;
-  for (const BandAudit& band : audit.bands) sum += audit.watts(band, band.emitted);
-  return sum;
-}
-
 /// Probes with the power that each stands for [W].
 struct ProbeSet {
   Flight flight;
@@ -207,7 +201,7 @@ void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission,
   const EnergyAudit& audit = solution.audit;
   double escaped = 0;
   for (const BandAudit& band : audit.bands) escaped += audit.watts(band, band.total_escaped());
-  const double share = escaped / emitted_watts(audit);
+  const double share = escaped / audit.emitted_watts();
   if (!(share > kLeastShare)) return;
   const EscapedLight found = find_escapes(transport, emission, solution, stop);
   const bool by_gaps = 2 * found.through_gaps > share && found.through_openings < kMostlyClosedShare;
@@ -233,7 +227,7 @@ void warn_of_backs(const PacketRoom& transport, const PacketSources& emission, c
   std::vector<double> watts(scene.surfaces.size(), 0.0);
   for (const BandAudit& band : audit.bands)
     for (std::size_t s = 0; s < watts.size(); ++s) watts[s] += audit.watts(band, band.absorbed_on_backs[s]);
-  const double emitted = emitted_watts(audit);
+  const double emitted = audit.emitted_watts();
   const double lost = std::accumulate(watts.begin(), watts.end(), 0.0);
   if (!(lost > kLeastShare * emitted) || is_lit_from_outside(scene)) return;
   std::vector<std::size_t> order(watts.size());
@@ -293,7 +287,7 @@ EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emis
   });
   const RayTracer& rays = transport.rays();
   const double diagonal = room_diagonal(transport.scene());
-  const double emitted = emitted_watts(solution.audit);
+  const double emitted = solution.audit.emitted_watts();
   thin_out(escapes);
   EscapedLight found;
   std::vector<Loss> losses;
@@ -321,7 +315,7 @@ std::vector<std::string> lost_light_warnings(const PacketRoom& transport, const 
                                              const Solution& solution, const StopToken* stop) {
   end_if_requested(stop);
   std::vector<std::string> warnings;
-  if (!(emitted_watts(solution.audit) > 0)) return warnings;
+  if (!(solution.audit.emitted_watts() > 0)) return warnings;
   // What goes astray outside of a dark room is not what its faces lose.
   if (!warn_of_the_dark(transport, solution, stop, warnings))
     warn_of_escapes(transport, emission, solution, stop, warnings);

@@ -29,6 +29,12 @@ bool EnergyAudit::balanced() const {
   return std::all_of(bands.begin(), bands.end(), [](const BandAudit& b) { return b.balance() == 0; });
 }
 
+double EnergyAudit::emitted_watts() const {
+  double sum = 0;
+  for (const BandAudit& band : bands) sum += watts(band, band.emitted);
+  return sum;
+}
+
 double EnergyAudit::unshot_share() const {
   double unshot = 0;
   double emitted = 0;

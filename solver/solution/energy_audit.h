@@ -71,6 +71,7 @@ struct EnergyAudit {
   bool balanced() const;              ///< BandAudit::balance of every channel is 0.
   double unshot_share() const;        ///< Of all bands together, each band counting alike.
   double worst_unshot_share() const;  ///< Of the band with most.
+  double emitted_watts() const;       ///< Of all channels together [W].
   /// Power [W] of a number of quanta of this band.
   double watts(const BandAudit& band, RunQuanta quanta) const {
     return watts(band, static_cast<double>(quanta));

@@ -137,10 +137,10 @@ TEST(SampledDirectLight, LeavesManyHiddenLuminairesToPackets) {
   EXPECT_FALSE(is_sampled_in(shafts));
 }
 
-/// A box of one reflectance with a lamp under its ceiling, and a small white plate on its floor.
-RoomBuilder dark_room_with_plate(double reflectance) {
+/// A black box with a lamp under its ceiling, and a small white plate on its floor.
+RoomBuilder dark_room_with_plate() {
   RoomBuilder room;
-  const MaterialId wall = room.material("wall", reflectance, 0);
+  const MaterialId wall = room.material("wall", 0, 0);
   const MaterialId white = room.material("white", 0.5, 0);
   const MaterialId lamp = room.material("lamp", 0, 20);
   room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, wall, wall}, 10);
@@ -165,7 +165,7 @@ double squared_noise(const Solution& s) {
 
 // Shadow rays that all went to the plate would leave the walls more than twice the noise of packets.
 TEST(SampledDirectLight, IlluminanceOfBlackWallsIsKnownBesideALittleWhite) {
-  const RoomBuilder room = dark_room_with_plate(0);
+  const RoomBuilder room = dark_room_with_plate();
   EXPECT_LT(squared_noise(solved(room, settings_of(DirectSource::kBest))),
             squared_noise(solved(room, settings_of(DirectSource::kPackets))));
 }
@@ -173,7 +173,7 @@ TEST(SampledDirectLight, IlluminanceOfBlackWallsIsKnownBesideALittleWhite) {
 // Zones one beside the other fill the gaps in each other's samples. With sequences of their own the quotient
 // was 0.62 (the sum over all sides is known), with a standard deviation of 0.1 for 5 x 15 degrees of freedom.
 TEST(SampledDirectLight, MeansOverSidesHaveLessNoiseThanTheirZones) {
-  const RoomBuilder room = dark_room_with_plate(0);
+  const RoomBuilder room = dark_room_with_plate();
   ASSERT_TRUE(is_sampled_in(room));
   const Solution s = solved(room, settings_of(DirectSource::kBest));
   double quotients = 0;

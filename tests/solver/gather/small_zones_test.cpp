@@ -142,6 +142,12 @@ test::Measured light_on_small_zones(const Solution& s) {
   return {mean.mean, std::sqrt(mean.squared_error)};
 }
 
+Solution solved_by(const test::RoomBuilder& room, std::uint64_t packets) {
+  SolverSettings settings;
+  settings.packets = packets;
+  return solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+}
+
 /// Light on all small zones as gathered, and as other packets bring it.
 struct TwoWays {
   std::uint64_t gathered_zones;
@@ -213,10 +219,7 @@ test::RoomBuilder furnace_with_a_well() {
 // Hardly a packet enters it. Gathers that read what packets brought there find what a few reflections bring,
 // a fifth of it all. Five standard errors are passed once in two million runs.
 TEST(SmallZones, see_light_in_cavities_that_packets_hardly_enter) {
-  const test::RoomBuilder room = furnace_with_a_well();
-  SolverSettings settings;
-  settings.packets = 4'000'000;
-  const Solution s = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  const Solution s = solved_by(furnace_with_a_well(), 4'000'000);
   EXPECT_EQ(s.record.gathered_zones, 40U);
   const test::Measured power = light_on_small_zones(s);
   const double area = 5e-6;
@@ -319,10 +322,7 @@ test::RoomBuilder room_with_sensor() {
 
 // With as many shadow rays as other zones meet packets it is known to 4 %.
 TEST(SmallZones, are_known_well_where_they_are_few) {
-  const test::RoomBuilder room = room_with_sensor();
-  SolverSettings settings;
-  settings.packets = 4'000'000;
-  const Solution s = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  const Solution s = solved_by(room_with_sensor(), 4'000'000);
   ASSERT_EQ(s.record.gathered_zones, 2U);
   const test::Measured power = light_on_small_zones(s);
   EXPECT_LT(power.stderr_of_mean, 0.03 * power.mean);
