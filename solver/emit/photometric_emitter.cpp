@@ -78,10 +78,10 @@ float PhotometricEmitter::expected_irradiance(const Vec3f& x, const Vec3f& n) co
     for (const auto& [u0, u1] : kPoints) mean += 0.25 * rough(point(u0, u1) - from);
   }
   // What these points miss must keep a weight.
-  constexpr double kLeastShare = 1e-3;
+  constexpr double kLeast = 1e-3;
   const double around = data_->table->total_flux() / (4 * std::numbers::pi * data_->metres * data_->metres);
   const double least =
-      kLeastShare * around * height / ((distance2 + data_->extent2) * std::sqrt(distance2 + data_->extent2));
+      kLeast * around * height / ((distance2 + data_->extent2) * std::sqrt(distance2 + data_->extent2));
   return static_cast<float>(std::max(mean, least));
 }
 

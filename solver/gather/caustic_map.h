@@ -53,8 +53,9 @@ class CausticMap {
                      const float* weight, float* sum) const;
 
  private:
-  /// How a photon spreads its power on its face.
-  struct Spread {
+  /// How a photon spreads its power on its face. Aligned to its size, as what is read and written at once
+  /// must be.
+  struct alignas(8) Spread {
     float gain = 0;            ///< FaceEnds::Kernel::gain at its place.
     std::uint16_t shrunk = 0;  ///< Its radius over the one it had, in 65,535ths.
     bool walled = false;       ///< Something stands on the face within its radius.

@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST(NoMemory, EndsWithCode3) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef REEMIT_SANITIZED
   GTEST_SKIP() << "the address sanitizer needs the address space that this test takes away";
 #endif
   const TempFolder folder;
@@ -50,7 +50,7 @@ std::string instanced_gltf(std::size_t corners, std::size_t copies) {
 }
 
 TEST(NoMemory, InstancesThatCannotFitAreRefusedBeforeTheyAreMade) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef REEMIT_SANITIZED
   GTEST_SKIP() << "the address sanitizer needs the address space that this test takes away";
 #endif
   const TempFolder folder;

@@ -2,12 +2,7 @@
 
 #include <algorithm>
 
-// Every operation is correctly rounded and none is contracted.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define REEMIT_ROW_KERNEL __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define REEMIT_ROW_KERNEL
-#endif
+#include "scenes/model/instruction_sets.h"
 
 namespace reemit::pixel_rows {
 namespace {
@@ -19,19 +14,19 @@ inline float tiny_beside(float p, float q) {
 
 }  // namespace
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void add_weighted(float* __restrict sum, const float* __restrict weight, const float* __restrict value,
                   std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) sum[i] += weight[i] * value[i];
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void add_variances(float* __restrict sum, const float* __restrict weight, const float* __restrict variance,
                    std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) sum[i] += weight[i] * weight[i] * variance[i];
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void add_differences(float* __restrict sum, const Pixels& p, const Pixels& q, const DifferenceScales& scales,
                      std::size_t count) {
   const auto [share, strength, noise] = scales;
@@ -50,7 +45,7 @@ void add_differences(float* __restrict sum, const Pixels& p, const Pixels& q, co
   }
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void add_pair_differences(float* __restrict sum, const Pixels& p, const Pixels& q, const Pixels& r,
                           const DifferenceScales& scales, std::size_t count) {
   const auto [share, strength, noise] = scales;
@@ -68,7 +63,7 @@ void add_pair_differences(float* __restrict sum, const Pixels& p, const Pixels& 
   }
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void average_along(float* __restrict mean, const float* __restrict value, int reach, std::size_t count) {
   const auto near = static_cast<std::size_t>(reach);
   const auto average_at = [&](std::size_t i) {
@@ -94,7 +89,7 @@ void average_along(float* __restrict mean, const float* __restrict value, int re
   for (std::size_t i = count - near; i < count; ++i) average_at(i);
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void average_across(float* __restrict mean, const float* __restrict value, std::size_t rows,
                     std::size_t stride, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) mean[i] = value[i];
@@ -104,7 +99,7 @@ void average_across(float* __restrict mean, const float* __restrict value, std::
   for (std::size_t i = 0; i < count; ++i) mean[i] /= terms;
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void find_distances(float* __restrict distance, const Things& p, const Things& q, const ThingScales& scales,
                     std::size_t count) {
   const auto [normals, depth, columns, rows] = scales;
@@ -120,7 +115,7 @@ void find_distances(float* __restrict distance, const Things& p, const Things& q
   }
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void weigh(float* __restrict weight, const float* __restrict distance, const float* __restrict other_distance,
            float farthest, const float* __restrict precision, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -131,12 +126,12 @@ void weigh(float* __restrict weight, const float* __restrict distance, const flo
   }
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void raise(float* __restrict value, const float* __restrict other, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) value[i] = value[i] > other[i] ? value[i] : other[i];
 }
 
-REEMIT_ROW_KERNEL
+REEMIT_FOR_INSTRUCTION_SETS
 void lower(float* __restrict value, const float* __restrict other, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) value[i] = value[i] < other[i] ? value[i] : other[i];
 }

@@ -289,11 +289,13 @@ struct EncodedSquare {
                                           {"count", count},
                                           {"mode", "ATTRIBUTES"},
                                           {"filter", filter}};
-    gltf.json["accessors"][0] = {{"bufferView", view},
-                                 {"componentType", component_type},
-                                 {"normalized", normalized},
-                                 {"count", count},
-                                 {"type", "VEC3"}};
+    // Named, for Clang 14 forgets to destroy what an assignment from braces replaces here.
+    const json accessor = {{"bufferView", view},
+                           {"componentType", component_type},
+                           {"normalized", normalized},
+                           {"count", count},
+                           {"type", "VEC3"}};
+    gltf.json["accessors"][0] = accessor;
   }
 };
 

@@ -162,7 +162,8 @@ TEST(Limits, PlacesInGltfAreNamedByTheirPointer) {
     test::expect_gltf_refused(gltf([&](test::GltfBuilder& g) {
                                 nlohmann::json light = {{"type", type}, {"intensity", 1e25}};
                                 light["spot"] = {{"outerConeAngle", 0.5}};
-                                g.json["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+                                g.json["extensions"]["KHR_lights_punctual"]["lights"] =
+                                    nlohmann::json::array({light});
                                 g.node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
                               }),
                               {"room.gltf#/extensions/KHR_lights_punctual/lights/0/intensity: ", "1e+15"});

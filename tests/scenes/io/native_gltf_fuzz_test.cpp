@@ -116,7 +116,7 @@ class Outcome {
 
 /// So many damaged files of a kind; with the address sanitizer, for which each takes twenty times as long,
 /// fewer.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef REEMIT_SANITIZED
 constexpr std::size_t kMutations = 1000;
 #else
 constexpr std::size_t kMutations = 4000;
