@@ -1,32 +1,18 @@
-# Files of one folder are compiled as one: what they include is then read once, which is most of the time that a single
-# file takes. A folder is a room of the house, so names in anonymous namespaces need to differ within their folder only,
-# and a new file changes nothing for the files of others. Large folders are split, so that all cores have work; the
-# preset dev compiles each file alone and so notices what a file forgets to include.
-set(REEMIT_UNITY_FILES 16 CACHE STRING "Files of one folder, at most, that are compiled as one")
+# Many files are compiled as one: what they include is then read once, and templates that they share are made once, which
+# is most of the time that a single file takes. So names in anonymous namespaces differ within a library or program. What is
+# large is split, so that all cores have work; the preset dev compiles each file alone and so notices what a file forgets
+# to include.
+set(REEMIT_UNITY_FILES 25 CACHE STRING "Files that are compiled as one, at most")
 
 function(reemit_unite target)
-  get_target_property(sources ${target} SOURCES)
-  get_target_property(base ${target} SOURCE_DIR)
-  set(folders "")
-  foreach(source ${sources})
-    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${base} NORMALIZE)
-    cmake_path(GET source PARENT_PATH folder)
-    list(APPEND folders ${folder})
-    list(APPEND "in_${folder}" ${source})
-  endforeach()
-  list(REMOVE_DUPLICATES folders)
-  foreach(folder ${folders})
-    set(files ${in_${folder}})
-    list(LENGTH files count)
-    math(EXPR units "(${count} + ${REEMIT_UNITY_FILES} - 1) / ${REEMIT_UNITY_FILES}")
-    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
-    string(REPLACE "/" "_" room ${room})
-    set(i 0)
-    foreach(file ${files})
-      math(EXPR unit "${i} * ${units} / ${count}")
-      set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${room}_${unit})
-      math(EXPR i "${i} + 1")
-    endforeach()
+  get_target_property(files ${target} SOURCES)
+  list(LENGTH files count)
+  math(EXPR units "(${count} + ${REEMIT_UNITY_FILES} - 1) / ${REEMIT_UNITY_FILES}")
+  set(i 0)
+  foreach(file ${files})
+    math(EXPR unit "${i} * ${units} / ${count}")
+    set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${unit})
+    math(EXPR i "${i} + 1")
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   # GCC takes a file that another includes for a header, and warns of anonymous types in its classes.

@@ -21,7 +21,7 @@ constexpr double kPlatePackets = 1e6;
 /// Standard error aimed at for the share that a pipe lets through.
 constexpr double kPipeTarget = 1.5e-3;
 /// As for the continuous rooms. Less work takes fewer, as larger errors hide more of what their size does.
-constexpr double kZones = 60000;
+constexpr double kMirrorZones = 60000;
 /// Rays per shadow ray at a point, and over a face. Few of the rays that look for a luminaire in a mirror
 /// find it.
 constexpr double kRaysForImages = 256;
@@ -30,7 +30,7 @@ constexpr int kShadowRaysAtPoint = 256;
 constexpr int kShadowRaysOverFace = 1024;
 
 double zones_for(const Effort& effort) {
-  return kZones * std::min(1.0, effort.work);
+  return kMirrorZones * std::min(1.0, effort.work);
 }
 
 /// Mirrors and whatever else a point sees are black but for the luminaire, so that the solution of the room

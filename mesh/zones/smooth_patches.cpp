@@ -11,15 +11,15 @@
 namespace reemit {
 namespace {
 
-struct EdgeUse {
+struct TriangleEdge {
   std::uint64_t key;
   std::uint32_t triangle;
   int edge;
   bool forward;  // from the smaller to the larger vertex index
 };
 
-std::vector<EdgeUse> sorted_edges(const BaseMesh& base) {
-  std::vector<EdgeUse> uses;
+std::vector<TriangleEdge> sorted_edges(const BaseMesh& base) {
+  std::vector<TriangleEdge> uses;
   uses.reserve(3 * base.triangles.size());
   for (std::size_t t = 0; t < base.triangles.size(); ++t) {
     const auto& v = base.triangles[t].vertex;
@@ -30,7 +30,7 @@ std::vector<EdgeUse> sorted_edges(const BaseMesh& base) {
                       static_cast<int>(k), a < b});
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
+  std::sort(uses.begin(), uses.end(), [](const TriangleEdge& x, const TriangleEdge& y) {
     return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
   });
   return uses;
@@ -48,7 +48,7 @@ bool is_shaded(const ZoneMesh& mesh, TriangleId t) {
 
 class EdgeJoint {
  public:
-  EdgeJoint(const ZoneMesh& mesh, const EdgeUse& a, const EdgeUse& b, double crease_angle_deg)
+  EdgeJoint(const ZoneMesh& mesh, const TriangleEdge& a, const TriangleEdge& b, double crease_angle_deg)
       : mesh_(mesh),
         a_(a),
         b_(b),
@@ -71,13 +71,13 @@ class EdgeJoint {
   }
 
  private:
-  static std::size_t corner(const EdgeUse& use, int end) {
+  static std::size_t corner(const TriangleEdge& use, int end) {
     return static_cast<std::size_t>((use.edge + end) % 3);
   }
 
   const ZoneMesh& mesh_;
-  const EdgeUse& a_;
-  const EdgeUse& b_;
+  const TriangleEdge& a_;
+  const TriangleEdge& b_;
   double crease_cosine_;
 };
 
@@ -96,13 +96,13 @@ SmoothPatches::SmoothPatches(const ZoneMesh& mesh, double crease_angle_deg) {
 
 void SmoothPatches::join_edges(const ZoneMesh& mesh, double crease_angle_deg) {
   neighbour_.assign(6 * mesh.triangle_count(), kNone);
-  const std::vector<EdgeUse> uses = sorted_edges(mesh.base());
+  const std::vector<TriangleEdge> uses = sorted_edges(mesh.base());
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     while (end < uses.size() && uses[end].key == uses[begin].key) ++end;
     // A third triangle stands there: light ends on the line, whatever surface it is of.
     if (end - begin != 2) continue;
-    const EdgeUse& a = uses[begin];
-    const EdgeUse& b = uses[begin + 1];
+    const TriangleEdge& a = uses[begin];
+    const TriangleEdge& b = uses[begin + 1];
     const EdgeJoint joint(mesh, a, b, crease_angle_deg);
     for (const bool a_front : {true, false}) {
       // Patches on one side run along their common edge in opposite senses; a back runs against its triangle.

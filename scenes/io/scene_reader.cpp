@@ -1,7 +1,6 @@
 #include "scenes/io/scene_reader.h"
 
 #include <array>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +16,7 @@
 #include "scenes/io/native/sky_option.h"
 #include "scenes/io/obj/obj_reader.h"
 #include "scenes/model/error.h"
+#include "scenes/model/measures.h"
 #include "scenes/model/scene_checks.h"
 
 namespace reemit {
@@ -65,10 +65,9 @@ void settle_sky(Scene& scene) {
   };
   std::string note = fmt::format("sky: {}; up is {}{}, north {}", sky.description, text(sky.up),
                                  is_given ? "" : " by the format or the cameras", text(sky.north));
-  constexpr double kDegree = std::numbers::pi / 180;
   if (sky.sun)
     note += fmt::format("; the sun stands {:.2f} degrees high, {:.2f} from north towards east",
-                        sky.sun->altitude / kDegree, sky.sun->azimuth / kDegree);
+                        sky.sun->altitude / kRadiansPerDegree, sky.sun->azimuth / kRadiansPerDegree);
   scene.notes.push_back(std::move(note));
 }
 

@@ -3,11 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "scenes/model/vec.h"
 
 namespace reemit {
+
+inline constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 inline double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 0.5 * (b - a).cross(c - a).norm();

@@ -6,11 +6,12 @@
 
 #include <Eigen/Geometry>
 
+#include "scenes/model/measures.h"
+
 namespace reemit {
 namespace {
 
 using std::numbers::pi;
-constexpr double kDegree = pi / 180;
 
 constexpr std::array<SkyGradation, 15> kCieSkies = {{{4.0, -0.70, 0, -1.0, 0},
                                                      {4.0, -0.70, 2, -1.5, 0.15},
@@ -73,7 +74,7 @@ constexpr double kClearness[7] = {1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.20
 
 /// Relative optical air mass [KY89, eq. 3].
 double air_mass(double altitude) {
-  const double degrees = altitude / kDegree;
+  const double degrees = altitude / kRadiansPerDegree;
   return 1 / (std::sin(altitude) + 0.50572 * std::pow(degrees + 6.07995, -1.6364));
 }
 

@@ -1,20 +1,20 @@
 #include "scenes/model/sun_position.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "scenes/model/measures.h"
 
 namespace reemit {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kJ2000 = 2451545.0;         // [d]
 constexpr double kDaysPerCentury = 36525.0;  // [d]
 
 double sin_deg(double x) {
-  return std::sin(x * kRadians);
+  return std::sin(x * kRadiansPerDegree);
 }
 double cos_deg(double x) {
-  return std::cos(x * kRadians);
+  return std::cos(x * kRadiansPerDegree);
 }
 
 /// Between the clocks of the heavens and of the Earth [s], roughly: within a minute or so from 1950 to 2100,
@@ -46,8 +46,8 @@ Equatorial apparent_sun(double t) {
                            0.00037 * sin_deg(2 * mean_longitude);
   const double obliquity = 23.4392911 - 0.0130042 * t - 1.64e-7 * t * t + 0.00256 * cos_deg(node) +
                            0.00016 * cos_deg(2 * mean_longitude);
-  return {std::atan2(cos_deg(obliquity) * sin_deg(longitude), cos_deg(longitude)) / kRadians,
-          std::asin(sin_deg(obliquity) * sin_deg(longitude)) / kRadians};
+  return {std::atan2(cos_deg(obliquity) * sin_deg(longitude), cos_deg(longitude)) / kRadiansPerDegree,
+          std::asin(sin_deg(obliquity) * sin_deg(longitude)) / kRadiansPerDegree};
 }
 
 /// [MEE98, eq. 12.4] with the larger term of nutation [deg].
@@ -62,7 +62,7 @@ double apparent_sidereal_time(double julian) {
 double refraction(double altitude, const Air& air) {
   constexpr double kLowest = -1;
   if (altitude < kLowest) return 0;
-  const double minutes = 1.02 / std::tan((altitude + 10.3 / (altitude + 5.11)) * kRadians);
+  const double minutes = 1.02 / std::tan((altitude + 10.3 / (altitude + 5.11)) * kRadiansPerDegree);
   return minutes / 60 * air.pressure_hpa / 1010 * 283 / (273 + air.temperature_c);
 }
 
@@ -83,14 +83,14 @@ SunPosition sun_position(const Place& place, const CivilTime& time, const Air& a
   const double hour_angle = apparent_sidereal_time(julian) + place.longitude_deg - sun.right_ascension;
   const double sine = sin_deg(place.latitude_deg) * sin_deg(sun.declination) +
                       cos_deg(place.latitude_deg) * cos_deg(sun.declination) * cos_deg(hour_angle);
-  double altitude = std::asin(std::fmin(1, std::fmax(-1, sine))) / kRadians;
+  double altitude = std::asin(std::fmin(1, std::fmax(-1, sine))) / kRadiansPerDegree;
   constexpr double kParallax = 8.794 / 3600;
   altitude -= kParallax * cos_deg(altitude);
   const double from_south =
       std::atan2(sin_deg(hour_angle),
                  cos_deg(hour_angle) * sin_deg(place.latitude_deg) -
-                     std::tan(sun.declination * kRadians) * cos_deg(place.latitude_deg)) /
-      kRadians;
+                     std::tan(sun.declination * kRadiansPerDegree) * cos_deg(place.latitude_deg)) /
+      kRadiansPerDegree;
   return {altitude + refraction(altitude, air), std::fmod(from_south + 540, 360)};
 }
 

@@ -13,7 +13,7 @@ namespace reemit {
 namespace {
 
 /// A face at a corner of the room moves the light against the others there; this many rounds settle it.
-constexpr int kRounds = 8;
+constexpr int kPlacingRounds = 8;
 
 /// Position of a light that is in some place of the room; null for light from infinitely far away.
 Vec3* position_of(PunctualLight& light) {
@@ -58,7 +58,7 @@ NearFace face_at(const ZoneMesh& mesh, TriangleId t, const PunctualLight& light,
 }
 
 void step_before(const std::vector<NearFace>& faces, double clearance, Vec3& position) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kPlacingRounds; ++round) {
     bool moved = false;
     for (const NearFace& face : faces) {
       if (!face.is_within(position, clearance)) continue;

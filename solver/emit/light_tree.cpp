@@ -42,7 +42,7 @@ struct Shares {
 };
 
 /// Of its even share, what a lamp weighs at least when its clump is chosen from.
-constexpr double kLeastShare = 1e-4;
+constexpr double kLeastTreeShare = 1e-4;
 
 constexpr std::size_t kNodesInCache = 8192;  // 2 MB
 
@@ -197,7 +197,7 @@ LightTree::LightTree(std::span<const LuminaireBounds> luminaires) {
   const Widener widened(split_luminaires(shares), shares.size(), nodes_, trails_, order_);
   nodes_.shrink_to_fit();
   // The weakest lamp of a clump must not vanish in the running sum, or it would never be picked.
-  const double least = kLeastShare / static_cast<double>(order_.size());
+  const double least = kLeastTreeShare / static_cast<double>(order_.size());
   intensity_to_.assign(1, 0.0);
   place_.resize(order_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) {

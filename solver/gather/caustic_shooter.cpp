@@ -16,7 +16,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::uint32_t kPacketsPerTask = 1U << 14;
+constexpr std::uint32_t kCausticPacketsPerTask = 1U << 14;
 /// Packets between mirrors end there: what is left of them lights nothing that could be seen.
 constexpr std::uint32_t kMostSteps = 1024;
 constexpr std::uint32_t kAll16 = 0xffff;
@@ -172,11 +172,11 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
   if (marked != nullptr && marked->size() != mark_bytes) marked = nullptr;
   if (options.brought != nullptr) options.brought->assign(mark_bytes, 0);
   const FlightNumbers numbers(SamplingKind::kSobol, seed_ ^ 0x9e3779b97f4a7c15ULL, batch, 0);
-  const std::uint32_t tasks = (flight.packets() + kPacketsPerTask - 1) / kPacketsPerTask;
+  const std::uint32_t tasks = (flight.packets() + kCausticPacketsPerTask - 1) / kCausticPacketsPerTask;
   std::vector<CausticPhotons> of_task(tasks);
   tbb::parallel_for(std::uint32_t{0}, tasks, [&](std::uint32_t task) {
-    const std::uint32_t begin = task * kPacketsPerTask;
-    const std::uint32_t end = std::min(flight.packets(), begin + kPacketsPerTask);
+    const std::uint32_t begin = task * kCausticPacketsPerTask;
+    const std::uint32_t end = std::min(flight.packets(), begin + kCausticPacketsPerTask);
     Task(*this, flight, batch, options, marked, of_task[task]).run(numbers, begin, end);
   });
   for (const CausticPhotons& photons : of_task) all.append(photons);

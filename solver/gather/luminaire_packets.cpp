@@ -11,7 +11,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::uint64_t kPacketsPerBatch = std::uint64_t{1} << 22;
+constexpr std::uint64_t kLuminaireBatch = std::uint64_t{1} << 22;
 
 double direct_irradiance_of(const Solution& solution, ZoneId zone) {
   double sum = 0;
@@ -75,7 +75,7 @@ std::vector<double> LuminairePackets::shoot(const PacketRoom& transport, const P
                                             const std::atomic<bool>& interrupt) const {
   const StopToken stop(interrupt);
   const std::uint64_t wanted = solution_.record.packets;
-  const std::uint64_t batches = (wanted + kPacketsPerBatch - 1) / kPacketsPerBatch;
+  const std::uint64_t batches = (wanted + kLuminaireBatch - 1) / kLuminaireBatch;
   const std::size_t bands = emission.channels.count();
   std::vector<double> irradiance(transport.zones(), 0.0);
   BatchBooks books = transport.new_books();

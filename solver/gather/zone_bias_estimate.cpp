@@ -16,7 +16,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::size_t kGroups = ZoneBiasEffort::kGroups;
+constexpr std::size_t kBiasGroups = ZoneBiasEffort::kGroups;
 constexpr std::uint32_t kBiasReplicates = 16;
 static_assert(kBiasReplicates == ZoneSums::kGroups);
 
@@ -74,9 +74,9 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
   for (std::size_t b = 0; b < bands; ++b) {
     double square = 0;
     double variance = 0;  // of `square`
-    for (std::size_t g = 0; g < kGroups; ++g) {
-      const std::size_t first = g * points.size() / kGroups;
-      const std::size_t last = (g + 1) * points.size() / kGroups;
+    for (std::size_t g = 0; g < kBiasGroups; ++g) {
+      const std::size_t first = g * points.size() / kBiasGroups;
+      const std::size_t last = (g + 1) * points.size() / kBiasGroups;
       const ReplicateMean mean = mean_of_replicates(kBiasReplicates, parts, [&](std::size_t r) {
         double sum = 0;
         for (std::size_t i = first; i < last; ++i)
@@ -84,8 +84,8 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
         return sum / static_cast<double>(ZoneBiasEffort::kPointsPerGroup);
       });
       const double error2 = mean.squared_error;
-      square += (mean.mean * mean.mean - error2) / kGroups;
-      variance += (4 * mean.mean * mean.mean + 2 * error2) * error2 / (kGroups * kGroups);
+      square += (mean.mean * mean.mean - error2) / kBiasGroups;
+      variance += (4 * mean.mean * mean.mean + 2 * error2) * error2 / (kBiasGroups * kBiasGroups);
     }
     const ZoneBias bias{std::sqrt(std::max(0.0, square)),
                         std::sqrt(std::max(0.0, square) + 2 * std::sqrt(variance))};

@@ -15,7 +15,7 @@
 namespace reemit {
 namespace {
 
-constexpr double kLeastShare = 1e-5;         // of the emitted power; less is below any error target
+constexpr double kLeastShareLost = 1e-5;     // of the emitted power; less is below any error target
 constexpr double kClosedShare = 0.01;        // a room that loses less through openings counts as closed
 constexpr double kMostlyClosedShare = 0.05;  // the same where most of the loss goes through gaps
 constexpr double kOutdoorShare = 0.3;        // a room that loses more from places outside is meant to
@@ -202,7 +202,7 @@ void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission,
   double escaped = 0;
   for (const BandAudit& band : audit.bands) escaped += audit.watts(band, band.total_escaped());
   const double share = escaped / audit.emitted_watts();
-  if (!(share > kLeastShare)) return;
+  if (!(share > kLeastShareLost)) return;
   const EscapedLight found = find_escapes(transport, emission, solution, stop);
   const bool by_gaps = 2 * found.through_gaps > share && found.through_openings < kMostlyClosedShare;
   const bool closed = found.through_openings < kClosedShare && share < kOutdoorShare &&
@@ -229,7 +229,7 @@ void warn_of_backs(const PacketRoom& transport, const PacketSources& emission, c
     for (std::size_t s = 0; s < watts.size(); ++s) watts[s] += audit.watts(band, band.absorbed_on_backs[s]);
   const double emitted = audit.emitted_watts();
   const double lost = std::accumulate(watts.begin(), watts.end(), 0.0);
-  if (!(lost > kLeastShare * emitted) || is_lit_from_outside(scene)) return;
+  if (!(lost > kLeastShareLost * emitted) || is_lit_from_outside(scene)) return;
   std::vector<std::size_t> order(watts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kPacketsPerLight = 4096;
 constexpr std::uint32_t kLeastPacketsPerLight = 64;
-constexpr std::uint32_t kMostPackets = 1U << 19;
+constexpr std::uint32_t kMostOpeningPackets = 1U << 19;
 constexpr double kLeastLoss = 1e-3;
 
 /// The surface between two points, if there is one.
@@ -182,7 +182,7 @@ std::vector<OpeningLoss> opening_losses(const PacketRoom& transport, const StopT
   const std::vector<PunctualLight>& lights = transport.scene().lights;
   std::vector<OpeningLoss> losses;
   if (lights.empty()) return losses;
-  const auto packets = std::clamp(static_cast<std::uint32_t>(kMostPackets / lights.size()),
+  const auto packets = std::clamp(static_cast<std::uint32_t>(kMostOpeningPackets / lights.size()),
                                   kLeastPacketsPerLight, kPacketsPerLight);
   for (std::size_t l = 0; l < lights.size(); ++l) {
     end_if_requested(stop);

@@ -19,7 +19,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::size_t kReplicates = ZoneSums::kGroups;
+constexpr std::size_t kMatrixReplicates = ZoneSums::kGroups;
 constexpr double kResidualAimedAt = 1e-13;
 constexpr double kLargestResidual = 1e-10;
 constexpr int kMostIterations = 5000;
@@ -38,7 +38,7 @@ struct ZonalSystem {
   RowMatrix emitted;      // M [W/m2]
   RowMatrix reflectance;
   RowMatrix punctual;             // E_p [W/m2]
-  RowMatrix punctual_replicates;  // zone x (band * kReplicates + replicate)
+  RowMatrix punctual_replicates;  // zone x (band * kMatrixReplicates + replicate)
   std::vector<LuminaireLeak> light_losses;
   std::uint64_t rays = 0;
 
@@ -64,13 +64,13 @@ void add_punctual_lights(const PacketRoom& transport, std::uint64_t seed, ZonalS
     loss.watts = power - irradiance.arriving * emission;
     system.light_losses.push_back(std::move(loss));
     for (Eigen::Index b = 0; b < emission.size(); ++b)
-      system.punctual_replicates.middleCols(b * to_index(kReplicates), to_index(kReplicates)) +=
+      system.punctual_replicates.middleCols(b * to_index(kMatrixReplicates), to_index(kMatrixReplicates)) +=
           emission(b) * irradiance.of_zone;
     system.rays += kRaysPerLight + PunctualIrradiance::kRaysPerZone * transport.zones();
   }
   for (Eigen::Index b = 0; b < system.punctual.cols(); ++b)
     system.punctual.col(b) =
-        system.punctual_replicates.middleCols(b * to_index(kReplicates), to_index(kReplicates))
+        system.punctual_replicates.middleCols(b * to_index(kMatrixReplicates), to_index(kMatrixReplicates))
             .rowwise()
             .mean();
 }
@@ -83,7 +83,7 @@ ZonalSystem make_system(const PacketRoom& transport, const FormFactors& factors,
                      RowMatrix(zones, bands),
                      RowMatrix(zones, bands),
                      RowMatrix::Zero(zones, bands),
-                     RowMatrix::Zero(zones, bands * to_index(kReplicates)),
+                     RowMatrix::Zero(zones, bands * to_index(kMatrixReplicates)),
                      {},
                      0};
   for (Eigen::Index z = 0; z < zones; ++z) {
@@ -125,29 +125,29 @@ Eigen::VectorXd solve_band(const ZonalSystem& system, Eigen::Index band, const S
   return exchange.times(radiosity).cwiseQuotient(system.areas) + system.punctual.col(band);
 }
 
-/// Deviations of the replicates from the solution, zone x (band * kReplicates + replicate) [W/m2].
+/// Deviations of the replicates from the solution, zone x (band * kMatrixReplicates + replicate) [W/m2].
 struct ReplicateNoise {
   RowMatrix direct, total;
 };
 
 /// Moves the columns of each band so that their mean is 0.
 void centre(RowMatrix& deviations) {
-  for (Eigen::Index first = 0; first < deviations.cols(); first += to_index(kReplicates)) {
-    auto of_band = deviations.middleCols(first, to_index(kReplicates));
+  for (Eigen::Index first = 0; first < deviations.cols(); first += to_index(kMatrixReplicates)) {
+    auto of_band = deviations.middleCols(first, to_index(kMatrixReplicates));
     of_band.colwise() -= of_band.rowwise().mean().eval();
   }
 }
 
 ReplicateNoise replicate_noise(const ZonalSystem& system, const RowMatrix& radiosity, std::uint64_t seed) {
   // A replicate is one of 16 estimates whose mean has the standard error of the form factors.
-  const double spread = std::sqrt(static_cast<double>(kReplicates));
+  const double spread = std::sqrt(static_cast<double>(kMatrixReplicates));
   RowMatrix lights = system.punctual_replicates;
   centre(lights);
   ReplicateNoise noise;
-  noise.direct = factor_noise(system.factors, system.emitted, kReplicates, spread, seed);
+  noise.direct = factor_noise(system.factors, system.emitted, kMatrixReplicates, spread, seed);
   centre(noise.direct);
   noise.direct += lights;
-  RowMatrix source = factor_noise(system.factors, radiosity, kReplicates, spread, seed);
+  RowMatrix source = factor_noise(system.factors, radiosity, kMatrixReplicates, spread, seed);
   centre(source);
   source += lights;
 
@@ -156,7 +156,7 @@ ReplicateNoise replicate_noise(const ZonalSystem& system, const RowMatrix& radio
   const double start = source.norm();
   for (int k = 0; k < kMostNoiseBounces && bounce.norm() > kNoiseLeft * start; ++k) {
     for (Eigen::Index b = 0; b < radiosity.cols(); ++b)
-      bounce.middleCols(b * to_index(kReplicates), to_index(kReplicates)).array().colwise() *=
+      bounce.middleCols(b * to_index(kMatrixReplicates), to_index(kMatrixReplicates)).array().colwise() *=
           system.reflectance.col(b).array();
     bounce = system.transported(bounce);
     noise.total += bounce;
@@ -165,13 +165,13 @@ ReplicateNoise replicate_noise(const ZonalSystem& system, const RowMatrix& radio
 }
 
 void store(const RowMatrix& direct, const RowMatrix& total, const ReplicateNoise& noise, ZoneSums& sums) {
-  for (std::size_t r = 0; r < kReplicates; ++r) sums.count_batch(1);
-  std::array<double, kReplicates> direct_values{};
-  std::array<double, kReplicates> indirect_values{};
+  for (std::size_t r = 0; r < kMatrixReplicates; ++r) sums.count_batch(1);
+  std::array<double, kMatrixReplicates> direct_values{};
+  std::array<double, kMatrixReplicates> indirect_values{};
   for (Eigen::Index z = 0; z < direct.rows(); ++z)
     for (Eigen::Index b = 0; b < direct.cols(); ++b) {
-      for (std::size_t r = 0; r < kReplicates; ++r) {
-        const Eigen::Index at = b * to_index(kReplicates) + to_index(r);
+      for (std::size_t r = 0; r < kMatrixReplicates; ++r) {
+        const Eigen::Index at = b * to_index(kMatrixReplicates) + to_index(r);
         direct_values[r] = direct(z, b) + noise.direct(z, at);
         indirect_values[r] = total(z, b) - direct(z, b) + noise.total(z, at) - noise.direct(z, at);
       }

@@ -9,7 +9,7 @@
 namespace reemit {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kPiFloat = std::numbers::pi_v<float>;
 
 float tangent2(const Vec3f& w) {
   return (w.x() * w.x() + w.y() * w.y()) / (w.z() * w.z());
@@ -49,7 +49,7 @@ float GlossModel::unmasked(const Vec3f& direction) const {
 }
 
 bool GlossModel::sample(const Vec3f& from, float u0, float u1, Vec3f& to) const {
-  const float phi = 2 * kPi * u1;
+  const float phi = 2 * kPiFloat * u1;
   switch (lobe_) {
     case GlossLobe::kGgx:
       to = mirrored(from, sample_facet(from, u0, u1));
@@ -87,7 +87,7 @@ GlossValue GlossModel::ggx(const Vec3f& from, const Vec3f& to) const {
   const Vec3f half = (from + to).normalized();
   const float a2 = alpha_ * alpha_;
   const float t = (half.x() * half.x() + half.y() * half.y()) / a2 + half.z() * half.z();
-  const float facets = 1 / (kPi * a2 * t * t);  // D [WAL07, eq. 33]
+  const float facets = 1 / (kPiFloat * a2 * t * t);  // D [WAL07, eq. 33]
   const float hidden_from = lambda(alpha_, from);
   GlossValue v;
   v.brdf_per_sr = facets / ((1 + hidden_from + lambda(alpha_, to)) * 4 * from.z() * to.z());
@@ -102,7 +102,7 @@ GlossValue GlossModel::ward(const Vec3f& from, const Vec3f& to) const {
   const float length2 = half.squaredNorm();
   const float length = std::sqrt(length2);
   const float z2 = half.z() * half.z();
-  const float bell = std::exp(-tangent2(half) / a2) / (kPi * a2);
+  const float bell = std::exp(-tangent2(half) / a2) / (kPiFloat * a2);
   GlossValue v;
   v.brdf_per_sr = bell * length2 / (z2 * z2);
   v.half_cosine = 0.5F * length;
@@ -114,7 +114,7 @@ GlossValue GlossModel::ward(const Vec3f& from, const Vec3f& to) const {
 GlossValue GlossModel::phong(const Vec3f& from, const Vec3f& to) const {
   const float cosine = from.z() * to.z() - from.x() * to.x() - from.y() * to.y();
   if (!(cosine > 0)) return {};
-  const float lobe = std::pow(cosine, exponent_) / (2 * kPi);
+  const float lobe = std::pow(cosine, exponent_) / (2 * kPiFloat);
   return {(exponent_ + 2) * lobe, (exponent_ + 1) * lobe, std::min(1.0F, 0.5F * (from + to).norm())};
 }
 

@@ -12,7 +12,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::uint32_t kProbes = 4096;
+constexpr std::uint32_t kClosedRoomProbes = 4096;
 constexpr std::uint32_t kMostProbeBounces = 64;
 
 /// Follows light of one band from luminaires until it meets anything that takes some of it.
@@ -29,10 +29,10 @@ class WayOut {
   bool exists(const PacketSource& source) {
     if (source.zone.valid() && open_[source.zone.index()]) return true;
     Flight flight;
-    flight.add(source, kProbes);
+    flight.add(source, kClosedRoomProbes);
     flight.quanta.assign(transport_.channels().count(), 0);
     met_.clear();
-    for (std::uint32_t first = 0; first < kProbes; first += 16)
+    for (std::uint32_t first = 0; first < kClosedRoomProbes; first += 16)
       if (block_ends(flight, first)) {
         // Light goes both ways between zones: from each of those that it met it finds the same way out.
         for (const ZoneId zone : met_) open_[zone.index()] = true;

@@ -72,7 +72,7 @@ bool leaves(const RayTracer& rays, const SurfaceModel& surfaces, Vec3f from, con
 }
 
 /// Points whose rays are traced in any order and looked at in theirs.
-struct Look {
+struct SurveyLook {
   Vec3f point, normal;
   int rays = 0;
   std::array<bool, kMostRays> left{};
@@ -80,7 +80,7 @@ struct Look {
 };
 
 void look_out(const RayTracer& rays, const SurfaceModel& surfaces, const SurfacePoint& x,
-              const CounterRng& rng, std::uint32_t index, std::uint32_t batch, Look& look) {
+              const CounterRng& rng, std::uint32_t index, std::uint32_t batch, SurveyLook& look) {
   const Vec3f origin = ray_origin(rays, x);
   const Frame frame(x.normal);
   for (int k = 0; k < look.rays; ++k) {
@@ -102,11 +102,11 @@ void survey_sky(const ZoneMesh& mesh, const RayTracer& rays, const SurfaceModel&
   const CounterRng rng(kSeed, RngPurpose::kSkySurvey);
   for (const std::uint32_t batch : {0U, 1U}) {
     const std::uint32_t count = batch == 0 ? kFirstPoints : kSecondPoints;
-    std::vector<Look> looks(count);
+    std::vector<SurveyLook> looks(count);
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 1024), [&](const auto& range) {
       for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
         const SurfacePoint x = points.point(i, count, rng.uniform4(i, batch, 0));
-        Look& look = looks[i];
+        SurveyLook& look = looks[i];
         look.point = rays.point(x.triangle, x.u, x.v);
         look.normal = x.normal;
         look.rays = kRaysOfFirst;
@@ -119,7 +119,7 @@ void survey_sky(const ZoneMesh& mesh, const RayTracer& rays, const SurfaceModel&
     });
     // Both rounds stand for all of the area, each by the half.
     const double area = 0.5 * points.area() / count;
-    for (const Look& look : looks) {
+    for (const SurveyLook& look : looks) {
       const std::uint32_t place = view.add_place(look.point, look.normal);
       for (int k = 0; k < look.rays; ++k) {
         view.add_ray(place);

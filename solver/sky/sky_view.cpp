@@ -15,7 +15,7 @@ using std::numbers::pi;
 /// Of what a direction has learnt, each of its four neighbours gets so much, twice over: rays were few, and a
 /// direction in which light comes that none of them met would be drawn too seldom and count too much.
 constexpr float kToNeighbours = 0.12F;
-constexpr int kRounds = 2;
+constexpr int kViewRounds = 2;
 
 /// One round of it; at the poles nothing is lost.
 void share_with_neighbours(const std::vector<float>& from, std::vector<float>& to) {
@@ -77,7 +77,7 @@ void SkyView::finish() {
   for (std::size_t place = 0; place < rays_.size(); ++place) {
     float* until = &until_[place * (kDirections + 1)];
     std::copy_n(until + 1, kDirections, learnt.begin());
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kViewRounds; ++round) {
       share_with_neighbours(learnt, shared);
       std::swap(learnt, shared);
     }

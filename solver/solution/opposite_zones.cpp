@@ -7,18 +7,18 @@
 namespace reemit {
 namespace {
 
-/// A cell is looked at in the middles of kRows^2 equal parts.
-constexpr int kRows = 4;
+/// A cell is looked at in the middles of kRowsOfCell^2 equal parts.
+constexpr int kRowsOfCell = 4;
 
 class AreaBehind {
  public:
   explicit AreaBehind(const ZoneMesh& mesh) : mesh_(mesh) {}
 
   void add(const SideCell& cell, double area) {
-    for (int i = 0; i < kRows; ++i)
-      for (int j = 0; i + j < kRows; ++j) {
+    for (int i = 0; i < kRowsOfCell; ++i)
+      for (int j = 0; i + j < kRowsOfCell; ++j) {
         add_point(cell, i + 1.0 / 3, j + 1.0 / 3, area);
-        if (i + j + 1 < kRows) add_point(cell, i + 2.0 / 3, j + 2.0 / 3, area);
+        if (i + j + 1 < kRowsOfCell) add_point(cell, i + 2.0 / 3, j + 2.0 / 3, area);
       }
   }
 
@@ -30,7 +30,8 @@ class AreaBehind {
 
  private:
   void add_point(const SideCell& cell, double i, double j, double area) {
-    const SidePoint x = cell_point(cell, static_cast<float>(i / kRows), static_cast<float>(j / kRows));
+    const SidePoint x =
+        cell_point(cell, static_cast<float>(i / kRowsOfCell), static_cast<float>(j / kRowsOfCell));
     const ZoneId zone =
         mesh_.zone_at(x.triangle, static_cast<float>(x.at.u), static_cast<float>(x.at.v), !x.front);
     if (!zone.valid()) return;

@@ -27,7 +27,7 @@ std::vector<Values*> columns_of(Sums& s) {
   return columns;
 }
 
-Eigen::Index to_index(std::size_t band) {
+Eigen::Index band_index(std::size_t band) {
   return static_cast<Eigen::Index>(band);
 }
 
@@ -172,7 +172,7 @@ double Solution::emitted_radiosity(ZoneId z, std::size_t band) const {
   if (!zone_exitances.empty()) return zone_exitances[z.index() * bands.count() + band];
   const Material& material = zone_material(z);
   if (!material.emits_both_sides && !mesh.zone_shows_front(z)) return 0;
-  return material.exitance()[to_index(band)];
+  return material.exitance()[band_index(band)];
 }
 
 Estimate Solution::transmitted(ZoneId z, std::size_t band, Irradiance of) const {

@@ -16,7 +16,7 @@ namespace {
 
 /// A shape this close to a plane stands on it: the rounding of corners. One that stands off farther leaves a
 /// gap that light may pass, one sunk in deeper has been cut.
-constexpr double kTouching = 4e-6;
+constexpr double kFootTouching = 4e-6;
 /// Distance from a mantle at which rays start beside it.
 constexpr double kBeside = 4e-6;
 /// Gap between a sphere and a face in which rays can start: several times RayTracer::kLift.
@@ -63,7 +63,7 @@ double distance_to(const std::array<Vec3, 3>& t, const Vec3& p) {
 /// Whether a circle lies in the plane of a triangle.
 bool lies_in_plane(const Vec3& centre, const Vec3& axis, double radius, const std::array<Vec3, 3>& t,
                    const Vec3& normal) {
-  return std::abs(normal.dot(centre - t[0])) + radius * axis.cross(normal).norm() <= kTouching;
+  return std::abs(normal.dot(centre - t[0])) + radius * axis.cross(normal).norm() <= kFootTouching;
 }
 
 /// Whether a line from `from` comes near something whose distance from a point is given.

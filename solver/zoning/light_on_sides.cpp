@@ -11,7 +11,7 @@
 namespace reemit {
 namespace {
 
-constexpr LookEffort kEffort{2, 1, 1};
+constexpr LookEffort kSideEffort{2, 1, 1};
 
 }  // namespace
 
@@ -32,7 +32,7 @@ std::vector<float> light_on_sides(const PilotLight& pilot, const std::vector<Sid
           cells.push_back({triangle_of(side), is_front(side), {}});
       }
       std::vector<LightSpread> light(cells.size());
-      PilotLight::Looker(pilot).look_at_all(cells, kEffort, light.data());
+      PilotLight::Looker(pilot).look_at_all(cells, kSideEffort, light.data());
       for (std::size_t i = 0; i < cells.size(); ++i)
         levels[side_of(cells[i].triangle, cells[i].front).index()] =
             static_cast<float>(light_level(light[i].mean(), pilot.mean()));

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kPilotSeed = 1;  // nothing of a solution should depend on it
 constexpr std::uint64_t kPackets = 1 << 18;
 /// Independent parts of the solution: a point is looked at once with each.
-constexpr int kHalves = 2;
+constexpr int kPilotHalves = 2;
 /// Surfaces reflect and diffusely transmit no more than this in it, so that it ends soon whatever the room.
 constexpr double kMostReflectance = 0.9;
 
@@ -97,7 +97,7 @@ PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& wat
     : pilot_scene_(dimmed(scene)),
       solver_(pilot_scene_, new_solution(pilot_scene_, std::move(mesh), pilot_settings()), never_,
               watch.part(0, 0.5)),
-      field_(room(), solve(solver_, watch.part(0.5, 1)), kHalves),
+      field_(room(), solve(solver_, watch.part(0.5, 1)), kPilotHalves),
       direct_(room()),
       gather_(field_, direct_, GatherSettings{.close_hit = 0, .continue_uneven = false, .seed = kPilotSeed}) {
   const std::vector<double> means = mean_radiances(field_);
@@ -124,7 +124,7 @@ LightSpread PilotLight::Looker::look(const SideCell& cell, const LookEffort& eff
 void PilotLight::Looker::look_at_all(std::span<const SideCell> cells, const LookEffort& effort,
                                      LightSpread* light) {
   const auto points = static_cast<std::size_t>(effort.points);
-  const std::size_t values = points * kHalves * pilot_->room().band_count();
+  const std::size_t values = points * kPilotHalves * pilot_->room().band_count();
   points_.clear();
   found_.assign(cells.size() * values, 0.0F);
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -147,7 +147,7 @@ void PilotLight::Looker::look_at_all(std::span<const SideCell> cells, const Look
 
 void PilotLight::Looker::look_at(const SideCell& cell, std::span<SeenPoint> places,
                                  const LookEffort& effort) {
-  found_.assign(places.size() * kHalves * pilot_->room().band_count(), 0.0F);
+  found_.assign(places.size() * kPilotHalves * pilot_->room().band_count(), 0.0F);
   send_rays(cell, places, effort, found_.data());
   batch_.flush();
   add_up(cell, places, found_.data());
@@ -174,14 +174,14 @@ void PilotLight::Looker::send_rays(const SideCell& cell, std::span<const SeenPoi
     const SurfacePoint x = surface_point(room.rays(), at.triangle, static_cast<float>(at.at.u),
                                          static_cast<float>(at.at.v), at.front);
     pilot_->direct_.add_samples(
-        x, kHalves * effort.shadows, [&](int ray) { return light_[static_cast<std::size_t>(ray)]; },
+        x, kPilotHalves * effort.shadows, [&](int ray) { return light_[static_cast<std::size_t>(ray)]; },
         direct_weight_.data(),
         [&](int ray) { return found + static_cast<std::size_t>(ray / effort.shadows) * bands; });
-    for (int half = 0; half < kHalves; ++half, found += bands) {
+    for (int half = 0; half < kPilotHalves; ++half, found += bands) {
       const auto part = static_cast<std::uint32_t>(half) % static_cast<std::uint32_t>(pilot_->field_.parts());
       for (int ray = half * effort.gathers; ray < (half + 1) * effort.gathers; ++ray) {
         const std::array<float, 2>& d = hemisphere_[static_cast<std::size_t>(ray)];
-        const auto path = static_cast<std::uint32_t>(i * kHalves * effort.gathers + ray);
+        const auto path = static_cast<std::uint32_t>(i * kPilotHalves * effort.gathers + ray);
         batch_.add(x, d[0], d[1], {key, part, path, part}, ray_weight_.data(), found);
       }
     }
@@ -191,15 +191,15 @@ void PilotLight::Looker::send_rays(const SideCell& cell, std::span<const SeenPoi
 // The same rays from every point of the side, so that their noise is the same and only differences of the
 // light are left.
 void PilotLight::Looker::draw_numbers(SideId side, const LookEffort& effort) {
-  const auto shadows = static_cast<std::size_t>(kHalves * effort.shadows);
-  const auto gathers = static_cast<std::size_t>(kHalves * effort.gathers);
+  const auto shadows = static_cast<std::size_t>(kPilotHalves * effort.shadows);
+  const auto gathers = static_cast<std::size_t>(kPilotHalves * effort.gathers);
   if (side == side_ && light_.size() == shadows && hemisphere_.size() == gathers) return;
   side_ = side;
   const PointSampler rays(kPilotSeed, RngPurpose::kPilotLight, side.index(), 1,
-                          std::countr_zero(unsigned{kHalves}));
+                          std::countr_zero(unsigned{kPilotHalves}));
   light_.clear();
   hemisphere_.clear();
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < kPilotHalves; ++half) {
     for (int ray = 0; ray < effort.shadows; ++ray) light_.push_back(rays.light(half, ray, effort.shadows));
     for (int ray = 0; ray < effort.gathers; ++ray)
       hemisphere_.push_back(rays.hemisphere(half, ray, effort.gathers));
@@ -210,7 +210,7 @@ void PilotLight::Looker::add_up(const SideCell& cell, std::span<SeenPoint> point
   const Room& room = pilot_->room();
   const double need = need_of(room, cell);
   for (SeenPoint& point : points) {
-    std::array<double, kHalves> sum{};
+    std::array<double, kPilotHalves> sum{};
     for (double& of_half : sum)
       for (std::size_t b = 0; b < room.band_count(); ++b) of_half += static_cast<double>(*found++);
     point.seen = {static_cast<float>(need * sum[0]), static_cast<float>(need * sum[1])};

@@ -28,7 +28,7 @@ constexpr std::uint32_t kSecondThoughts = 28;
 constexpr std::size_t kSpeakers = 32;
 constexpr std::uint32_t kRaysPerLight = 4096;
 /// Points keep this share of a triangle's size away from its edges, where rounding decides what a ray meets.
-constexpr float kMargin = 0.02F;
+constexpr float kSealMargin = 0.02F;
 
 constexpr std::uint32_t kNothing = 0xffffffff;
 constexpr std::uint32_t kOutside = 0xfffffffe;
@@ -165,8 +165,8 @@ class Reach {
   void start(std::uint32_t side, std::uint32_t round, Ray16& rays, int lane) const {
     const std::array<float, 4> u = rng_.uniform4(side, round, 0);
     auto [a, b] = sample_triangle(u[0], u[1]);
-    a = kMargin + (1 - 3 * kMargin) * a;
-    b = kMargin + (1 - 3 * kMargin) * b;
+    a = kSealMargin + (1 - 3 * kSealMargin) * a;
+    b = kSealMargin + (1 - 3 * kSealMargin) * b;
     const SurfacePoint x = surface_point(rays_, triangle_of(SideId(side)), a, b, is_front(SideId(side)));
     rays.set(lane, ray_origin(rays_, x), Frame(x.normal).to_world(sample_cosine_hemisphere(u[2], u[3])));
   }

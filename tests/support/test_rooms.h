@@ -12,6 +12,11 @@
 
 namespace reemit::test {
 
+/// Values of the three bands of a room of colours.
+inline Spectrum rgb(double r, double g, double b) {
+  return Spectrum{{r, g, b}};
+}
+
 /// A room built quad by quad with its zones, without readers or mesher, so that tests of the solver stand on
 /// their own.
 class RoomBuilder {

@@ -108,12 +108,12 @@ std::vector<std::uint8_t> even_squares(const StillPlanes& pixels, const StillPla
 }
 
 /// The squares around a pixel that lie on its surface, with their shares in it.
-struct Surrounding {
+struct Neighbourhood {
   std::array<std::size_t, 4> square{};
   std::array<float, 4> share{};
 
-  Surrounding(const StillPlanes& pixels, const StillPlanes& squares, const std::vector<std::uint8_t>& even,
-              int side, int x, int y) {
+  Neighbourhood(const StillPlanes& pixels, const StillPlanes& squares, const std::vector<std::uint8_t>& even,
+                int side, int x, int y) {
     const std::size_t p = pixels.at(x, y);
     const auto place = [&](int i) {
       return (static_cast<float>(i) + 0.5F) / static_cast<float>(side) - 0.5F;
@@ -154,7 +154,7 @@ void smooth_by_squares(int side, const StopToken& stop, StillPlanes& pixels) {
   const std::size_t n = pixels.pixels();
   tbb::parallel_for(0, pixels.height, [&](int y) {
     for (int x = 0; x < pixels.width; ++x) {
-      const Surrounding around(pixels, squares, even, side, x, y);
+      const Neighbourhood around(pixels, squares, even, side, x, y);
       const std::size_t p = pixels.at(x, y);
       const auto change = [&](std::vector<float>& values, const std::vector<float>& by, std::size_t b) {
         float& value = values[b * n + p];

@@ -47,12 +47,12 @@ struct View {
 };
 
 /// A room as the choice of eyes sees it.
-struct Surroundings {
+struct RoomAndAxes {
   const RayTracer& rays;
   RoomAxes axes;
   float low, high;  // of the room along up, normalised
 
-  Surroundings(const RayTracer& rays_of_room, const Vec3& up) : rays(rays_of_room), axes(up) {
+  RoomAndAxes(const RayTracer& rays_of_room, const Vec3& up) : rays(rays_of_room), axes(up) {
     low = high = axes.up.dot(rays.corner(TriangleId(0), 0));
     for (std::size_t t = 0; t < rays.mesh().triangle_count(); ++t)
       for (int k = 0; k < 3; ++k) {
@@ -102,7 +102,7 @@ struct Surroundings {
 using EyesByPlace = std::map<std::tuple<int, int, int>, Eye>;
 
 /// The eye above or below a place on the way of light, if it is freer than the others near it.
-void keep_freest(const Surroundings& room, const Vec3f& place, float width, EyesByPlace& freest) {
+void keep_freest(const RoomAndAxes& room, const Vec3f& place, float width, EyesByPlace& freest) {
   const std::optional<Eye> eye = room.eye_at(room.at_eye_height(place));
   if (!eye || eye->clearance < kClearance * width) return;
   const Vec3f cell = (eye->place / (kApart * width)).array().floor();
@@ -111,7 +111,7 @@ void keep_freest(const Surroundings& room, const Vec3f& place, float width, Eyes
 }
 
 /// Eyes evenly along the way of light, the freest of each neighbourhood.
-std::vector<Eye> find_eyes(const Surroundings& room, const LitSpace& space) {
+std::vector<Eye> find_eyes(const RoomAndAxes& room, const LitSpace& space) {
   EyesByPlace freest;
   double way = 0;
   for (const LightLeg& leg : space.legs) way += static_cast<double>(leg.length);
@@ -175,7 +175,7 @@ Camera camera_towards(const Vec3& eye, const Vec3& look_at, const Vec3& up, std:
   return camera;
 }
 
-Camera camera_of(const View& view, const Surroundings& room, double distance, std::size_t number) {
+Camera camera_of(const View& view, const RoomAndAxes& room, double distance, std::size_t number) {
   const double azimuth = 2 * pi * (view.column + 0.5) / Panorama::kColumns;
   const Vec3 eye = room.rays.in_room(view.panorama->eye);
   const Vec3 forward = room.axes.direction(static_cast<float>(azimuth), 0).cast<double>();
@@ -196,7 +196,7 @@ Camera outside_camera(const RayTracer& rays, const Vec3& up) {
   return camera_towards(middle + distance * normal, middle, level, 1);
 }
 
-std::vector<Camera> cameras_in(const Room& room, const Surroundings& around, const LitSpace& space) {
+std::vector<Camera> cameras_in(const Room& room, const RoomAndAxes& around, const LitSpace& space) {
   std::vector<Camera> cameras;
   if (!(space.width > kLeastSpace)) return cameras;
   const std::vector<Eye> eyes = find_eyes(around, space);
@@ -214,7 +214,7 @@ std::vector<Camera> cameras_in(const Room& room, const Surroundings& around, con
 
 std::vector<Camera> default_cameras(const Room& room) {
   const Vec3 up = up_direction(room.scene());
-  const Surroundings around(room.rays(), up);
+  const RoomAndAxes around(room.rays(), up);
   std::vector<Camera> cameras = cameras_in(room, around, trace_light(room));
   if (cameras.empty()) cameras = cameras_in(room, around, trace_from_all_surfaces(room));
   if (cameras.empty()) cameras.push_back(outside_camera(room.rays(), up));

@@ -8,7 +8,7 @@
 namespace reemit {
 namespace {
 
-constexpr ImageFormat kFormats[] = {
+constexpr ImageFormat kImageFormats[] = {
     {".exr", "OpenEXR, 32-bit float radiance with all layers", false, false, write_exr},
     {".hdr", "Radiance picture, shared-exponent radiance", false, true, write_hdr},
     {".png", "8-bit sRGB, tone-mapped", true, false, write_png},
@@ -17,7 +17,7 @@ constexpr ImageFormat kFormats[] = {
 }  // namespace
 
 std::span<const ImageFormat> image_formats() {
-  return kFormats;
+  return kImageFormats;
 }
 
 const ImageFormat& image_format_of(const std::filesystem::path& file) {

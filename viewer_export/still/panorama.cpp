@@ -7,8 +7,8 @@
 namespace reemit {
 namespace {
 
-constexpr float kStep = std::numbers::pi_v<float> / 30;  // 6 degrees
-constexpr int kViewColumns = 13;                         // 78 degrees
+constexpr float kPanoramaStep = std::numbers::pi_v<float> / 30;  // 6 degrees
+constexpr int kViewColumns = 13;                                 // 78 degrees
 /// Pieces of surface are lit as a whole: large ones, for packets are few.
 constexpr float kLitCell = 0.5F;  // of the width of the lit space
 
@@ -63,8 +63,8 @@ Panorama look_around(const RayTracer& rays, const RoomAxes& axes, const LitCells
   panorama.sights.resize(static_cast<std::size_t>(Panorama::kColumns) * Panorama::kRows);
   for (int c = 0; c < Panorama::kColumns; ++c)
     for (int r = 0; r < Panorama::kRows; ++r) {
-      const float azimuth = (static_cast<float>(c) + 0.5F) * kStep;
-      const float elevation = (static_cast<float>(r) + 0.5F - 0.5F * Panorama::kRows) * kStep;
+      const float azimuth = (static_cast<float>(c) + 0.5F) * kPanoramaStep;
+      const float elevation = (static_cast<float>(r) + 0.5F - 0.5F * Panorama::kRows) * kPanoramaStep;
       const Vec3f direction = axes.direction(azimuth, elevation).normalized();
       Hit hit;
       if (!rays.closest_for_camera(eye, direction, hit)) continue;

@@ -221,14 +221,14 @@ std::vector<GlassBody> settle_material(Scene& scene, MaterialId material) {
 }
 
 /// How a body lies to another.
-enum class Place { kOutside, kInside, kAcross };
+enum class Location { kOutside, kInside, kAcross };
 
-Place place_of(const GlassBody& body, const GlassBody& other) {
+Location place_of(const GlassBody& body, const GlassBody& other) {
   std::size_t inside = 0;
   const std::vector<Vec3> places = body.places();
   for (const Vec3& p : places) inside += other.holds(p) ? 1 : 0;
-  if (inside == 0) return Place::kOutside;
-  return inside == places.size() ? Place::kInside : Place::kAcross;
+  if (inside == 0) return Location::kOutside;
+  return inside == places.size() ? Location::kInside : Location::kAcross;
 }
 
 /// Bodies within others: air where both are of one glass, and else nothing that can be told apart.
@@ -296,10 +296,10 @@ class NestedBodies {
     const bool x_is_smaller = std::fabs(x.volume) < std::fabs(y.volume);
     const std::size_t inner = x_is_smaller ? a : b;
     const std::size_t outer = x_is_smaller ? b : a;
-    const Place place = place_of(bodies_[inner], bodies_[outer]);
-    if (place == Place::kInside)
+    const Location place = place_of(bodies_[inner], bodies_[outer]);
+    if (place == Location::kInside)
       around_[inner].push_back(outer);
-    else if (place == Place::kAcross || place_of(bodies_[outer], bodies_[inner]) == Place::kAcross)
+    else if (place == Location::kAcross || place_of(bodies_[outer], bodies_[inner]) == Location::kAcross)
       mixed_.emplace_back(inner, outer);
   }
 

@@ -12,11 +12,11 @@ namespace reemit {
 
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
+using IndexTriangle = std::array<std::uint32_t, 3>;
 
 /// The corners of all triangles in the order of glTF 2.0, 3.7.2.1, so that every front stays a front.
-std::vector<Triangle> triangles_of(const std::vector<std::uint32_t>& v, int mode) {
-  std::vector<Triangle> triangles;
+std::vector<IndexTriangle> triangles_of(const std::vector<std::uint32_t>& v, int mode) {
+  std::vector<IndexTriangle> triangles;
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     for (std::size_t i = 0; i + 2 < v.size(); i += 3) triangles.push_back({v[i], v[i + 1], v[i + 2]});
   } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
@@ -111,7 +111,7 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
     order.resize(primitive.positions.size());
     std::iota(order.begin(), order.end(), 0u);
   }
-  for (const Triangle& t : triangles_of(order, source.mode)) {
+  for (const IndexTriangle& t : triangles_of(order, source.mode)) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
       ++omissions.collapsed;
       continue;

@@ -18,7 +18,7 @@ constexpr std::size_t kDeepestInclude = 100;
 constexpr std::size_t kDeepestObject = 1000;
 constexpr std::uint64_t kMostEntities = 10'000'000;  // executed, arrays and includes unrolled
 constexpr std::uint64_t kMostIncludes = 1'000'000;
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;  // of all files of a room
+constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{1} << 30;  // of all files of a room
 
 std::span<const std::string_view> words_from(const TextLine& line, std::size_t first) {
   return std::span(line.words).subspan(std::min(first, line.words.size()));
@@ -73,7 +73,7 @@ const MgfInterpreter::File& MgfInterpreter::file_at(const fs::path& file, const 
     loaded->name = file.lexically_normal().string();
     loaded->folder = file.parent_path();
     try {
-      loaded->text = load_file(file, kMostBytes - bytes_);
+      loaded->text = load_file(file, kMostFileBytes - bytes_);
     } catch (const InputError& error) {
       if (included_from.empty()) throw;
       throw InputError(included_from, std::string("the included file cannot be read: ") + error.what(), "");

@@ -125,14 +125,14 @@ std::vector<Polygon> side_faces(const std::vector<MgfVertex>& loop, const Vec3& 
 
 using VertexAt = std::map<std::array<double, 3>, const MgfVertex*>;
 
-std::array<double, 3> key_of(const Vec3& p) {
+std::array<double, 3> coordinates_of(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
 // The corners of a simple loop that came out of an outline, with the normals they had there.
 std::vector<MgfVertex> with_normals(const std::vector<Vec3>& loop, const VertexAt& outline) {
   std::vector<MgfVertex> corners;
-  for (const Vec3& point : loop) corners.push_back(*outline.at(key_of(point)));
+  for (const Vec3& point : loop) corners.push_back(*outline.at(coordinates_of(point)));
   return corners;
 }
 
@@ -155,7 +155,7 @@ std::vector<Polygon> mgf_prism(std::span<const MgfVertex> outline, double length
   if (!(shift.squaredNorm() > 0))
     throw InputError(where, "the outline of the prism has no area", "Give an outline that spans a plane.");
   VertexAt vertex_at;
-  for (const MgfVertex& vertex : outline) vertex_at.emplace(key_of(vertex.position), &vertex);
+  for (const MgfVertex& vertex : outline) vertex_at.emplace(coordinates_of(vertex.position), &vertex);
   std::vector<Polygon> faces;
   for (const Polygon& cap : split_at_seams(base)) {
     Polygon opposite;

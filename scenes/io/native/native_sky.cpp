@@ -9,12 +9,12 @@
 #include "scenes/io/common/sky_image.h"
 #include "scenes/io/native/native_materials.h"
 #include "scenes/model/limits.h"
+#include "scenes/model/measures.h"
 #include "scenes/model/sun_position.h"
 
 namespace reemit {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr double kGroundReflectance = 0.2;  // the default of Radiance's gensky
 constexpr int kClearType = 12;
 

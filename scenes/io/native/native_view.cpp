@@ -8,12 +8,11 @@
 #include "scenes/io/native/native_ies_light.h"
 #include "scenes/io/native/native_materials.h"
 #include "scenes/model/limits.h"
+#include "scenes/model/measures.h"
 
 namespace reemit {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Exactly one of the quantities must be given. `divisor`: the solid angle that turns a power into an
 /// intensity.
@@ -99,8 +98,8 @@ SpotLight read_spot(const JsonCursor& at, const std::string& name, double unit, 
   }
   const auto outer = at.find("outer_angle_deg");
   const auto inner = at.find("inner_angle_deg");
-  light.outer_angle = (outer ? outer->number_in(0.01, 90) : 45) * kDegree;
-  light.inner_angle = (inner ? inner->number_in(0, 90) : 0) * kDegree;
+  light.outer_angle = (outer ? outer->number_in(0.01, 90) : 45) * kRadiansPerDegree;
+  light.inner_angle = (inner ? inner->number_in(0, 90) : 0) * kRadiansPerDegree;
   if (light.inner_angle >= light.outer_angle) {
     at.fail("the inner angle of the spot is not smaller than the outer",
             "Both are half angles from the axis.");

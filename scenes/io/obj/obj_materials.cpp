@@ -29,7 +29,7 @@ struct NumberRule {
   double low, high;         // allowed values
 };
 constexpr double kAny = 1e300;
-constexpr std::array kRules = {
+constexpr std::array kObjRules = {
     NumberRule{"Kd", 1, 3, 0, 1},        NumberRule{"Ks", 1, 3, 0, 1}, NumberRule{"Ke", 1, 3, 0, kAny},
     NumberRule{"Ka", 1, 3, -kAny, kAny}, NumberRule{"Tf", 1, 3, 0, 1}, NumberRule{"Ns", 1, 1, 0, kAny},
     NumberRule{"Ni", 1, 1, 0, kAny},     NumberRule{"d", 1, 1, 0, 1},  NumberRule{"Tr", 1, 1, 0, 1},
@@ -86,9 +86,9 @@ std::string checked_text(const std::string& text, const std::string& name) {
       throw InputError(where, fmt::format("'{}' before the first 'newmtl'", line.words[0]),
                        "Is this a MTL file, and is it complete?");
     }
-    const auto* rule = std::find_if(kRules.begin(), kRules.end(),
+    const auto* rule = std::find_if(kObjRules.begin(), kObjRules.end(),
                                     [&](const NumberRule& r) { return r.keyword == line.words[0]; });
-    if (rule != kRules.end())
+    if (rule != kObjRules.end())
       clean += checked_numbers(*rule, line, where);
     else
       clean += fmt::format("{} {}\n", line.words[0], rest_of(line, 1));

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/model/error.h"
+#include "tests/scenes/type_c.h"
 #include "tests/support/refusal.h"
 #include "tests/support/small_rooms.h"
 #include "tests/support/temp_folder.h"
@@ -16,6 +17,7 @@ namespace {
 
 using std::numbers::pi;
 using test::replaced;
+using test::type_c;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -31,12 +33,6 @@ TILT=NONE
 100 80 0
 100 60 20
 )";
-
-Vec3 type_c(double gamma_deg, double c_deg) {
-  const double g = gamma_deg * pi / 180;
-  const double c = c_deg * pi / 180;
-  return {std::sin(g) * std::cos(c), std::sin(g) * std::sin(c), -std::cos(g)};
-}
 
 class IesReader : public ::testing::Test {
  protected:

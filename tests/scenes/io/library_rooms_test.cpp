@@ -15,11 +15,12 @@
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/cie_1931.h"
 #include "scenes/model/colour.h"
+#include "tests/scenes/io/library_folder.h"
 
 namespace reemit {
 namespace {
 
-const std::filesystem::path kLibrary = std::filesystem::path(REEMIT_SOURCE_DIR) / "scenes" / "library";
+using test::kLibrary;
 
 Scene read_room(const std::string& name) {
   return read_scene(kLibrary / (name + ".json"));

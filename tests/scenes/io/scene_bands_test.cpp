@@ -8,16 +8,17 @@
 
 #include "scenes/io/scene_reader.h"
 #include "tests/scenes/io/gltf_building.h"
+#include "tests/scenes/io/library_folder.h"
 #include "tests/scenes/io/native_reading.h"
 
 namespace reemit {
 namespace {
 
 using Rgb = Eigen::Array3d;
+using test::kLibrary;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-const std::filesystem::path kLibrary = std::filesystem::path(REEMIT_SOURCE_DIR) / "scenes" / "library";
 const SpectralBands kBands{400, 700, 10};
 
 Scene read_with_bands(const std::filesystem::path& file, const SpectralBands& bands = kBands) {

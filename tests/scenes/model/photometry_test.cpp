@@ -6,16 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/scenes/type_c.h"
+
 namespace reemit {
 namespace {
 
 using std::numbers::pi;
-
-Vec3 type_c(double gamma_deg, double c_deg) {
-  const double g = gamma_deg * pi / 180;
-  const double c = c_deg * pi / 180;
-  return {std::sin(g) * std::cos(c), std::sin(g) * std::sin(c), -std::cos(g)};
-}
+using test::type_c;
 
 TEST(Photometry, integral_of_linear_times_sine) {
   // Antiderivative of (p + q t) sin t: -(p + q t) cos t + q sin t.

@@ -15,6 +15,7 @@
 #include "solver/gather/radiance_field.h"
 #include "solver/room/room.h"
 #include "solver/sampling/counter_rng.h"
+#include "tests/solver/floor_point.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
 #include "tests/support/test_rooms.h"
@@ -22,10 +23,11 @@
 namespace reemit {
 namespace {
 
+using test::floor_point;
 using test::MeanTest;
 using test::RoomBuilder;
 
-constexpr double kFloor = 4;  // its length away from the mirror, which stands on the near end [m]
+constexpr double kFloorLength = 4;  // its length away from the mirror, which stands on the near end [m]
 
 constexpr double kScreenAt = 2;
 
@@ -35,7 +37,7 @@ RoomBuilder room_with(bool mirror, double lamp_at, bool screen = false) {
   RoomBuilder room;
   const MaterialId grey = room.material("floor", 0.5);
   const MaterialId lamp = room.material("lamp", 0, 10);
-  room.quad(grey, {Vec3(0, -2, 0), Vec3(kFloor, -2, 0), Vec3(kFloor, 2, 0), Vec3(0, 2, 0)}, 4);
+  room.quad(grey, {Vec3(0, -2, 0), Vec3(kFloorLength, -2, 0), Vec3(kFloorLength, 2, 0), Vec3(0, 2, 0)}, 4);
   if (screen) {
     const MaterialId black = room.material("screen", 0, 0, true);
     room.quad(
@@ -49,15 +51,6 @@ RoomBuilder room_with(bool mirror, double lamp_at, bool screen = false) {
   room.scene().materials[silver.index()].non_diffuse.specular_reflectance = Spectrum::Constant(1, 0.8);
   room.quad(silver, {Vec3(0, -9, 0), Vec3(0, 9, 0), Vec3(0, 9, 9), Vec3(0, -9, 9)}, 1);
   return room;
-}
-
-/// Where the floor is met from above.
-SurfacePoint floor_point(const Room& room, double x, double y) {
-  const RayTracer& rays = room.rays();
-  const Vec3f above = ((Vec3(x, y, 0.1) - rays.centre()) / rays.metres_per_unit()).cast<float>();
-  Hit hit;
-  EXPECT_TRUE(rays.closest(above, {0, 0, -1}, hit));
-  return surface_point(rays, hit.triangle, hit.u, hit.v, hit.front);
 }
 
 /// Irradiance of the floor by what `rays` gather rays find [W/m2].
@@ -110,7 +103,7 @@ TEST(CausticPower, MirrorShowsTheLampBehindIt) {
 
 TEST(CausticMap, LosesNothingWhereAFaceEnds) {
   std::vector<Vec3> points;
-  for (int i = 0; i < 300; ++i) points.emplace_back(kFloor - 0.01, -1.8 + 3.6 * i / 299, 0);
+  for (int i = 0; i < 300; ++i) points.emplace_back(kFloorLength - 0.01, -1.8 + 3.6 * i / 299, 0);
   // By 3 sets of photons, as all points of one share its noise.
   MeanTest mean;
   for (const std::uint64_t seed : {1, 2, 3}) mean.add(over_truth(points, false, seed).mean());
@@ -148,7 +141,7 @@ RoomBuilder room_with_bulb(bool glass) {
   RoomBuilder room;
   const MaterialId grey = room.material("floor", 0.5);
   const MaterialId bright = room.material("bulb", 0, 10);
-  room.quad(grey, {Vec3(0, -2, 0), Vec3(kFloor, -2, 0), Vec3(kFloor, 2, 0), Vec3(0, 2, 0)}, 4);
+  room.quad(grey, {Vec3(0, -2, 0), Vec3(kFloorLength, -2, 0), Vec3(kFloorLength, 2, 0), Vec3(0, 2, 0)}, 4);
   room.shape(bright, Sphere{Vec3(2, 0, 0.5), 0.1, false}, 2);
   if (!glass) return room;
   const MaterialId clear = room.material("glass", 0, 0, true);

@@ -11,7 +11,7 @@ namespace {
 
 using test::kNever;
 
-Solution run(const test::RoomBuilder& room, std::uint64_t packets, std::uint64_t seed = 1) {
+Solution solution_of(const test::RoomBuilder& room, std::uint64_t packets, std::uint64_t seed = 1) {
   SolverSettings settings;
   settings.packets = packets;
   settings.seed = seed;
@@ -19,7 +19,7 @@ Solution run(const test::RoomBuilder& room, std::uint64_t packets, std::uint64_t
 }
 
 /// A cube whose floor alone emits: light falls off along the walls.
-test::RoomBuilder cube(std::uint32_t divisions) {
+test::RoomBuilder lit_cube(std::uint32_t divisions) {
   test::RoomBuilder room;
   const MaterialId wall = room.material("wall", 0.5);
   const MaterialId lamp = room.material("lamp", 0.5, 1);
@@ -31,16 +31,16 @@ TEST(Discretisation, is_zero_where_zones_are_exact_however_noisy_they_are) {
   // Zones of a furnace all have the same radiosity as their points; with this few packets their noise is 10
   // %.
   const test::VariableFurnace furnace(8);
-  const Solution s = run(furnace.room(), 100'000);
+  const Solution s = solution_of(furnace.room(), 100'000);
   ASSERT_GT(s.record.error, 0.03);
   ASSERT_TRUE(s.record.discretisation.has_value());
   EXPECT_LT(*s.record.discretisation, 0.03);
 }
 
 TEST(Discretisation, falls_in_proportion_to_the_size_of_zones) {
-  const double coarse = run(cube(1), 400'000).record.discretisation.value();
-  const double middle = run(cube(4), 400'000).record.discretisation.value();
-  const double fine = run(cube(16), 4'000'000).record.discretisation.value();
+  const double coarse = solution_of(lit_cube(1), 400'000).record.discretisation.value();
+  const double middle = solution_of(lit_cube(4), 400'000).record.discretisation.value();
+  const double fine = solution_of(lit_cube(16), 4'000'000).record.discretisation.value();
   // Reference: shooting against gathered points at the 12 zones of a cube differ by some tens of per cent.
   EXPECT_GT(coarse, 0.2);
   EXPECT_LT(coarse, 0.6);
@@ -49,14 +49,14 @@ TEST(Discretisation, falls_in_proportion_to_the_size_of_zones) {
 }
 
 TEST(Discretisation, does_not_depend_on_the_noise) {
-  const double few = run(cube(2), 100'000, 3).record.discretisation.value();
-  const double many = run(cube(2), 3'000'000, 4).record.discretisation.value();
+  const double few = solution_of(lit_cube(2), 100'000, 3).record.discretisation.value();
+  const double many = solution_of(lit_cube(2), 3'000'000, 4).record.discretisation.value();
   EXPECT_NEAR(few / many, 1, 0.15);
 }
 
 TEST(Discretisation, is_unknown_where_noise_hides_it) {
   const test::VariableFurnace furnace(8);
-  const Solution s = run(furnace.room(), 2'000);
+  const Solution s = solution_of(furnace.room(), 2'000);
   ASSERT_GT(s.record.error, 0.15);
   EXPECT_FALSE(s.record.discretisation.has_value());
 }
@@ -64,7 +64,7 @@ TEST(Discretisation, is_unknown_where_noise_hides_it) {
 TEST(Discretisation, is_unknown_after_one_batch) {
   SolverSettings settings;
   settings.packets = settings.batch_packets = 1000;
-  const test::RoomBuilder room = cube(2);
+  const test::RoomBuilder room = lit_cube(2);
   const Solution s = solve(room.scene(), room.mesh(), settings, {}, kNever);
   EXPECT_FALSE(s.record.discretisation.has_value());
 }

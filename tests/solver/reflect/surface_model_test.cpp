@@ -14,11 +14,8 @@ namespace reemit {
 namespace {
 
 using std::numbers::pi;
+using test::rgb;
 using test::RoomBuilder;
-
-Spectrum rgb(double r, double g, double b) {
-  return Spectrum{{r, g, b}};
-}
 
 /// Three triangles: a one-sided wall, a two-sided one, and a lamp with a narrow beam from both of its sides.
 class Surfaces : public testing::Test {

@@ -61,9 +61,10 @@ class Batches {
   BatchBooks books_;
 };
 
-constexpr int kRuns = 2000;
+constexpr int kFewPacketRuns = 2000;
 
-/// Largest deviation of the mean of kRuns runs from the truth, over the standard deviation of one run.
+/// Largest deviation of the mean of kFewPacketRuns runs from the truth, over the standard deviation of one
+/// run.
 double largest_bias(std::uint32_t packets, std::int64_t count) {
   double largest = 0;
   tbb::task_arena arena(1);  // the work is small
@@ -73,7 +74,7 @@ double largest_bias(std::uint32_t packets, std::int64_t count) {
     batches.add(999, 500'000, 4, truth);
     std::vector<double> sum(truth.size());
     std::vector<double> squares(truth.size());
-    for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    for (std::uint64_t seed = 1; seed <= kFewPacketRuns; ++seed) {
       std::vector<double> shares(truth.size());
       batches.add(seed, packets, count, shares);
       for (std::size_t i = 0; i < shares.size(); ++i) {
@@ -82,8 +83,8 @@ double largest_bias(std::uint32_t packets, std::int64_t count) {
       }
     }
     for (std::size_t i = 0; i < sum.size(); ++i) {
-      const double mean = sum[i] / kRuns;
-      largest = std::max(largest, std::abs(mean) / std::sqrt(squares[i] / kRuns - mean * mean));
+      const double mean = sum[i] / kFewPacketRuns;
+      largest = std::max(largest, std::abs(mean) / std::sqrt(squares[i] / kFewPacketRuns - mean * mean));
     }
   });
   return largest;

@@ -19,6 +19,7 @@
 namespace reemit {
 namespace {
 
+using test::rgb;
 using test::RoomBuilder;
 
 constexpr std::size_t kBands = 3;
@@ -26,10 +27,6 @@ constexpr std::size_t kQuads = 6;
 constexpr std::size_t kLamps[] = {0, 4};  // quads
 constexpr std::uint32_t kDivisions = 4;
 constexpr std::size_t kZonesPerQuad = std::size_t{2} * kDivisions * kDivisions;
-
-Spectrum rgb(double r, double g, double b) {
-  return Eigen::Array3d(r, g, b);
-}
 
 /// A coloured box; the lamps that are off reflect all the same.
 RoomBuilder box_with(bool first, bool second) {

@@ -14,6 +14,7 @@
 #include "solver/gather/radiance_field.h"
 #include "solver/progressive_solver.h"
 #include "solver/sampling/sobol.h"
+#include "tests/solver/floor_point.h"
 #include "tests/support/mean_test.h"
 #include "tests/support/never.h"
 #include "tests/support/skies.h"
@@ -24,6 +25,7 @@ namespace {
 
 using std::numbers::pi;
 using test::cie_sky_over_z;
+using test::floor_point;
 using test::kNever;
 using test::MeanTest;
 using test::RoomBuilder;
@@ -80,14 +82,6 @@ double through_window(const Vec3& x, Radiance&& radiance) {
       if (way.z() > 0) sum += radiance(Vec3(way / r)) * (way.z() / r) * (-way.y() / r) / (r * r);
     }
   return sum * (kRight - kLeft) * (kHead - kSill) / (kSteps * kSteps);
-}
-
-/// A point of the floor (triangles 8 and 9 of the box without its wall y0, two triangles a face).
-SurfacePoint floor_point(const Room& room, double x, double y) {
-  Hit hit;
-  const Vec3f from = room.rays().normalised(Vec3(x, y, 0.5));
-  EXPECT_TRUE(room.rays().closest(from, -Vec3f::UnitZ(), hit));
-  return surface_point(room.rays(), hit, -Vec3f::UnitZ());
 }
 
 TEST(SkyLight, a_plane_outside_gets_what_the_sky_is_said_to_send) {

@@ -94,15 +94,15 @@ TEST(SkyTable, directions_are_drawn_by_brightness) {
     for (std::uint64_t replicate = 0; replicate < 32; ++replicate) {
       const SobolSequence numbers(900 + replicate);
       double sum = 0;
-      constexpr std::uint32_t kSamples = 1024;
-      for (std::uint32_t i = 0; i < kSamples; ++i) {
+      constexpr std::uint32_t kDirections = 1024;
+      for (std::uint32_t i = 0; i < kDirections; ++i) {
         const Vec3 d = table.sample(static_cast<double>(numbers.sample(i, 0)),
                                     static_cast<double>(numbers.sample(i, 1)));
         const SkyTable::Cell cell = table.cell_of(d);
         const double cosine = std::max(0.0, d.dot(table.to_local() * normal));
         sum += cosine * static_cast<double>(table.brightness(cell)) / table.pdf_per_sr(cell);
       }
-      drawn.add(sum / kSamples);
+      drawn.add(sum / kDirections);
     }
     const double expected = irradiance_of_table(table, normal);
     EXPECT_TRUE(drawn.agrees_with(expected)) << type;

@@ -17,7 +17,7 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr std::uint64_t kMost = Hdf5Chunks::kMostBytes;
+constexpr std::uint64_t kMostBytes = Hdf5Chunks::kMostBytes;
 
 TEST(Hdf5Chunks, ASmallDatasetIsOne) {
   const Hdf5Chunks chunks({100, 3}, 8);
@@ -38,8 +38,8 @@ TEST(Hdf5Chunks, LargeRowsAreCut) {
   const Hdf5Chunks chunks({16, kZones, 12}, 4);
   const std::uint64_t zones = chunks.shape()[1];
   EXPECT_THAT(chunks.shape(), ElementsAre(1, zones, 12));
-  EXPECT_LE(chunks.bytes(), kMost);
-  EXPECT_GT(chunks.bytes(), kMost / 2);
+  EXPECT_LE(chunks.bytes(), kMostBytes);
+  EXPECT_GT(chunks.bytes(), kMostBytes / 2);
   const std::uint64_t of_row = (kZones + zones - 1) / zones;
   EXPECT_EQ(chunks.count(), 16 * of_row);
   EXPECT_THAT(chunks.place(of_row - 1), ElementsAre(0, (of_row - 1) * zones, 0));
@@ -47,17 +47,17 @@ TEST(Hdf5Chunks, LargeRowsAreCut) {
 }
 
 TEST(Hdf5Chunks, SoAreLargeSlicesOfRows) {
-  const Hdf5Chunks chunks({2, 3, kMost}, 4);
-  EXPECT_THAT(chunks.shape(), ElementsAre(1, 1, kMost / 4));
+  const Hdf5Chunks chunks({2, 3, kMostBytes}, 4);
+  EXPECT_THAT(chunks.shape(), ElementsAre(1, 1, kMostBytes / 4));
   EXPECT_EQ(chunks.count(), 24U);
-  EXPECT_THAT(chunks.place(4 * 5 + 3), ElementsAre(1, 2, 3 * kMost / 4));
+  EXPECT_THAT(chunks.place(4 * 5 + 3), ElementsAre(1, 2, 3 * kMostBytes / 4));
 }
 
 /// Long texts are values of one chunk each.
 TEST(Hdf5Chunks, ALargeValueIsOne) {
-  const Hdf5Chunks chunks({3}, 2 * kMost);
+  const Hdf5Chunks chunks({3}, 2 * kMostBytes);
   EXPECT_THAT(chunks.shape(), ElementsAre(1));
-  EXPECT_EQ(chunks.bytes(), 2 * kMost);
+  EXPECT_EQ(chunks.bytes(), 2 * kMostBytes);
 }
 
 TEST(Hdf5Chunks, TheyHoldAllBytesInOrder) {

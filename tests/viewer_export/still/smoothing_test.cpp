@@ -17,11 +17,11 @@ namespace {
 
 constexpr int kWidth = 96;
 constexpr int kHeight = 64;
-constexpr double kNoise = 0.3;  // of one replicate, relative
+constexpr double kReplicateNoise = 0.3;  // of one replicate, relative
 constexpr double kFloor = 0.01;
 
 double noise_of_picture() {
-  return kNoise / std::sqrt(static_cast<double>(Film::kReplicates));
+  return kReplicateNoise / std::sqrt(static_cast<double>(Film::kReplicates));
 }
 
 /// What a picture shows: irradiance over pi and reflectance at a pixel.
@@ -71,8 +71,8 @@ Noisy noisy_picture(Pixel&& seen_at) {
     for (int x = 0; x < kWidth; ++x)
       for (std::size_t r = 0; r < Film::kReplicates; ++r) {
         const Seen seen = seen_at(x, y);
-        const auto radiance =
-            static_cast<float>(seen.albedo * seen.light * std::max(0.0, 1 + kNoise * normal(random)));
+        const auto radiance = static_cast<float>(seen.albedo * seen.light *
+                                                 std::max(0.0, 1 + kReplicateNoise * normal(random)));
         const float direct = radiance * 2 / 3;
         add(film, x, y, r, seen, {.direct = direct, .indirect = radiance - direct});
       }
@@ -138,7 +138,7 @@ Noisy blotchy_picture(Pixel&& seen_at) {
   std::normal_distribution<double> normal;
   std::vector<double> noise;
   for (std::size_t i = 0; i < Film::kReplicates * kBlotches; ++i)
-    noise.push_back(std::max(-1.0, kNoise * normal(random)));
+    noise.push_back(std::max(-1.0, kReplicateNoise * normal(random)));
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
       for (std::size_t r = 0; r < Film::kReplicates; ++r) {
