@@ -16,7 +16,6 @@
 namespace reemit {
 namespace {
 
-constexpr std::size_t kBiasGroups = ZoneBiasEffort::kGroups;
 constexpr std::uint32_t kBiasReplicates = 16;
 static_assert(kBiasReplicates == ZoneSums::kGroups);
 
@@ -74,9 +73,9 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
   for (std::size_t b = 0; b < bands; ++b) {
     double square = 0;
     double variance = 0;  // of `square`
-    for (std::size_t g = 0; g < kBiasGroups; ++g) {
-      const std::size_t first = g * points.size() / kBiasGroups;
-      const std::size_t last = (g + 1) * points.size() / kBiasGroups;
+    for (std::size_t g = 0; g < ZoneBiasEffort::kGroups; ++g) {
+      const std::size_t first = g * points.size() / ZoneBiasEffort::kGroups;
+      const std::size_t last = (g + 1) * points.size() / ZoneBiasEffort::kGroups;
       const ReplicateMean mean = mean_of_replicates(kBiasReplicates, parts, [&](std::size_t r) {
         double sum = 0;
         for (std::size_t i = first; i < last; ++i)
@@ -84,8 +83,9 @@ ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& pa
         return sum / static_cast<double>(ZoneBiasEffort::kPointsPerGroup);
       });
       const double error2 = mean.squared_error;
-      square += (mean.mean * mean.mean - error2) / kBiasGroups;
-      variance += (4 * mean.mean * mean.mean + 2 * error2) * error2 / (kBiasGroups * kBiasGroups);
+      square += (mean.mean * mean.mean - error2) / ZoneBiasEffort::kGroups;
+      variance += (4 * mean.mean * mean.mean + 2 * error2) * error2 /
+                  (ZoneBiasEffort::kGroups * ZoneBiasEffort::kGroups);
     }
     const ZoneBias bias{std::sqrt(std::max(0.0, square)),
                         std::sqrt(std::max(0.0, square) + 2 * std::sqrt(variance))};

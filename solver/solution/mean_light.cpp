@@ -7,8 +7,6 @@
 namespace reemit {
 namespace {
 
-constexpr std::size_t kGroupsOfBatches = ZoneSums::kGroups;
-
 /// Means over a set of zones of one material, per band.
 struct GroupedMean {
   explicit GroupedMean(std::size_t bands)
@@ -33,7 +31,7 @@ struct GroupedMean {
       weigh(own.scattered, added.scattered);
     };
     weigh_light(all, other.all);
-    for (std::size_t g = 0; g < kGroupsOfBatches; ++g) weigh_light(groups[g], other.groups[g]);
+    for (std::size_t g = 0; g < ZoneSums::kGroups; ++g) weigh_light(groups[g], other.groups[g]);
     area = both;
   }
 
@@ -42,11 +40,11 @@ struct GroupedMean {
     Spectrum scattered;   // reflected, and let through from the other side [W/m2]
     Spectrum reflected;   // sum over zones of area times what textures make them reflect more than their mean
   };
-  double area = 0;                             // [m2]
-  Spectrum emitted;                            // by the zones themselves [W/m2]
-  Spectrum scatters;                           // 0 where no light is reflected or let through
-  Light all;                                   // of all batches
-  std::array<Light, kGroupsOfBatches> groups;  // of each group of batches
+  double area = 0;                              // [m2]
+  Spectrum emitted;                             // by the zones themselves [W/m2]
+  Spectrum scatters;                            // 0 where no light is reflected or let through
+  Light all;                                    // of all batches
+  std::array<Light, ZoneSums::kGroups> groups;  // of each group of batches
 };
 
 /// Fills in what the sides of a surface scatter of their own irradiance and that of the other.
@@ -59,7 +57,7 @@ void scatter(const Material& material, GroupedMean& side, const GroupedMean& oth
     if (lets_through) light.scattered += tau * behind.irradiance;
   };
   fill(side.all, other.all);
-  for (std::size_t g = 0; g < kGroupsOfBatches; ++g) fill(side.groups[g], other.groups[g]);
+  for (std::size_t g = 0; g < ZoneSums::kGroups; ++g) fill(side.groups[g], other.groups[g]);
   side.scatters = rho;
   if (lets_through) side.scatters += tau;
 }
@@ -124,13 +122,13 @@ class Sides {
   void add_irradiance() {
     add_up([&](std::size_t i) { return sums_.total(i); },
            [](GroupedMean& side) -> Spectrum& { return side.all.irradiance; });
-    for (std::size_t g = 0; g < kGroupsOfBatches && sums_.group_weight[g] > 0; ++g)
+    for (std::size_t g = 0; g < ZoneSums::kGroups && sums_.group_weight[g] > 0; ++g)
       add_up([&](std::size_t i) { return of_group(g, i); },
              [g](GroupedMean& side) -> Spectrum& { return side.groups[g].irradiance; });
     for (GroupedMean& side : sides_) {
       if (!(side.area > 0)) continue;
       if (sums_.batches > 0) side.all.irradiance /= side.area * static_cast<double>(sums_.weight());
-      for (std::size_t g = 0; g < kGroupsOfBatches && sums_.group_weight[g] > 0; ++g)
+      for (std::size_t g = 0; g < ZoneSums::kGroups && sums_.group_weight[g] > 0; ++g)
         side.groups[g].irradiance /= side.area * static_cast<double>(sums_.group_weight[g]);
     }
   }
@@ -145,7 +143,7 @@ class Sides {
     };
     add_up([&](std::size_t i) { return excess(i) * sums_.total(i); },
            [](GroupedMean& side) -> Spectrum& { return side.all.reflected; });
-    for (std::size_t g = 0; g < kGroupsOfBatches && sums_.group_weight[g] > 0; ++g)
+    for (std::size_t g = 0; g < ZoneSums::kGroups && sums_.group_weight[g] > 0; ++g)
       add_up([&](std::size_t i) { return excess(i) * of_group(g, i); },
              [g](GroupedMean& side) -> Spectrum& { return side.groups[g].reflected; });
     const auto own = [](GroupedMean::Light& light, const GroupedMean& side, double weight) {
@@ -153,7 +151,7 @@ class Sides {
     };
     for (GroupedMean& side : sides_) {
       own(side.all, side, static_cast<double>(sums_.weight()));
-      for (std::size_t g = 0; g < kGroupsOfBatches; ++g)
+      for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
         own(side.groups[g], side, static_cast<double>(sums_.group_weight[g]));
     }
   }
@@ -187,7 +185,7 @@ Estimate estimate(const ZoneSums& sums, const GroupedMean& light, Function&& val
   if (sums.batches == 1) return {mean, std::numeric_limits<double>::infinity()};
   const GroupWeights weights(sums);
   double squares = 0;
-  for (std::size_t g = 0; g < kGroupsOfBatches && sums.group_weight[g] > 0; ++g) {
+  for (std::size_t g = 0; g < ZoneSums::kGroups && sums.group_weight[g] > 0; ++g) {
     const double deviation = static_cast<double>(sums.group_weight[g]) * (value_of(light.groups[g]) - mean);
     squares += deviation * deviation;
   }
