@@ -110,6 +110,25 @@ Outlooks look_out(const RayTracer& rays, const ZoneMesh& mesh, const std::vector
   return found;
 }
 
+/// The side in the middle of a picture, if there is one.
+SideId side_looked_at(const RayTracer& rays, const Camera& camera) {
+  const Vec3 eye = rays.normalised_double(camera.eye);
+  const Vec3 view = camera.look_at - camera.eye;
+  const double length = view.stableNorm();
+  SideId side;
+  if (!(length > 0) || !std::isfinite(length) || !eye.allFinite()) return side;
+  Ray16 ray;
+  ray.set(0, eye.cast<float>(), (view / length).cast<float>());
+  trace_probes(rays, ray, 1, [&](int, const ProbeRay& probe) {
+    if (probe.met) side = side_of(probe.hit.triangle, probe.hit.front);
+  });
+  return side;
+}
+
+bool is_among_dark(const std::vector<Side>& sides, SideId side) {
+  return std::any_of(sides.begin(), sides.end(), [&](const Side& s) { return s.id == side && s.is_dark; });
+}
+
 }  // namespace
 
 DarkSpace find_dark_space(const PacketRoom& transport, const Solution& solution, const StopToken* stop) {
@@ -124,6 +143,8 @@ DarkSpace find_dark_space(const PacketRoom& transport, const Solution& solution,
     dark_chords += dark[f].chords;
     found.faces.push_back({SurfaceId(f / 2), f % 2 == 0, dark[f].area});
   }
+  for (const Camera& camera : transport.scene().cameras)
+    if (is_among_dark(sides, side_looked_at(transport.rays(), camera))) found.is_looked_at = true;
   if (dark_chords > 0) found.share = dark_chords / (dark_chords + lit_chords);
   std::stable_sort(found.faces.begin(), found.faces.end(),
                    [](const DarkSpace::Face& a, const DarkSpace::Face& b) { return a.area > b.area; });

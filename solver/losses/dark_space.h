@@ -17,6 +17,8 @@ struct DarkSpace {
   };
   double share = 0;         ///< Of all space that surfaces enclose [0,1].
   std::vector<Face> faces;  ///< That enclose it, largest first.
+  /// One of the scene's cameras has a dark side in the middle of its picture.
+  bool is_looked_at = false;
 };
 
 /// By rays from all sides: the volume before sides is their area times the mean distance to what they see

@@ -179,9 +179,11 @@ bool is_lit_from_outside(const Scene& scene) {
 bool warn_of_the_dark(const PacketRoom& transport, const Solution& solution, const StopToken* stop,
                       std::vector<std::string>& warnings) {
   const Scene& scene = transport.scene();
-  if (is_lit_from_outside(scene)) return false;  // houses seen from outside are dark inside
+  const bool from_outside = is_lit_from_outside(scene);
   const DarkSpace dark = find_dark_space(transport, solution, stop);
   if (!(dark.share > kDarkShare)) return false;
+  // Houses seen from outside are dark inside.
+  if (from_outside && !scene.cameras.empty() && !dark.is_looked_at) return false;
   std::string text = fmt::format("no light gets into {} of the space that surfaces enclose; dark are",
                                  share_text(dark.share));
   for (std::size_t i = 0; i < std::min(kMostPlaces, dark.faces.size()); ++i) {
@@ -190,9 +192,17 @@ bool warn_of_the_dark(const PacketRoom& transport, const Solution& solution, con
                         face.front ? "" : "back, ", face.area);
   }
   if (dark.faces.size() > kMostPlaces) text += fmt::format(" and {} more", dark.faces.size() - kMostPlaces);
-  warnings.push_back(text +
-                     "; is a luminaire outside the room, shut in or turned away? Move or turn it so that it "
-                     "shines into the room");
+  if (from_outside)
+    text +=
+        "; is a window opaque that should let daylight in? Give it a material of glass, or one that "
+        "transmits, "
+        "or leave it out";
+  else
+    text +=
+        "; is a luminaire outside the room, shut in or turned away? Move or turn it so that it shines into "
+        "the "
+        "room";
+  warnings.push_back(text);
   return true;
 }
 

@@ -9,6 +9,7 @@
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
 #include "tests/support/never.h"
+#include "tests/support/skies.h"
 #include "tests/support/test_rooms.h"
 
 namespace reemit {
@@ -42,6 +43,13 @@ class DarkRoom : public ::testing::Test {
     const Solution solution = solved();
     const Room walls(room_.scene(), solution.mesh);
     return find_dark_space(PacketRoom(walls), solution, stop);
+  }
+
+  static Camera camera_at(const Vec3& eye, const Vec3& look_at) {
+    Camera camera;
+    camera.eye = eye;
+    camera.look_at = look_at;
+    return camera;
   }
 
   test::RoomBuilder room_;
@@ -80,6 +88,21 @@ TEST_F(DarkRoom, CavitiesOfWallsAndFurnitureMayBeDark) {
   lamp(Vec3(2, 2, 2));
   const double cavity = 4.6 * 3.6 * 4.6 - 48;
   EXPECT_NEAR(dark_space().share, (cavity + 3.6) / (cavity + 48), 0.02);
+  EXPECT_THAT(solved().light_warnings, IsEmpty());
+}
+
+TEST_F(DarkRoom, WithoutAWindowUnderASkyIsNamed) {
+  room_.scene().sky = test::sky_over_z(SkyKind::kOvercast, 50);
+  EXPECT_THAT(solved().light_warnings,
+              ElementsAre(AllOf(HasSubstr("no light gets into"), HasSubstr("is a window opaque"))));
+  room_.scene().cameras = {camera_at(Vec3(2, 1.5, 3), Vec3(2, 1, 0))};
+  EXPECT_THAT(solved().light_warnings, ElementsAre(HasSubstr("is a window opaque")));
+}
+
+TEST_F(DarkRoom, SeenFromOutsideMayBeDarkUnderASky) {
+  room_.scene().sky = test::sky_over_z(SkyKind::kOvercast, 50);
+  room_.scene().cameras = {camera_at(Vec3(2, 1.5, 20), Vec3(2, 1, 0))};
+  EXPECT_GT(dark_space().share, 0.99);
   EXPECT_THAT(solved().light_warnings, IsEmpty());
 }
 
