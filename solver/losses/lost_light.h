@@ -37,9 +37,10 @@ EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emis
 /// that escapes, and light that ends on backs of one-sided faces; before them that most of the space that
 /// faces enclose is dark (dark_space.h), and then nothing of what escapes outside of it; where light comes
 /// from outside, only if a camera looks at the dark or there is none. Faces count as closed when at most 1 %
-/// of the light leaves through openings, or 5 % if most of what leaves does so through gaps. A room with an opening (the Cornell box) loses light by intent and gets no warning, nor does
-/// one that is mostly outdoors. Where directional lights or a sky shine in from outside, only gaps count.
-/// Reads Solution::audit and sums. Throws Interrupted when `stop` (may be null) is requested.
+/// of the light leaves through openings, or 5 % if most of what leaves does so through gaps. A room with an
+/// opening (the Cornell box) loses light by intent and gets no warning, nor does one that is mostly outdoors.
+/// Where directional lights or a sky shine in from outside, only gaps count. Reads Solution::audit and sums.
+/// Throws Interrupted when `stop` (may be null) is requested.
 std::vector<std::string> lost_light_warnings(const PacketRoom& transport, const PacketSources& emission,
                                              const Solution& solution, const StopToken* stop = nullptr);
 

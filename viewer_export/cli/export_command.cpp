@@ -126,7 +126,9 @@ ExitCode run_export(const ExportOptions& options) {
   const std::string missed = missed_by_zones("the vertices", options.vertex.error_target, data.info.zones);
   if (!missed.empty() && !options.style.quiet) print_note(missed);
   if (interrupt.requested() && !options.style.quiet) {
-    print_note("interrupted; vertices not yet reached hold the mean of their zones");
+    print_note(data.gathered
+                   ? "interrupted; vertices not yet reached hold the mean of their zones"
+                   : "interrupted; all vertices hold the mean of their zones, which had less noise");
   }
   report(options, data, seconds_since(start));
   return ExitCode::kDone;

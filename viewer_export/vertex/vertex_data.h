@@ -21,6 +21,7 @@ struct VertexData {
   Spectrum outside{};
   /// True if an error target was missed because of the noise of the zone solution.
   bool limited_by_zones = false;
+  bool gathered = false;  ///< Else every vertex has the mean of its zones.
   bool smoothed = false;  ///< Noise was taken out (smooth_vertices).
   BandSet bands = BandSet::grey();
   /// Of the displayable colours in PLY and glTF (tone_map_of_room); the radiances are never tone-mapped.

@@ -134,16 +134,17 @@ VertexData make_vertices(const Scene& scene, const Solution& solution, const Ver
   return data;
 }
 
-void describe(const Scene& scene, const Solution& solution, const VertexSettings& settings, bool smoothed,
-              ExportInfo& info) {
+void describe(const Scene& scene, const Solution& solution, const VertexSettings& settings,
+              VertexData& data) {
+  ExportInfo& info = data.info;
   info.program_version = solution.program_version;
   info.room = scene.source.empty() ? scene.name : scene.source;
   info.room_hash = solution.room_hash;
   info.seed = solution.settings.seed;
   if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
-  info.settings.emplace_back("vertex values", settings.average_zones ? "zone averages" : "final gather");
-  if (settings.average_zones) return;
-  if (smoothed) info.settings.emplace_back("smoothed", "over vertices that agree within their noise");
+  info.settings.emplace_back("vertex values", data.gathered ? "final gather" : "zone averages");
+  if (!data.gathered) return;
+  if (data.smoothed) info.settings.emplace_back("smoothed", "over vertices that agree within their noise");
   info.settings.emplace_back("gather rays", static_cast<std::uint64_t>(settings.gather_rays));
   info.settings.emplace_back("light samples", static_cast<std::uint64_t>(settings.light_samples));
   info.settings.emplace_back("gather seed", settings.seed);
@@ -178,15 +179,22 @@ VertexData gather_vertices(const Room& room, const Solution& solution, const Ver
       if (const auto difference = solution.record.discretisation)
         data.info.zones = ZoneBias{*difference, *difference};
     } else {
+      const double error_of_zones = relative_error(gatherer, rings, data);
       VertexRefinement refinement(gatherer, rings, settings, progress, interrupt, data);
       refinement.run();
-      if (settings.smooth) smooth_vertices(gatherer, rings, refinement.layers(), StopToken(interrupt), data);
+      // A first pass towards a target has few samples for each vertex.
+      data.gathered =
+          !interrupt || settings.error_target == 0 || relative_error(gatherer, rings, data) <= error_of_zones;
+      if (!data.gathered)
+        average_zones(solution, rings, gatherer.field(), data);
+      else if (settings.smooth)
+        smooth_vertices(gatherer, rings, refinement.layers(), StopToken(interrupt), data);
       if (!interrupt)
         data.info.zones = gatherer.zone_bias(data, static_cast<double>(rings.size()) * settings.gather_rays);
     }
     data.info.error = relative_error(gatherer, rings, data);
   });
-  describe(scene, solution, settings, data.smoothed, data.info);
+  describe(scene, solution, settings, data);
   return data;
 }
 

@@ -47,8 +47,9 @@ using VertexProgressCallback = std::function<void(double)>;
 /// error of radiance weighted by vertex area, worst band. With an error target, samples are doubled where the
 /// error is too large, until it is reached or what is left is the noise of the zone solution
 /// (VertexData::limited_by_zones). When `interrupt` becomes true, vertices not yet begun keep the mean of
-/// their zones. `progress` may be empty. Throws InputError for settings out of range and a room that is not
-/// the one solved.
+/// their zones; on the way to an error target all have it (VertexData::gathered) while it has less noise than
+/// what is gathered. `progress` may be empty. Throws InputError for settings out of range and a room that is
+/// not the one solved.
 VertexData gather_vertices(const Room& room, const Solution& solution, const VertexSettings& settings,
                            const VertexProgressCallback& progress, const std::atomic<bool>& interrupt);
 

@@ -295,6 +295,42 @@ TEST(GatherVertices, doubles_samples_until_the_error_is_reached) {
   EXPECT_LT(last, 0.005);
 }
 
+TEST(GatherVertices, an_interrupted_refinement_leaves_no_more_noise_than_the_zones_have) {
+  RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5);
+  const MaterialId lamp = room.material("lamp", 0.2, 1);
+  room.box({0, 0, 0}, {1, 1, 1}, {wall, wall, wall, wall, lamp, wall}, 3);
+  const auto solved = [&](std::uint64_t packets) {
+    SolverSettings settings;
+    settings.packets = packets;
+    return solve(room.scene(), room.mesh(), settings, {}, test::kNever);
+  };
+  VertexSettings of_zones;
+  of_zones.average_zones = true;
+  // After the first pass.
+  const auto interrupted = [&](const Solution& solution) {
+    VertexSettings settings;
+    settings.error_target = 1e-3;
+    std::atomic<bool> interrupt{false};
+    return gather_vertices(
+        Room(room.scene(), solution.mesh), solution, settings,
+        [&](double done) { interrupt = interrupt || done > 0; }, interrupt);
+  };
+
+  const Solution good = solved(1U << 20);
+  const VertexData zones = gather(room, good, of_zones);
+  const VertexData after_good = interrupted(good);
+  EXPECT_FALSE(after_good.gathered);
+  EXPECT_EQ(after_good.radiance, zones.radiance);
+  EXPECT_EQ(after_good.radiance_stderr, zones.radiance_stderr);
+  EXPECT_EQ(after_good.info.error, zones.info.error);
+
+  const Solution poor = solved(1U << 12);
+  const VertexData after_poor = interrupted(poor);
+  EXPECT_TRUE(after_poor.gathered);
+  EXPECT_LT(after_poor.info.error, gather(room, poor, of_zones).info.error);
+}
+
 TEST(GatherVertices, refuses_nonsense) {
   RoomBuilder room;
   const MaterialId wall = room.material("wall", 0.5, 1);
