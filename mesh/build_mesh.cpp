@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "mesh/contact/contact_split.h"
 #include "mesh/model/mesh_tolerances.h"
 #include "mesh/overlap/coplanar_overlap.h"
+#include "mesh/overlap/near_pieces.h"
 #include "mesh/pieces/edge_points.h"
 #include "mesh/repair/dropped_luminaires.h"
 #include "mesh/repair/duplicate_faces.h"
@@ -151,10 +153,12 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const Wor
   const double zone_area = wanted_zone_area(settings, zoned_area(scene, pieces, shapes));
   const double zone_edge = std::sqrt(zone_area);
 
+  std::optional<NearPieces> near(std::in_place, vertices, pieces);
   PieceGroups groups =
-      group_overlapping_pieces(scene, pieces, tolerances, WorkStep(watch, 0.2, 0.4), vertices);
-  const ContactCuts cuts =
-      find_contact_cuts(scene, pieces, groups, tolerances, WorkStep(watch, 0.4, 0.6), vertices, shapes.exact);
+      group_overlapping_pieces(scene, pieces, *near, tolerances, WorkStep(watch, 0.2, 0.4), vertices);
+  const ContactCuts cuts = find_contact_cuts(scene, pieces, groups, *near, tolerances,
+                                             WorkStep(watch, 0.4, 0.6), vertices, shapes.exact);
+  near.reset();
   if (cuts.ignored > 0)
     report.warnings.push_back(fmt::format(
         "{} faces touch so many others that they were cut along the longest contacts only", cuts.ignored));

@@ -7,7 +7,7 @@
 
 #include "mesh/contact/group_outlines.h"
 #include "mesh/geometry/box_tree.h"
-#include "mesh/overlap/near_pieces.h"
+#include "mesh/geometry/find_in_blocks.h"
 #include "mesh/pieces/contact_segments.h"
 #include "mesh/pieces/convex_region.h"
 #include "mesh/pieces/edge_points.h"
@@ -155,20 +155,52 @@ std::vector<Segment> CutArrangement::arrange(std::vector<PlanarSegment> raw, boo
   return out;
 }
 
-// Answers which pieces and shapes may be in contact with a group; shapes are numbered after the pieces.
+// Finds where pieces and shapes are in contact with groups; shapes are numbered after the pieces.
 class ContactSearch {
  public:
-  ContactSearch(const Scene& scene, const std::vector<FacePiece>& pieces, const PieceGroups& groups,
+  ContactSearch(const std::vector<FacePiece>& pieces, const PieceGroups& groups, const NearPieces& near,
                 const MeshTolerances& tolerances, const VertexTable& vertices,
                 std::span<const CurvedShape> shapes)
       : pieces_(pieces),
         groups_(groups),
+        near_(near),
         tolerances_(tolerances),
         vertices_(vertices),
         shapes_(shapes),
-        near_pieces_(scene, vertices, pieces),
         shape_tree_(boxes_of(shapes, 0)) {}
 
+  /// Space that one group after the other is looked at in.
+  struct Scratch {
+    std::vector<std::size_t> others;
+    std::vector<std::size_t> near;
+    std::vector<PlanarSegment> sections;
+  };
+
+  /// Sets `contacts` to the contacts within the pieces of a group. Returns how many pieces it looked at.
+  std::size_t find(std::size_t g, Scratch& scratch, std::vector<PlanarSegment>& contacts) const {
+    contacts.clear();
+    const PieceGroup group = groups_[g];
+    double diameter = 0;
+    for (const std::size_t p : group.pieces) diameter = std::max(diameter, pieces_[p].diameter);
+    const std::size_t looks = find_candidates(g, diameter, scratch.others);
+    if (scratch.others.empty()) return looks;
+    const GroupOutlines outlines(vertices_, pieces_, group);
+    for (const std::size_t other : scratch.others) {
+      const double contact = reach(diameter, size(other));
+      scratch.sections.clear();
+      if (other < pieces_.size())
+        section_with_plane(vertices_, pieces_[other], group.plane, contact, scratch.sections);
+      else
+        section_with_plane(shapes_[other - pieces_.size()], group.plane, contact, scratch.sections);
+      for (const PlanarSegment& s : scratch.sections) {
+        outlines.near(s.from.cwiseMin(s.to), s.from.cwiseMax(s.to), scratch.near);
+        for (const std::size_t k : scratch.near) clip_to_loops(s, outlines[k], tolerances_.snap, contacts);
+      }
+    }
+    return looks;
+  }
+
+ private:
   /// Small faces touch only from nearer: the tolerance must stay a small part of their own size [m].
   double reach(double diameter, double other) const {
     constexpr double kShareOfSize = 0.02;
@@ -180,9 +212,10 @@ class ContactSearch {
                                   : std::sqrt(shape_area(shapes_[other - pieces_.size()]));
   }
 
-  /// In ascending order.
-  void candidates(std::size_t g, double diameter, std::vector<std::size_t>& out) {
+  /// What may be in contact with a group, in ascending order. Returns how many pieces it looked at.
+  std::size_t find_candidates(std::size_t g, double diameter, std::vector<std::size_t>& out) const {
     out.clear();
+    std::size_t looks = 0;
     const PieceGroup group = groups_[g];
     // One weld distance more than needed, so that rounding loses nothing.
     const double widest = reach(diameter, diameter) + tolerances_.weld;
@@ -191,7 +224,7 @@ class ContactSearch {
       // or a corner, most of what is near, are not looked at.
       const auto region =
           ConvexRegion::of_piece(vertices_, pieces_[p], group.plane, widest, 0.5 * tolerances_.snap);
-      near_pieces_.visit(region, p, [&](std::uint32_t i) {
+      looks += near_.visit(region, [&](std::uint32_t i) {
         if (groups_.group_of[i] != g) out.push_back(i);
       });
       shape_tree_.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
@@ -199,58 +232,51 @@ class ContactSearch {
     }
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
+    return looks;
   }
 
- private:
   const std::vector<FacePiece>& pieces_;
   const PieceGroups& groups_;
+  const NearPieces& near_;
   const MeshTolerances& tolerances_;
   const VertexTable& vertices_;
   std::span<const CurvedShape> shapes_;
-  NearPieces near_pieces_;
   BoxTree shape_tree_;
+};
+
+// Of one group.
+struct FoundContacts {
+  std::vector<PlanarSegment> segments;
+  std::size_t looks = 0;  // that finding them took
 };
 
 }  // namespace
 
 ContactCuts find_contact_cuts(const Scene& scene, const std::vector<FacePiece>& pieces,
-                              const PieceGroups& groups, const MeshTolerances& tolerances,
-                              const WorkStep& step, VertexTable& vertices,
+                              const PieceGroups& groups, const NearPieces& near,
+                              const MeshTolerances& tolerances, const WorkStep& step, VertexTable& vertices,
                               std::span<const CurvedShape> shapes) {
   ContactCuts out;
   out.segments.resize(groups.size());
-  ContactSearch search(scene, pieces, groups, tolerances, vertices, shapes);
-  std::vector<std::size_t> others;
-  std::vector<std::size_t> near;
-  std::vector<PlanarSegment> sections;
-  std::vector<PlanarSegment> raw;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    step.at(g, groups.size());
-    const PieceGroup group = groups[g];
-    double diameter = 0;
-    for (const std::size_t p : group.pieces) diameter = std::max(diameter, pieces[p].diameter);
-    search.candidates(g, diameter, others);
-    if (others.empty()) continue;
-    const GroupOutlines outlines(vertices, pieces, group);
-    raw.clear();
-    for (const std::size_t other : others) {
-      const double contact = search.reach(diameter, search.size(other));
-      sections.clear();
-      if (other < pieces.size())
-        section_with_plane(vertices, pieces[other], group.plane, contact, sections);
-      else
-        section_with_plane(shapes[other - pieces.size()], group.plane, contact, sections);
-      for (const PlanarSegment& s : sections) {
-        outlines.near(s.from.cwiseMin(s.to), s.from.cwiseMax(s.to), near);
-        for (const std::size_t k : near) clip_to_loops(s, outlines[k], tolerances.snap, raw);
-      }
-    }
-    if (raw.empty()) continue;
-    bool ignored = false;
-    out.segments[g] =
-        CutArrangement(pieces, group, tolerances, vertices).arrange(raw, ignored, out.on_boundary);
-    if (ignored) ++out.ignored;
-  }
+  const ContactSearch search(pieces, groups, near, tolerances, vertices, shapes);
+  LookLimit limit(scene, pieces);
+  // Cuts add vertices; contacts are found from those that were there before.
+  find_in_blocks<FoundContacts>(
+      groups.size(), step,
+      [&] {
+        return [&, scratch = ContactSearch::Scratch()](std::size_t g, FoundContacts& found) mutable {
+          found.looks = search.find(g, scratch, found.segments);
+        };
+      },
+      [&](std::size_t g, const FoundContacts& found) {
+        const PieceGroup group = groups[g];
+        limit.add(group.pieces[0], found.looks);
+        if (found.segments.empty()) return;
+        bool ignored = false;
+        out.segments[g] = CutArrangement(pieces, group, tolerances, vertices)
+                              .arrange(found.segments, ignored, out.on_boundary);
+        if (ignored) ++out.ignored;
+      });
   return out;
 }
 

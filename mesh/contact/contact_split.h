@@ -7,6 +7,7 @@
 #include "mesh/geometry/vertex_table.h"
 #include "mesh/model/mesh_tolerances.h"
 #include "mesh/overlap/coplanar_overlap.h"
+#include "mesh/overlap/near_pieces.h"
 #include "mesh/pieces/face_piece.h"
 #include "scenes/model/scene.h"
 #include "scenes/model/shape.h"
@@ -26,8 +27,8 @@ struct ContactCuts {
 /// distance of its plane) or pierce it. However small a contact is beside a zone, it is cut: what pierces a
 /// wall may be thin and long.
 ContactCuts find_contact_cuts(const Scene& scene, const std::vector<FacePiece>& pieces,
-                              const PieceGroups& groups, const MeshTolerances& tolerances,
-                              const WorkStep& step, VertexTable& vertices,
+                              const PieceGroups& groups, const NearPieces& near,
+                              const MeshTolerances& tolerances, const WorkStep& step, VertexTable& vertices,
                               std::span<const CurvedShape> shapes = {});
 
 }  // namespace reemit

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -9,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "mesh/geometry/disjoint_sets.h"
-#include "mesh/overlap/near_pieces.h"
+#include "mesh/geometry/find_in_blocks.h"
 #include "mesh/pieces/back_to_back.h"
 #include "mesh/pieces/convex_region.h"
 #include "mesh/pieces/face_notes.h"
@@ -51,16 +52,23 @@ std::optional<Crossing> proper_crossing(const Vec2& a0, const Vec2& a1, const Ve
   return Crossing{a0_side / (a0_side - a1_side), b0_side / (b0_side - b1_side)};
 }
 
+// What a piece overlaps of those that are smaller.
+struct Overlaps {
+  std::vector<std::uint32_t> pieces;
+  std::size_t looks = 0;  // that finding them took
+};
+
 class OverlapSearch {
  public:
-  OverlapSearch(const Scene& scene, const std::vector<FacePiece>& pieces, const MeshTolerances& tolerances,
-                VertexTable& vertices)
+  OverlapSearch(const Scene& scene, const std::vector<FacePiece>& pieces, const NearPieces& near,
+                const MeshTolerances& tolerances, VertexTable& vertices)
       : scene_(scene),
         pieces_(pieces),
+        near_(near),
         tolerances_(tolerances),
         margin_(4 * tolerances.weld),
         vertices_(vertices),
-        inner_point_(pieces.size()) {}
+        inner_points_(pieces.size()) {}
 
   PieceGroups run(const WorkStep& step);
 
@@ -69,17 +77,20 @@ class OverlapSearch {
   [[noreturn]] void refuse(std::size_t piece, std::size_t most, const char* what) const;
   bool coplanar(const FacePiece& large, const FacePiece& small) const;
   bool overlap(std::size_t i, std::size_t j, const PlaneFrame& plane);
+  void find_overlaps(std::uint32_t large, Overlaps& found);
   bool pokes_into(const PlanarLoops& inner, const PlanarLoops& outer) const;
-  const Vec3& inner_point(std::size_t i);
+  Vec3 inner_point(std::size_t i);
   HiddenLines hidden_lines(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
   void add_crossings(std::uint32_t i, std::uint32_t j, PieceGroups& out);
 
   const Scene& scene_;
   const std::vector<FacePiece>& pieces_;
+  const NearPieces& near_;
   const MeshTolerances& tolerances_;
   double margin_;  // overlap less deep than this is touching
   VertexTable& vertices_;
-  std::vector<std::optional<Vec3>> inner_point_;
+  std::mutex inner_points_mutex_;
+  std::vector<std::optional<Vec3>> inner_points_;  // by piece, as far as they are known
 };
 
 void OverlapSearch::refuse(std::size_t piece, std::size_t most, const char* what) const {
@@ -96,26 +107,28 @@ bool OverlapSearch::coplanar(const FacePiece& large, const FacePiece& small) con
   return true;
 }
 
-const Vec3& OverlapSearch::inner_point(std::size_t i) {
-  if (!inner_point_[i]) {
-    const FacePiece& piece = pieces_[i];
-    inner_point_[i] = piece.plane.origin;  // the centroid of the corners, right for triangles
-    if (!piece.is_triangle()) {
-      const PlanarLoops loops(vertices_, piece, piece.plane);
-      std::vector<Vec2> points;
-      std::vector<std::array<std::uint32_t, 2>> segments;
-      for (const auto& loop : loops.loops) {
-        const auto first = static_cast<std::uint32_t>(points.size());
-        const auto count = static_cast<std::uint32_t>(loop.size());
-        for (std::uint32_t k = 0; k < count; ++k) segments.push_back({first + k, first + (k + 1) % count});
-        points.insert(points.end(), loop.begin(), loop.end());
-      }
-      const auto cut =
-          triangulate_planar(points, segments, [&](const Vec2& p) { return loops.contains(p); }, {});
-      if (!cut.region_point.empty()) inner_point_[i] = piece.plane.lift(cut.region_point[0]);
-    }
+Vec3 OverlapSearch::inner_point(std::size_t i) {
+  const FacePiece& piece = pieces_[i];
+  Vec3 point = piece.plane.origin;  // the centroid of the corners, right for triangles
+  if (piece.is_triangle()) return point;
+  {
+    const std::lock_guard lock(inner_points_mutex_);
+    if (inner_points_[i]) return *inner_points_[i];
   }
-  return *inner_point_[i];
+  const PlanarLoops loops(vertices_, piece, piece.plane);
+  std::vector<Vec2> points;
+  std::vector<std::array<std::uint32_t, 2>> segments;
+  for (const auto& loop : loops.loops) {
+    const auto first = static_cast<std::uint32_t>(points.size());
+    const auto count = static_cast<std::uint32_t>(loop.size());
+    for (std::uint32_t k = 0; k < count; ++k) segments.push_back({first + k, first + (k + 1) % count});
+    points.insert(points.end(), loop.begin(), loop.end());
+  }
+  const auto cut = triangulate_planar(points, segments, [&](const Vec2& p) { return loops.contains(p); }, {});
+  if (!cut.region_point.empty()) point = piece.plane.lift(cut.region_point[0]);
+  const std::lock_guard lock(inner_points_mutex_);
+  inner_points_[i] = point;
+  return point;
 }
 
 // A corner or the middle of an edge of `inner` lies inside `outer`, clear of its boundary.
@@ -198,26 +211,37 @@ void OverlapSearch::add_crossings(std::uint32_t i, std::uint32_t j, PieceGroups&
   }
 }
 
-// Every overlapping pair is found from its larger piece, whose plane counts; in ascending order.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_pairs(const WorkStep& step) {
-  NearPieces near(scene_, vertices_, pieces_);
+// Every overlapping pair is found from its larger piece, whose plane counts.
+void OverlapSearch::find_overlaps(std::uint32_t large, Overlaps& found) {
   // Neighbours that share an edge or a corner reach inside by the rounding of a product, no more.
   constexpr double kRounding = 1e-3;  // of the weld distance
+  const FacePiece& piece = pieces_[large];
+  const auto region = ConvexRegion::of_piece(vertices_, piece, piece.plane, 2 * tolerances_.weld,
+                                             kRounding * tolerances_.weld);
+  found.pieces.clear();
+  found.looks = near_.visit(region, [&](std::uint32_t small) {
+    const FacePiece& other = pieces_[small];
+    if (piece.area < other.area || (piece.area == other.area && large >= small)) return;
+    if (coplanar(piece, other) && overlap(large, small, piece.plane)) found.pieces.push_back(small);
+  });
+}
+
+// In ascending order.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> OverlapSearch::overlapping_pairs(const WorkStep& step) {
   const std::size_t most = std::max(kMostOverlaps, kMostOverlapsPerFace * pieces_.size());
+  LookLimit limit(scene_, pieces_);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (std::uint32_t large = 0; large < pieces_.size(); ++large) {
-    step.at(large, pieces_.size());
-    const FacePiece& piece = pieces_[large];
-    const auto region = ConvexRegion::of_piece(vertices_, piece, piece.plane, 2 * tolerances_.weld,
-                                               kRounding * tolerances_.weld);
-    near.visit(region, large, [&](std::uint32_t small) {
-      const FacePiece& other = pieces_[small];
-      if (piece.area < other.area || (piece.area == other.area && large >= small)) return;
-      if (!coplanar(piece, other) || !overlap(large, small, piece.plane)) return;
-      pairs.push_back(std::minmax(large, small));
-      if (pairs.size() > most) refuse(large, most, "pairs of faces overlap");
-    });
-  }
+  find_in_blocks<Overlaps>(
+      pieces_.size(), step,
+      [&] {
+        return [&](std::size_t i, Overlaps& found) { find_overlaps(static_cast<std::uint32_t>(i), found); };
+      },
+      [&](std::size_t i, const Overlaps& found) {
+        limit.add(i, found.looks);
+        for (const std::uint32_t small : found.pieces)
+          pairs.push_back(std::minmax(static_cast<std::uint32_t>(i), small));
+        if (pairs.size() > most) refuse(i, most, "pairs of faces overlap");
+      });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -270,9 +294,9 @@ IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size
 }
 
 PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
-                                     const MeshTolerances& tolerances, const WorkStep& step,
-                                     VertexTable& vertices) {
-  return OverlapSearch(scene, pieces, tolerances, vertices).run(step);
+                                     const NearPieces& near, const MeshTolerances& tolerances,
+                                     const WorkStep& step, VertexTable& vertices) {
+  return OverlapSearch(scene, pieces, near, tolerances, vertices).run(step);
 }
 
 Keepers keepers_of(const Scene& scene, const std::vector<FacePiece>& pieces,

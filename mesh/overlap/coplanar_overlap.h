@@ -7,6 +7,7 @@
 #include "mesh/geometry/vertex_table.h"
 #include "mesh/model/mesh_tolerances.h"
 #include "mesh/overlap/hidden_lines.h"
+#include "mesh/overlap/near_pieces.h"
 #include "mesh/pieces/face_piece.h"
 #include "scenes/model/scene.h"
 #include "scenes/model/work_watch.h"
@@ -39,11 +40,11 @@ IndexedBox box_of(const VertexTable& vertices, const FacePiece& piece, std::size
 
 /// Finds the pieces that overlap within the weld distance of one plane. Overlap narrower than a few weld
 /// distances is not seen. Adds the crossings of outlines that are in sight to `vertices`. Throws InputError,
-/// naming a face, if there are more than a million crossings or ten million pairs, and what NearPieces
+/// naming a face, if there are more than a million crossings or ten million pairs, and what LookLimit
 /// throws.
 PieceGroups group_overlapping_pieces(const Scene& scene, const std::vector<FacePiece>& pieces,
-                                     const MeshTolerances& tolerances, const WorkStep& step,
-                                     VertexTable& vertices);
+                                     const NearPieces& near, const MeshTolerances& tolerances,
+                                     const WorkStep& step, VertexTable& vertices);
 
 /// Which pieces keep a spot of their common plane.
 struct Keepers {

@@ -10,13 +10,7 @@
 
 namespace reemit {
 
-NearPieces::NearPieces(const Scene& scene, const VertexTable& vertices, const std::vector<FacePiece>& pieces)
-    : scene_(scene), pieces_(pieces) {
-  // Furnished rooms need some tens of looks per face; this bounds the time to some tenths of a millisecond
-  // each.
-  constexpr std::size_t kMostLooks = 10'000'000;
-  constexpr std::size_t kMostLooksPerPiece = 1000;
-  most_looks_ = kMostLooks + kMostLooksPerPiece * pieces.size();
+NearPieces::NearPieces(const VertexTable& vertices, const std::vector<FacePiece>& pieces) {
   std::vector<IndexedBox> boxes;
   boxes.reserve(pieces.size());
   first_.reserve(pieces.size() + 1);
@@ -30,9 +24,18 @@ NearPieces::NearPieces(const Scene& scene, const VertexTable& vertices, const st
   tree_ = BoxTree(std::move(boxes));
 }
 
-void NearPieces::refuse(std::size_t asker) const {
+LookLimit::LookLimit(const Scene& scene, const std::vector<FacePiece>& pieces)
+    : scene_(scene), pieces_(pieces) {
+  // Furnished rooms need some tens of looks per face; this bounds the time to some tenths of a millisecond
+  // each.
+  constexpr std::size_t kMostLooks = 10'000'000;
+  constexpr std::size_t kMostLooksPerPiece = 1000;
+  most_looks_ = kMostLooks + kMostLooksPerPiece * pieces.size();
+}
+
+void LookLimit::refuse(std::size_t piece) const {
   throw InputError(
-      "face " + face_name(scene_, pieces_[asker].surface, pieces_[asker].face),
+      "face " + face_name(scene_, pieces_[piece].surface, pieces_[piece].face),
       fmt::format("too many faces lie within each other's bounding boxes, here and elsewhere: more "
                   "than {} comparisons for {} faces",
                   most_looks_, pieces_.size()),

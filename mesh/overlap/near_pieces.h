@@ -15,29 +15,44 @@ namespace reemit {
 /// because most of what a box admits is rejected by a look at three corners.
 class NearPieces {
  public:
-  NearPieces(const Scene& scene, const VertexTable& vertices, const std::vector<FacePiece>& pieces);
+  NearPieces(const VertexTable& vertices, const std::vector<FacePiece>& pieces);
 
-  /// Calls `visit(index)` for pieces that may reach into the region around `asker`, in any order. Throws
-  /// InputError naming the asker once there have been so many rejections that the room is quadratic:
-  /// thousands of thin triangles that meet in one corner.
+  /// Calls `visit(index)` for pieces that may reach into the region, in any order. Returns how many it had to
+  /// look at.
   template <class Visit>
-  void visit(const ConvexRegion& region, std::size_t asker, const Visit& visit) {
+  std::size_t visit(const ConvexRegion& region, const Visit& visit) const {
+    std::size_t looks = 0;
     tree_.visit([&](const Vec3& low, const Vec3& high) { return region.touches(low, high); },
                 [&](std::uint32_t i) {
-                  ++looks_;
+                  ++looks;
                   if (region.touches(corners_.data() + first_[i], corners_.data() + first_[i + 1])) visit(i);
                 });
-    if (looks_ > most_looks_) refuse(asker);
+    return looks;
   }
 
  private:
-  [[noreturn]] void refuse(std::size_t asker) const;
-
-  const Scene& scene_;
-  const std::vector<FacePiece>& pieces_;
   BoxTree tree_;
   std::vector<std::size_t> first_;  // corner of the outline, by piece, and one past the last
   std::vector<Vec3> corners_;
+};
+
+/// Ends searches by NearPieces in rooms that are quadratic: thousands of thin triangles that meet in one
+/// corner.
+class LookLimit {
+ public:
+  LookLimit(const Scene& scene, const std::vector<FacePiece>& pieces);
+
+  /// Looks that one piece took. Throws InputError naming it once there have been too many.
+  void add(std::size_t piece, std::size_t looks) {
+    looks_ += looks;
+    if (looks_ > most_looks_) refuse(piece);
+  }
+
+ private:
+  [[noreturn]] void refuse(std::size_t piece) const;
+
+  const Scene& scene_;
+  const std::vector<FacePiece>& pieces_;
   std::size_t looks_ = 0;
   std::size_t most_looks_;
 };
