@@ -32,7 +32,8 @@ SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide,
                              int last)
     : planes_(planes),
       guide_(guide),
-      window_(extent == Extent::kWide ? 7 : 4),
+      reach_(extent == Extent::kWide ? 8 : 5),
+      reach_squared_(extent == Extent::kWide ? 72 : 25),
       first_(first),
       last_(last),
       size_(static_cast<std::size_t>(planes.width) * static_cast<std::size_t>(last - first)),
@@ -48,8 +49,9 @@ SimilarPixels::SimilarPixels(const StillPlanes& planes, const PixelGuide& guide,
 
 void SimilarPixels::average() {
   add_own();
-  for (int dy = 0; dy <= window_; ++dy)
-    for (int dx = dy == 0 ? 1 : -window_; dx <= window_; ++dx) add_opposite(dx, dy);
+  for (int dy = 0; dy <= reach_; ++dy)
+    for (int dx = dy == 0 ? 1 : -reach_; dx <= reach_; ++dx)
+      if (dx * dx + dy * dy <= reach_squared_) add_opposite(dx, dy);
 }
 
 void SimilarPixels::add_own() {

@@ -31,8 +31,8 @@ class SimilarPixels {
  public:
   /// What is averaged.
   enum class Extent {
-    kWide,   ///< All layers over 15 x 15 pixels.
-    kNarrow  ///< Irradiance alone over 9 x 9 pixels.
+    kWide,   ///< All layers over the 225 pixels of a circle.
+    kNarrow  ///< Irradiance alone over 81 of them.
   };
 
   /// Rows first .. last-1. The planes and what guides must outlive it.
@@ -110,7 +110,8 @@ class SimilarPixels {
 
   const StillPlanes& planes_;
   PixelGuide guide_;
-  int window_;  // pixels to each side
+  int reach_;          // pixels to each side
+  int reach_squared_;  // of the circle that offsets lie in
   int first_, last_;
   std::size_t size_;
   std::size_t layers_;

@@ -115,6 +115,30 @@ TEST(Smoothing, takes_the_grain_out_and_leaves_textures) {
   EXPECT_LT(noisy.image.info.error, 2 * left);
 }
 
+/// How alike steps from a pixel to the next are to those some pixels across [-1, 1]: near 1 among streaks.
+double likeness_of_steps(const StillImage& image, int dx, int dy) {
+  constexpr int kAcross = 5;
+  const auto step = [&](int x, int y) {
+    const auto at = [&](int u, int v) { return image.radiance[static_cast<std::size_t>(v * kWidth + u)]; };
+    return static_cast<double>(at(x + dx, y + dy) - at(x, y));
+  };
+  double products = 0;
+  double squares = 0;
+  for (int y = 0; y < kHeight - dy - kAcross * dx; ++y)
+    for (int x = 0; x < kWidth - dx - kAcross * dy; ++x) {
+      products += step(x, y) * step(x + kAcross * dy, y + kAcross * dx);
+      squares += step(x, y) * step(x, y);
+    }
+  return products / squares;
+}
+
+TEST(Smoothing, leaves_no_streaks_along_rows_and_columns) {
+  Noisy noisy = noisy_picture([](int, int) { return Seen{}; });
+  smooth(noisy);
+  EXPECT_LT(likeness_of_steps(noisy.image, 1, 0), 0.3);
+  EXPECT_LT(likeness_of_steps(noisy.image, 0, 1), 0.3);
+}
+
 TEST(Smoothing, keeps_the_border_of_a_faint_shadow) {
   // Twice as deep as the noise of a pixel.
   const auto shadow = [](int x, int /*y*/) { return Seen{.light = x < kWidth / 2 ? 1.0 : 0.8}; };
