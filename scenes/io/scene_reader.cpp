@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/common/files_read.h"
 #include "scenes/io/common/glass_bodies.h"
 #include "scenes/io/common/scene_bands.h"
 #include "scenes/io/common/text_file.h"
@@ -78,6 +79,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
 }
 
 Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions& options) {
+  const FilesRead read;
   for (const std::filesystem::path& file : files) check_readable_file(file);
   for (const std::filesystem::path& file : files.subspan(1)) check_joins(files.front(), file);
   Scene scene =
@@ -93,6 +95,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   if (!options.sky.empty() || !options.sun.empty()) add_sky(options.sky, options.sun, scene);
   finish_scene(scene);
   if (scene.sky) settle_sky(scene);
+  scene.files = read.list();
   return scene;
 }
 

@@ -23,6 +23,8 @@ using KindCounts = std::map<std::string, std::size_t>;
 struct Scene {
   std::string name;
   std::string source;  ///< Path of the room file.
+  /// All that were read for it, absolute: the room, what it refers to, images. Empty if it is of no file.
+  std::vector<std::string> files;
   BandSet bands = BandSet::grey();
   std::vector<Material> materials;  ///< Every Spectrum has bands.count() entries.
   std::vector<Surface> surfaces;

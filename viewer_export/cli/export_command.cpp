@@ -93,8 +93,7 @@ ExitCode run_export(const ExportOptions& options) {
   check_outputs(options);
   const Solution solution = load_solution(options.solution, options.style);
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
-  for (const std::filesystem::path& output : options.outputs)
-    check_output_file(output, scene.source);  // a .glb may be the room
+  for (const std::filesystem::path& output : options.outputs) check_keeps_room(output, scene);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
 

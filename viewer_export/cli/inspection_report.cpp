@@ -1,6 +1,5 @@
 #include "viewer_export/cli/inspection_report.h"
 
-#include <set>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -82,10 +81,7 @@ void check_report(const std::filesystem::path& report, const std::vector<std::fi
 
 void write_report(const std::filesystem::path& report, const Scene& scene, const MeshResult& meshed,
                   const OutputStyle& style) {
-  std::set<std::string> sources;
-  for (const Surface& surface : scene.surfaces)
-    if (!surface.source.empty()) sources.insert(surface.source);
-  for (const std::string& source : sources) check_output_file(report, source, kOption);
+  check_keeps_room(report, scene, kOption);
   const WaitingLine line("drawing the report", progress_style(style.quiet, style.verbose));
   const InspectionPicture picture = draw_inspection(scene, meshed);
   write_output([&] { write_inspection(picture, scene, report); });

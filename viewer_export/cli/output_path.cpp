@@ -43,6 +43,14 @@ void check_output_file(const fs::path& output, const fs::path& input, const std:
   check_can_write(output);
 }
 
+void check_keeps_room(const fs::path& output, const Scene& scene, const std::string& option) {
+  std::error_code problem;
+  for (const std::string& file : scene.files)
+    if (fs::equivalent(output, file, problem))
+      throw InputError(output.string(), "the room is made of this file, among others",
+                       choose_another(option));
+}
+
 void make_output_directory(const fs::path& output) {
   std::error_code problem;
   const fs::file_status status = fs::status(output, problem);

@@ -22,6 +22,7 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
     : room_(room),
       rings_(rings),
       settings_(settings),
+      stop_(stop),
       field_(room, solution, kReplicates),
       direct_(room),
       gather_(field_, direct_,
@@ -30,7 +31,7 @@ VertexGatherer::VertexGatherer(const Room& room, const Solution& solution, const
                              .caustics = !settings.average_zones,
                              .seed = settings.seed,
                              .plan = &solution.gather_plan},
-              &stop),
+              &stop_),
       path_(room, direct_, settings.seed),
       bands_(room.band_count()),
       has_caustics_(room.scene().bends_light()),
@@ -55,7 +56,7 @@ PointSampler VertexGatherer::sampler_of(std::size_t v, int replicate) const {
   return {settings_.seed, RngPurpose::kVertexGroup, place, replicate, log2_points_};
 }
 
-void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
+bool VertexGatherer::gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
                             VertexData& data) const {
   std::vector<float> found((last - first) * values_per_vertex(), 0.0F);
   GatherBatch batch(gather_);
@@ -63,6 +64,7 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
   float* next = found.data();
   for (std::size_t v = first; v < last; ++v)
     for (std::size_t r = 0; r < kReplicates; ++r, next += values_per_replicate()) {
+      if (stop_.requested()) return false;
       const PointSampler sampler = sampler_of(v, static_cast<int>(r));
       const PathKey key{v, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % field_.parts())};
       const auto caustic_of = [&](float* side) { return has_caustics_ ? side + 2 * bands_ : nullptr; };
@@ -82,6 +84,7 @@ void VertexGatherer::gather(std::size_t first, std::size_t last, const PointBloc
   const float share = static_cast<float>(block.count) / static_cast<float>(block.first + block.count);
   for (std::size_t k = 0; k < found.size(); ++k) means[k] += share * (found[k] - means[k]);
   for (std::size_t v = first; v < last; ++v) store(v, means + (v - first) * values_per_vertex(), data);
+  return true;
 }
 
 VertexLayers VertexGatherer::new_layers() const {

@@ -45,8 +45,8 @@ class VertexGatherer {
   /// irradiance [W/m2] and mean reflected radiance over the hemisphere [W/(m2 sr)] per band, in rooms that
   /// bend light also that of luminaires over such surfaces, which is then no part of the second; in rooms
   /// with diffuse transmission also those of the other side; the first vertex at means[0]. Then overwrites
-  /// the values of these vertices in `data`.
-  void gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
+  /// the values of these vertices in `data`. False, and nothing changed, if `stop` was requested meanwhile.
+  bool gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
               VertexData& data) const;
   /// Empty layers of all vertices, for the next.
   VertexLayers new_layers() const;
@@ -67,6 +67,7 @@ class VertexGatherer {
   const Room& room_;
   const VertexRings& rings_;
   const VertexSettings& settings_;
+  StopToken stop_;
   RadianceField field_;
   DirectLight direct_;
   HemisphereGather gather_;

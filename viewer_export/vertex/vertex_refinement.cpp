@@ -86,8 +86,8 @@ void VertexRefinement::run_once() {
   const PointBlock block{0, settings_.points_per_replicate()};
   for_chunks([&](std::size_t c) {
     std::vector<float> means((last(c) - first(c)) * gatherer_.values_per_vertex(), 0.0F);
-    gatherer_.gather(first(c), last(c), block, means.data(), data_);
-    gatherer_.take_apart(first(c), last(c), means.data(), layers_);
+    if (gatherer_.gather(first(c), last(c), block, means.data(), data_))
+      gatherer_.take_apart(first(c), last(c), means.data(), layers_);
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/common/files_read.h"
 #include "scenes/model/error.h"
 
 namespace reemit {
@@ -25,6 +26,7 @@ void check_readable_file(const fs::path& file, std::uintmax_t largest) {
   if (size > largest)
     throw InputError(file.string(), fmt::format("the file has {} bytes", size),
                      fmt::format("Files of up to {} bytes are read: split the room.", largest));
+  FilesRead::add(file);
 }
 
 std::string load_file(const fs::path& file, std::uintmax_t largest) {
