@@ -173,8 +173,25 @@ TEST_F(BadOutputs, ExportDoesNotReplaceTheRoom) {
   const std::filesystem::path room = folder_.write("square.glb", small_glb_room());
   const std::string solution = (folder_ / "square.h5").string();
   ASSERT_EQ(run_reemit({"solve", room.string(), "-o", solution, "--packets", "1000"}).exit_code, 0);
-  expect_refused({{"export", solution, "--values", "zones"}, ""}, room.string(), "input file");
+  expect_refused({{"export", solution, "--values", "zones"}, ""}, room.string(), "the room is made of");
   EXPECT_EQ(read_bytes(room), small_glb_room());
+}
+
+TEST_F(BadOutputs, FilesThatARoomNamesAreNotReplaced) {
+  const std::filesystem::path part = folder_.write("part.glb", small_glb_room());
+  const std::string room = folder_
+                               .write("parts.json", R"({"format": "reemit-room", "version": 1,
+ "materials": {"grey": {"reflectance": 0.5}}, "objects": [{"material": "grey", "file": {"path": "part.glb"}}],
+ "lights": [{"type": "point", "position": [0.5, 0.5, 1], "power": 1}]})")
+                               .string();
+  const std::string solution = (folder_ / "parts.h5").string();
+  ASSERT_EQ(run_reemit({"solve", room, "-o", solution, "--packets", "1000"}).exit_code, 0);
+  expect_refused({{"export", solution, "--values", "zones"}, ""}, part.string(), "the room is made of");
+  // A picture over an image: by another name of the file, the link that is beside it.
+  std::filesystem::create_symlink(part, folder_ / "picture.png");
+  expect_refused({{"render", solution, "--size", "8x8", "--spp", "1"}, ""},
+                 (folder_ / "picture.png").string(), "the room is made of");
+  EXPECT_EQ(read_bytes(part), small_glb_room());
 }
 
 }  // namespace

@@ -47,8 +47,7 @@ void check_keeps_room(const fs::path& output, const Scene& scene, const std::str
   std::error_code problem;
   for (const std::string& file : scene.files)
     if (fs::equivalent(output, file, problem))
-      throw InputError(output.string(), "the room is made of this file, among others",
-                       choose_another(option));
+      throw InputError(output.string(), "the room is made of this file", choose_another(option));
 }
 
 void make_output_directory(const fs::path& output) {

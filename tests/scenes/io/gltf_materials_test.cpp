@@ -182,7 +182,9 @@ TEST(GltfMaterials, TexturesHaveTheirLinearMean) {
     EXPECT_EQ(scene.materials[0].textures.reflectance_factor[0], 0.5);
   };
   gltf.json["images"] = {{{"uri", "checker.png"}}};
-  check(read_gltf_scene(folder.write("room.gltf", gltf.text()), {}));
+  const std::filesystem::path room = folder.write("room.gltf", gltf.text());
+  check(read_gltf_scene(room, {}));
+  EXPECT_THAT(read_scene(room).files, Contains(HasSubstr("checker.png")));
   gltf.json["images"] = {{{"uri", "data:image/png;base64," + test::base64(png)}}};
   check(read_gltf_scene(folder.write("room.gltf", gltf.text()), {}));
   gltf.json["images"] = {

@@ -11,6 +11,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 const std::string kRoom =
@@ -58,6 +59,26 @@ TEST(SceneReader, SeveralMgfFilesAreOneRoom) {
         std::vector{folder.write("a.json", "x"), files[1]}})
     EXPECT_THAT(test::refusal_of([&] { read_scene(mixed); }),
                 AllOf(HasSubstr("only MGF files can"), HasSubstr("JSON room")));
+}
+
+TEST(SceneReader, NamesAllFilesThatARoomIsMadeOf) {
+  const test::TempFolder folder;
+  folder.write("paint.mtl", "newmtl paint\nKd 0.5 0.5 0.5\n");
+  folder.write("chair.obj", "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl paint\nf 1 2 3\n");
+  const auto native = folder.write("room.json", R"({"format": "reemit-room", "version": 1, "materials": {},
+ "objects": [{"file": {"path": "chair.obj"}}, {"file": {"path": "chair.obj"}, "transform": [{"translate": [2, 0, 0]}]}]})");
+  folder.write("triangle.mgf", kRoom);
+  const auto mgf = folder.write("room.mgf", "i triangle.mgf\n");
+  const auto names = [&](const std::filesystem::path& file) {
+    std::vector<std::string> found;
+    for (const std::string& name : read_scene(file).files) {
+      EXPECT_TRUE(std::filesystem::path(name).is_absolute()) << name;
+      found.push_back(std::filesystem::path(name).filename().string());
+    }
+    return found;
+  };
+  EXPECT_THAT(names(native), ElementsAre("room.json", "chair.obj", "paint.mtl"));
+  EXPECT_THAT(names(mgf), ElementsAre("room.mgf", "triangle.mgf"));
 }
 
 TEST(SceneReader, RefusesWhatIsNoRoomFile) {

@@ -118,7 +118,7 @@ TEST(InfoReport, FilesOfTheRoomAreNotReplaced) {
  "materials": {"grey": {"reflectance": 0.5}}, "objects": [{"material": "grey", "file": {"path": "model.glb"}}]})");
   const ProgramRun run = run_reemit(info((folder / "with_model.json").string(), model));
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, AllOf(HasSubstr("output is the input file"), HasSubstr("--report")));
+  EXPECT_THAT(run.err, AllOf(HasSubstr("the room is made of"), HasSubstr("--report")));
   EXPECT_EQ(read_bytes(model), before);
 }
 
