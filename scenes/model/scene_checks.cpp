@@ -71,7 +71,8 @@ void limit_to_all_light(Material& m, Scene& scene, const std::string& where) {
   if (sum.maxCoeff() <= Material::kAllLight) return;
   scene.warnings.push_back(fmt::format(
       "{}: it reflects and transmits {:.4g} of the light, more than it gets; its mirror and glass "
-      "parts are made less until nothing is gained.",
+      "parts are made less until nothing is gained, so that it absorbs nothing. Give shares that add up to "
+      "what it reflects.",
       where, sum.maxCoeff()));
   Spectrum excess = (sum - 1).max(0);
   const auto take = [&](Spectrum& s) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/common/text_parse.h"
+#include "scenes/io/obj/blender_mtl.h"
 #include "scenes/io/obj/obj_light_shares.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
@@ -281,15 +283,30 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
   std::vector<tinyobj::material_t> loaded;
   std::string ignored_warning, ignored_error;  // about what checked_text has refused
   tinyobj::LoadMtl(&names, &loaded, &stream, &ignored_warning, &ignored_error);
-  for (const tinyobj::material_t& m : loaded) {
+  const std::optional<BlenderExporter> blender = blender_exporter_of(text);
+  for (tinyobj::material_t& m : loaded) {
     if (m.name.empty()) continue;
-    if (!index_.try_emplace(m.name, materials.size()).second) {
+    Material* place = place_of(m.name);
+    if (place == nullptr) {
       warnings_.push_back(fmt::format("{}: material '{}' is defined again; the first definition counts.",
                                       file.string(), m.name));
       continue;
     }
-    materials.push_back(convert(m, file, images_, {warnings_, refused, not_modelled, notes}));
+    if (blender) read_as_written_by_blender(*blender, m);
+    *place = convert(m, file, images_, {warnings_, refused, not_modelled, notes});
   }
+  if (blender) notes.push_back(file.string() + ": " + kBlenderNote);
+}
+
+Material* ObjMaterials::place_of(const std::string& name) {
+  const auto [entry, added] = index_.try_emplace(name, materials.size());
+  if (added) return &materials.emplace_back();
+  const auto asked = std::find_if(undefined_.begin(), undefined_.end(),
+                                  [&](const Undefined& u) { return u.material == entry->second; });
+  if (asked == undefined_.end()) return nullptr;
+  undefined_.erase(asked);
+  if (--refused["materials"] == 0) refused.erase("materials");
+  return &materials[entry->second];
 }
 
 std::size_t ObjMaterials::index_of(const std::string& name, const std::string& where) {
@@ -300,9 +317,9 @@ std::size_t ObjMaterials::index_of(const std::string& name, const std::string& w
   material.reflectance = Spectrum::Constant(3, kGrey);
   material.emitted_radiance = Spectrum::Zero(3);
   materials.push_back(std::move(material));
-  if (undefined_.empty()) first_undefined_at_ = where;
   ++refused["materials"];
-  undefined_.push_back(name.empty() ? "faces without 'usemtl'" : fmt::format("'{}'", name));
+  undefined_.push_back(
+      {name.empty() ? "faces without 'usemtl'" : fmt::format("'{}'", name), where, entry->second});
   return entry->second;
 }
 
@@ -310,12 +327,12 @@ std::vector<std::string> ObjMaterials::warnings() const {
   std::vector<std::string> all = warnings_;
   if (undefined_.empty()) return all;
   constexpr std::size_t kMostNames = 8;
-  const std::size_t named = std::min(undefined_.size(), kMostNames);
-  all.push_back(fmt::format(
-      "{}: {} material(s) are not defined and are taken as grey, reflectance {}: {}{}.", first_undefined_at_,
-      undefined_.size(), kGrey,
-      fmt::join(undefined_.begin(), undefined_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
-      undefined_.size() > named ? ", ..." : ""));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(undefined_.size(), kMostNames); ++i)
+    names.push_back(undefined_[i].shown);
+  all.push_back(fmt::format("{}: {} material(s) are not defined and are taken as grey, reflectance {}: {}{}.",
+                            undefined_.front().at, undefined_.size(), kGrey, fmt::join(names, ", "),
+                            undefined_.size() > names.size() ? ", ..." : ""));
   return all;
 }
 

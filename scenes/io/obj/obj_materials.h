@@ -13,11 +13,12 @@ namespace reemit {
 /// radiance in W/(m2 sr) of the front; surfaces reflect on both sides. What Ks, d, Tr, Tf and illum take of
 /// the light goes to the non-diffuse part (obj_light_shares.h). A map_Kd stands for Kd: exporters write Kd
 /// beside it as a mean, a default or a leftover, so it is not multiplied in. map_Ke is multiplied by Ke,
-/// map_d by d.
+/// map_d by d. Files that Blender wrote are read by its conventions (blender_mtl.h).
 class ObjMaterials {
  public:
   /// Reads one MTL file; `name` is relative to `folder`, `where` says which line asked for it. A file that is
-  /// not there leaves a warning. Throws InputError with file and line.
+  /// not there leaves a warning. Names that were asked for before are defined by it as well. Throws
+  /// InputError with file and line.
   void read(const std::filesystem::path& folder, const std::string& name, const std::string& where);
   /// A name that no file has defined becomes grey; the empty one stands for no material.
   std::size_t index_of(const std::string& name, const std::string& where);
@@ -29,11 +30,20 @@ class ObjMaterials {
   std::vector<std::string> notes;    ///< Of images that were made smaller.
 
  private:
+  struct Undefined {
+    std::string shown;  // as messages show it
+    std::string at;     // where it was first asked for
+    std::size_t material;
+  };
+
+  /// Where the material of a definition goes: a new place, or that of a name asked for before. Null if the
+  /// name is defined already.
+  Material* place_of(const std::string& name);
+
   TextureImages images_;
   std::map<std::string, std::size_t> index_;
   std::vector<std::string> warnings_;
-  std::vector<std::string> undefined_;  // as messages show them
-  std::string first_undefined_at_;
+  std::vector<Undefined> undefined_;  // in the order in which they were asked for
 };
 
 }  // namespace reemit

@@ -186,6 +186,44 @@ TEST_F(ObjReader, WhatNoMaterialFileDefinesIsGrey) {
   EXPECT_THAT(read(kSquare + "f 1 2 3\n").warnings, Contains(HasSubstr("empty")));
 }
 
+TEST_F(ObjReader, MaterialFilesMayComeAfterTheFacesThatUseThem) {
+  const Scene scene = read(
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl wall\nf 1 2 3\nusemtl nothing\nf 1 3 2\nmtllib room.mtl\nusemtl "
+      "lamp\nf 2 1 3\n");
+  ASSERT_EQ(scene.surfaces.size(), 3U);
+  EXPECT_EQ(scene.material_of(scene.surfaces[0]).reflectance[0], 0.5F);
+  EXPECT_EQ(scene.material_of(scene.surfaces[1]).reflectance[0], 0.5) << "grey";
+  EXPECT_EQ(scene.material_of(scene.surfaces[2]).emitted_radiance[0], 3);
+  EXPECT_THAT(scene.warnings,
+              Contains(AllOf(HasSubstr("room.obj:6"), HasSubstr("1 material(s)"), HasSubstr("'nothing'"))));
+  EXPECT_EQ(scene.refused.at("materials"), 1U);
+}
+
+TEST_F(ObjReader, BlendersMaterialsHaveNoSpecularShareOfTheLight) {
+  const std::string materials =
+      "newmtl wall\nNs 250.0\nKa 1 1 1\nKd 0.8 0.7 0.6\nKs 0.5 0.5 0.5\nNi 1.45\nd 1\nillum 2\n";
+  const Material paint =
+      read_with("# Blender 3.4.1 MTL File: 'room.blend'\n# www.blender.org\n\n" + materials).materials[0];
+  EXPECT_FALSE(paint.non_diffuse.reflects_specularly());
+  EXPECT_NEAR(paint.reflectance[0], 0.8, 1e-7);
+  EXPECT_TRUE(
+      read_with("# Another 3.4.1 MTL File\n" + materials).materials[0].non_diffuse.reflects_specularly());
+
+  // Roughness 0.5 and three quarters of metal, as both exporters write it.
+  for (const std::string head : {"# Blender 4.0 MTL File: 'None'\nnewmtl wall\nNs 250\n",
+                                 "# Blender MTL File: 'a.blend'\nnewmtl wall\nNs 225\n"}) {
+    const Scene scene = read_with(head + "Ka 0.75 0.75 0.75\nKd 0.8 0.4 0.2\nKs 0.5 0.5 0.5\nillum 3\n");
+    const Material& metal = scene.materials[0];
+    for (int c = 0; c < 3; ++c) {
+      const double colour = std::array{0.8, 0.4, 0.2}[static_cast<std::size_t>(c)];
+      EXPECT_NEAR(metal.non_diffuse.specular_reflectance[c], 0.75 * colour, 1e-6);
+      EXPECT_NEAR(metal.reflectance[c], 0.25 * colour, 1e-6);
+    }
+    EXPECT_NEAR(metal.non_diffuse.roughness, 0.25, 1e-6) << head;
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("Blender wrote it")));
+  }
+}
+
 TEST_F(ObjReader, MaterialFilesAreFoundBesideTheRoomWhateverTheirCase) {
   for (const char* name : {"Room.MTL", "C:\\models\\room.mtl", "textures/room.mtl"}) {
     const Scene scene =
