@@ -151,8 +151,7 @@ class NodeReader {
     Camera camera;
     camera.name = source.name.empty() ? name_ : source.name;
     if (source.type != "perspective") {
-      ++scene_.refused["cameras"];
-      scene_.warnings.push_back(fmt::format("the orthographic camera \"{}\" is left out", camera.name));
+      leave_out("cameras", fmt::format("the camera \"{}\" is orthographic", camera.name));
       return;
     }
     const double yfov = source.perspective.yfov;
@@ -164,7 +163,8 @@ class NodeReader {
     const Eigen::Matrix3d axes = placed.to_world.linear();
     const Vec3 forward = -axes.col(2), up = axes.col(1);
     if (!(forward.norm() > 0) || !(forward.cross(up).norm() > 0)) {
-      fail("the camera has a scale of 0", "Set the scale of the camera to 1.");
+      leave_out("cameras", fmt::format("the camera \"{}\" has a scale of 0", camera.name));
+      return;
     }
     camera.vertical_fov_deg = yfov * 180 / std::numbers::pi;
     camera.eye = placed.to_world.translation();
@@ -202,8 +202,14 @@ class NodeReader {
     if (!problem.empty()) fail_at(at_light + "/intensity", problem, kStrengthAdvice);
     const Vec3 position = placed.to_world.translation();
     const Vec3 forward = -placed.to_world.linear().col(2);
-    if (source.type != "point" && !(forward.norm() > 0))
-      fail("the light has a scale of 0", "Set its scale to 1.");
+    if (!(strength > 0).any()) {
+      scene_.notes.push_back(fmt::format("the light \"{}\" is switched off: its intensity is 0", name));
+      return;
+    }
+    if (source.type != "point" && !(forward.norm() > 0)) {
+      leave_out("luminaires", fmt::format("the light \"{}\" has a scale of 0", name));
+      return;
+    }
     if (source.type == "point") {
       scene_.lights.emplace_back(PointLight{name, position, strength});
     } else if (source.type == "directional") {
@@ -221,6 +227,11 @@ class NodeReader {
       fail_at(at_light + "/type", fmt::format("the light \"{}\" is of an unknown type", name),
               "Known are: point, spot, directional.");
     }
+  }
+
+  void leave_out(const char* kind, const std::string& why) {
+    ++scene_.refused[kind];
+    scene_.warnings.push_back(why + " and is left out");
   }
 
   const GltfModel& gltf_;

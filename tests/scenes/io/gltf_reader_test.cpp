@@ -18,6 +18,7 @@ using test::expect_input_error;
 using test::GltfBuilder;
 using test::read_gltf;
 using test::TempFolder;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -206,6 +207,27 @@ TEST(GltfReader, CamerasAndLights) {
   EXPECT_EQ(std::get<SpotLight>(scene.lights[1]).outer_angle, 0.5);
   EXPECT_NEAR(std::get<DirectionalLight>(scene.lights[2]).irradiance[0], 10, 1e-12);
   EXPECT_THAT(scene.notes, Contains(HasSubstr("179 lm/W")));
+}
+
+TEST(GltfReader, HiddenCamerasAndLightsCostNoRoom) {
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.json["cameras"] = {
+      {{"type", "perspective"}, {"name", "view"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}};
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"name", "off"}, {"intensity", 0}},
+      {{"type", "directional"}, {"name", "shrunk"}, {"intensity", 1790}},
+      {{"type", "point"}, {"name", "on"}, {"intensity", 179}}};
+  gltf.node({{"camera", 0}, {"scale", {0, 0, 0}}});
+  for (int i = 0; i < 3; ++i)
+    gltf.node({{"scale", {0, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
+  const Scene scene = read_gltf(gltf);
+  EXPECT_TRUE(scene.cameras.empty());
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(std::get<PointLight>(scene.lights[0]).name, "on");
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("\"view\""), HasSubstr("left out"))));
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("\"shrunk\""), HasSubstr("left out"))));
+  EXPECT_THAT(scene.notes, Contains(AllOf(HasSubstr("\"off\""), HasSubstr("switched off"))));
 }
 
 TEST(GltfReader, RefusesBrokenNodeGraphs) {
