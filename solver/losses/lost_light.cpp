@@ -179,6 +179,7 @@ bool is_lit_from_outside(const Scene& scene) {
 bool warn_of_the_dark(const PacketRoom& transport, const Solution& solution, const StopToken* stop,
                       std::vector<std::string>& warnings) {
   const Scene& scene = transport.scene();
+  if (solution.record.cut_off) return false;  // what it leaves dark may be lit by what it has not shot
   const bool from_outside = is_lit_from_outside(scene);
   const DarkSpace dark = find_dark_space(transport, solution, stop);
   if (!(dark.share > kDarkShare)) return false;
@@ -195,13 +196,11 @@ bool warn_of_the_dark(const PacketRoom& transport, const Solution& solution, con
   if (from_outside)
     text +=
         "; is a window opaque that should let daylight in? Give it a material of glass, or one that "
-        "transmits, "
-        "or leave it out";
+        "transmits, or leave it out";
   else
     text +=
         "; is a luminaire outside the room, shut in or turned away? Move or turn it so that it shines into "
-        "the "
-        "room";
+        "the room";
   warnings.push_back(text);
   return true;
 }

@@ -112,9 +112,10 @@ struct SolveRecord {
   std::uint64_t packets = 0;  ///< As SolverSettings::packets counts them.
   std::uint64_t rays = 0;     ///< Traced in all.
   double seconds = 0;         ///< Wall time of the solve without meshing and saving, all sittings together.
-  double error = 0;        ///< sqrt(sum A s^2 / sum A B^2) over zones, worst band; s = standard error of B.
-  double error_bound = 0;  ///< The true rms error stays below this with odds of 99.9 %, worst band.
-  double error_95th_percentile = 0;   ///< 95th percentile over zones of s/B, worst band; lit zones only.
+  /// sqrt(sum A s^2 / sum A B^2) over zones, worst band: B without what they emit, s its standard error.
+  double error = 0;
+  double error_bound = 0;            ///< The true rms error stays below this with odds of 99.9 %, worst band.
+  double error_95th_percentile = 0;  ///< 95th percentile over zones of s/B, worst band; lit zones only.
   std::uint64_t unreached_zones = 0;  ///< Zones that no packet met.
   std::uint64_t gathered_zones = 0;   ///< Zones too small for packets, found by gathering.
   std::uint64_t unit_packets = 0;     ///< Packets of a batch of weight 1; 0 before there is one.

@@ -67,6 +67,15 @@ TEST_F(DarkRoom, FewPacketsLeaveNoneDark) {
   EXPECT_THAT(solved(64).light_warnings, IsEmpty());
 }
 
+TEST_F(DarkRoom, ARunThatIsCutOffSaysNothingOfTheDark) {
+  lamp(Vec3(2, 2, 2));
+  SolverSettings settings;
+  settings.time_limit_s = 1e-9;
+  const Solution solution = solve(room_.scene(), room_.mesh(), settings, {}, kNever);
+  ASSERT_TRUE(solution.record.cut_off);
+  EXPECT_THAT(solution.light_warnings, IsEmpty());
+}
+
 TEST_F(DarkRoom, WithItsLampOutsideIsNamed) {
   lamp(Vec3(10, 2, 1));
   EXPECT_GT(dark_space().share, 0.99);
