@@ -13,6 +13,8 @@ namespace {
 /// Rays start no farther than about this from the middle of the normalised room, where a float still resolves
 /// a millionth of it.
 constexpr double kNearRoom = 4;
+/// Eyes on a surface, as a wall drawn where the view begins, stand this far before it [normalised].
+constexpr double kOffSurface = 1e-5;
 
 std::string where(const Camera& camera) {
   return camera.name.empty() ? "camera" : "camera '" + camera.name + "'";
@@ -45,6 +47,11 @@ PinholeCamera::PinholeCamera(const Camera& camera, int width, int height, const 
   per_pixel_ = std::tan(camera.vertical_fov_deg * std::numbers::pi / 360) / half_height_;
   const Vec3 middle = rays.in_room(Vec3f::Zero());
   eye_ = (camera.eye - middle) / rays.metres_per_unit();
+  Hit hit;
+  if (eye_.norm() < kNearRoom &&
+      rays.first_on_way((eye_ - kOffSurface * forward_).cast<float>(), forward_.cast<float>(),
+                        static_cast<float>(2 * kOffSurface), hit))
+    eye_ += kOffSurface * forward_;
 }
 
 PinholeCamera::Ray PinholeCamera::ray(double x, double y) const {

@@ -6,7 +6,8 @@
 namespace reemit {
 
 /// Pinhole camera over the pixels of one picture. Pixels are square: the horizontal field of view follows
-/// from the vertical one and the size of the picture.
+/// from the vertical one and the size of the picture. An eye that lies on a surface stands just before it, on
+/// the side to which it looks.
 class PinholeCamera {
  public:
   struct Ray {

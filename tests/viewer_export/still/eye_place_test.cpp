@@ -5,6 +5,7 @@
 
 #include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
+#include "viewer_export/still/camera.h"
 
 namespace reemit {
 namespace {
@@ -47,6 +48,27 @@ std::string warning(const RoomBuilder& room, const Vec3& eye, const Vec3& look_a
 TEST(EyePlace, InsideTheRoomNothingIsSaid) {
   EXPECT_THAT(warning(room_of(one_sided, false), Vec3(2, 1.6, 4), Vec3(2, 1, 0)), IsEmpty());
   EXPECT_THAT(warning(room_of(two_sided, false), Vec3(2, 1.6, 4), Vec3(2, 1, 0)), IsEmpty());
+}
+
+TEST(EyePlace, OnAWallItSeesTheRoomBeforeIt) {
+  const RoomBuilder room = room_of(two_sided, false);
+  const Solution solution = lit_inside(room);
+  const Room walls(room.scene(), solution.mesh);
+  Camera camera;
+  camera.look_at = Vec3(2.1, 1.4, 2.2);
+  for (const Vec3& eye :
+       {Vec3(2, 1.6, 5), Vec3(1.234567, 0.765432, 5), Vec3(0, 1.5, 2.5), Vec3(4, 0.3, 1.1)}) {
+    camera.eye = eye;
+    const PinholeCamera pinhole(camera, 8, 8, walls.rays());
+    for (int i = 0; i < 64; ++i) {
+      const PinholeCamera::Ray ray = pinhole.ray(i % 8 + 0.5, i / 8 + 0.5);
+      Hit hit;
+      ASSERT_TRUE(walls.rays().closest(ray.origin, ray.direction, hit)) << eye.transpose() << " pixel " << i;
+      EXPECT_TRUE(hit.front) << eye.transpose() << " pixel " << i;
+      EXPECT_GT(hit.distance, 1e-3F) << eye.transpose() << " pixel " << i;
+    }
+    EXPECT_THAT(warning(room, eye, camera.look_at), IsEmpty());
+  }
 }
 
 TEST(EyePlace, BeforeAnOpeningNothingIsSaidNearOrFar) {
