@@ -68,6 +68,9 @@ struct Material {
   Spectrum emitted_radiance;  ///< L_e [W/(m2 sr)] per band along the normal; all 0 = no luminaire.
   /// e in L_e(theta) = emitted_radiance cos^e(theta): 0 = Lambertian, larger = a narrower beam [0, 1e4].
   double emission_exponent = 0;
+  /// Where the emission was given as the power of all surfaces with this material: their emitting area [m2]
+  /// that it was divided by; else 0. Once they are meshed, spread_total_powers settles it.
+  double area_of_total_power = 0;
   bool two_sided = true;  ///< The back reflects like the front; else the back of the face absorbs all light.
   bool emits_both_sides = false;  ///< Else only the front emits. Needs two_sided.
   NonDiffusePart non_diffuse;

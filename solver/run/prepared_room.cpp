@@ -1,7 +1,5 @@
 #include "solver/run/prepared_room.h"
 
-#include <algorithm>
-
 #include "solver/losses/open_room.h"
 #include "solver/shoot/closed_room_check.h"
 #include "solver/texture/zone_means.h"
@@ -9,14 +7,6 @@
 namespace reemit {
 
 namespace {
-
-/// Zones of cut-outs are as large as what is there of them.
-void measure_cut_outs(const Scene& scene, ZoneMesh& mesh) {
-  const bool any = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
-                               [&](const Surface& s) { return scene.material_of(s).textures.is_cut_out(); });
-  if (any)
-    mesh.set_solid_shares(zone_texture_means(RoomTextures(scene, mesh), mesh, scene.bands.count()).solid);
-}
 
 /// What zones hold of textures, for all that is printed and exported without the room.
 void keep_zone_means(const Room& room, Solution& solution) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/model/total_powers.h"
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/error.h"
 
@@ -15,7 +16,7 @@ fs::path find_room_file(const fs::path& stored, const fs::path& solution_file) {
   const fs::path beside = solution_file.parent_path() / stored.filename();
   if (stored.has_filename() && fs::exists(beside, code)) return beside;
   throw InputError(solution_file.string(), "the room it was solved from is gone: " + stored.string(),
-                   "Put the room file back, or beside the solution, or name it with --room.");
+                   "Put the room file back, or beside the solution, or name it (render and export: --room).");
 }
 
 std::vector<fs::path> find_room(const Solution& solution, const fs::path& solution_file,
@@ -54,6 +55,8 @@ bool fits(const Solution& solution, const Scene& scene) {
 Scene read_room_of(const Solution& solution, const fs::path& solution_file,
                    const std::vector<fs::path>& override) {
   Scene scene = read_scene(find_room(solution, solution_file, override), solution.read_options);
+  if (solution.mesh_report.surfaces.size() == scene.surfaces.size())
+    spread_total_powers(solution.mesh_report, solution.mesh, scene);
   if (content_hash(scene) != solution.room_hash)
     throw InputError(scene.source,
                      "the room has changed since " + solution_file.string() + " was solved from it",

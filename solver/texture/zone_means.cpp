@@ -172,4 +172,11 @@ ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh
   return result;
 }
 
+void measure_cut_outs(const Scene& scene, ZoneMesh& mesh) {
+  const bool any = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                               [&](const Surface& s) { return scene.material_of(s).textures.is_cut_out(); });
+  if (any && mesh.solid_shares().empty())
+    mesh.set_solid_shares(zone_texture_means(RoomTextures(scene, mesh), mesh, scene.bands.count()).solid);
+}
+
 }  // namespace reemit

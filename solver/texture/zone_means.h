@@ -25,4 +25,7 @@ inline constexpr int kMostMeanDivisions = 32;
 /// with larger texels.
 ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh& mesh, std::size_t bands);
 
+/// Makes zones of cut-outs as large as what is there of them, unless the mesh has such shares already.
+void measure_cut_outs(const Scene& scene, ZoneMesh& mesh);
+
 }  // namespace reemit

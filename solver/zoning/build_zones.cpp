@@ -6,6 +6,7 @@
 #include "mesh/zones/zone_plan.h"
 #include "mesh/zones/zone_sizing.h"
 #include "solver/room/room.h"
+#include "solver/texture/zone_means.h"
 #include "solver/zoning/light_on_sides.h"
 #include "solver/zoning/pilot_light.h"
 #include "solver/zoning/refine_cells.h"
@@ -87,9 +88,8 @@ ZoneMesh with_cells(BaseMesh base, double zone_area, const std::vector<bool>& da
   return ZoneMesh(std::move(base), std::move(groups));
 }
 
-}  // namespace
-
-MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const WorkWatch& watch) {
+/// build_zones, but for what is there of cut-outs.
+MeshResult zones_of_whole_faces(const Scene& scene, const MeshSettings& settings, const WorkWatch& watch) {
   if (!settings.share_zones) return build_mesh(scene, settings, watch);
   // Shares of the work.
   constexpr double kMeshed = 0.4;
@@ -125,6 +125,14 @@ MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const W
   CellSplits splits = refine_cells(pilot, base, sides, {cells, {plan.zone_area, kSmallestRim * area}},
                                    watch.part(kGrouped, 1));
   result.mesh = ZoneMesh(std::move(base), std::move(plan.groups), std::move(splits));
+  return result;
+}
+
+}  // namespace
+
+MeshResult build_zones(const Scene& scene, const MeshSettings& settings, const WorkWatch& watch) {
+  MeshResult result = zones_of_whole_faces(scene, settings, watch);
+  measure_cut_outs(scene, result.mesh);
   return result;
 }
 

@@ -49,7 +49,7 @@ RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& 
   RoomOfSolution room;
   try {
     const Scene scene = load_room_of(solution, file, {}, style);
-    room.luminaires = list_luminaires(scene, solution.mesh_report);
+    room.luminaires = list_luminaires(scene, solution);
     room.outside = light_outside(scene);
   } catch (const InputError& problem) {
     const std::string message = problem.what();
@@ -80,7 +80,7 @@ ExitCode show_solution(const InfoOptions& options) {
 ExitCode show_room(const InfoOptions& options) {
   const bool reports = !options.report.empty();
   if (reports) check_report(options.report, options.files);
-  const Scene scene = load_room(options.files, options.read, options.style);
+  Scene scene = load_room(options.files, options.read, options.style);
   const MeshResult meshed = mesh_room(scene, {}, options.style);
   if (reports) write_report(options.report, scene, meshed, options.style);
   const std::vector<std::string> light_warnings = luminaire_warnings(scene, meshed.mesh);

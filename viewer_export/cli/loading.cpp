@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/model/total_powers.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "solver/zoning/build_zones.h"
@@ -46,10 +47,12 @@ Scene load_room(const std::vector<fs::path>& files, const ReadOptions& options, 
   return read_scene(files, options);
 }
 
-MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style) {
+MeshResult mesh_room(Scene& scene, const MeshSettings& settings, const OutputStyle& style) {
   const StepNote note("meshing", style);
   Progress progress("meshing", style_of(style), kQuietSeconds);
-  return build_zones(scene, settings, WorkWatch([&](double done) { progress.update(done); }));
+  MeshResult meshed = build_zones(scene, settings, WorkWatch([&](double done) { progress.update(done); }));
+  spread_total_powers(meshed.report, meshed.mesh, scene);
+  return meshed;
 }
 
 bool is_meant_as_solution(const fs::path& file) {

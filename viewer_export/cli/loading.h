@@ -16,8 +16,8 @@ namespace reemit::cli {
 /// As read_scene.
 Scene load_room(const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                 const OutputStyle& style);
-/// As build_zones.
-MeshResult mesh_room(const Scene& scene, const MeshSettings& settings, const OutputStyle& style);
+/// As build_zones, and settles the luminaires by it (spread_total_powers).
+MeshResult mesh_room(Scene& scene, const MeshSettings& settings, const OutputStyle& style);
 /// True for a solution file, also one that is cut short at its start, empty or not there.
 bool is_meant_as_solution(const std::filesystem::path& file);
 /// As reemit::load_solution.

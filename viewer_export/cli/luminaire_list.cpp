@@ -6,7 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "mesh/model/solid_areas.h"
 #include "solver/emit/punctual_emitter.h"
+#include "solver/texture/room_textures.h"
+#include "solver/texture/zone_means.h"
 #include "viewer_export/cli/text_table.h"
 
 namespace reemit::cli {
@@ -25,12 +28,71 @@ LuminaireRow row_of(const PunctualLight& light) {
   return {name, kind, 0, light_power(light, kAnySize)};
 }
 
-void add_surface(const std::string& name, const Material& material, const SurfaceAreas& areas,
-                 std::vector<LuminaireRow>& rows) {
+/// Of the surfaces of a room, by SurfaceId.
+struct SurfaceEmission {
+  std::vector<double> areas;     // of one side [m2]
+  std::vector<Spectrum> powers;  // [W]; size 0 where the emission does not vary over the surface
+};
+
+/// Adds up what zones emit, of surfaces on which `radiosity` (of a zone, per band [W/m2]) varies.
+template <class Varies, class Radiosity>
+SurfaceEmission emission_of(const MeshReport& report, const ZoneMesh& mesh, const Varies& varies,
+                            const Radiosity& radiosity) {
+  SurfaceEmission emission{solid_areas(report, mesh), std::vector<Spectrum>(report.surfaces.size())};
+  for (std::size_t i = 0; i < mesh.zone_count(); ++i) {
+    const ZoneId z(i);
+    const SurfaceId surface = mesh.zone_surface(z);
+    if (!varies(surface)) continue;
+    const Spectrum power = mesh.zone_area(z) * radiosity(z);
+    Spectrum& sum = emission.powers[surface.index()];
+    sum = sum.size() > 0 ? Spectrum(sum + power) : power;
+  }
+  return emission;
+}
+
+SurfaceEmission emission_of(const Scene& scene, const MeshResult& meshed) {
+  const ZoneMesh& mesh = meshed.mesh;
+  const auto varies = [&](SurfaceId s) {
+    const Material& material = scene.material_of(scene.surfaces[s.index()]);
+    return material.emits() && material.textures.emission;
+  };
+  std::size_t s = 0;
+  while (s < scene.surfaces.size() && !varies(SurfaceId(s))) ++s;
+  // Means of textures take a look at every texel.
+  if (s == scene.surfaces.size()) return {solid_areas(meshed.report, mesh), std::vector<Spectrum>(s)};
+  const std::size_t bands = scene.bands.count();
+  const ZoneTextureMeans means = zone_texture_means(RoomTextures(scene, mesh), mesh, bands);
+  return emission_of(meshed.report, mesh, varies, [&](ZoneId z) {
+    Material material = scene.material_of(scene.surfaces[mesh.zone_surface(z).index()]);
+    const bool emits = mesh.zone_shows_front(z) || material.emits_both_sides;
+    material.emitted_radiance =
+        (emits ? 1 : 0) * Spectrum::Map(&means.radiance[z.index() * bands], static_cast<Eigen::Index>(bands));
+    return material.exitance();
+  });
+}
+
+SurfaceEmission emission_of(const Solution& solution) {
+  const auto radiosity = [&](ZoneId z) {
+    Spectrum emitted(static_cast<Eigen::Index>(solution.bands.count()));
+    for (std::size_t b = 0; b < solution.bands.count(); ++b)
+      emitted[static_cast<Eigen::Index>(b)] = solution.emitted_radiosity(z, b);
+    return emitted;
+  };
+  // Solutions keep no textures, but what zones emit where there are any.
+  const bool has_textures = !solution.zone_exitances.empty();
+  return emission_of(
+      solution.mesh_report, solution.mesh, [&](SurfaceId) { return has_textures; }, radiosity);
+}
+
+void add_surface(const std::string& name, const Material& material, const SurfaceEmission& emission,
+                 std::size_t surface, std::vector<LuminaireRow>& rows) {
   if (!material.emits()) return;
-  const double area = areas.meshed * (material.emits_both_sides ? 2 : 1);
-  const Spectrum exitance = material.exitance();
-  rows.push_back({name, "surface", area, area * exitance, exitance});
+  const double area = emission.areas[surface] * (material.emits_both_sides ? 2 : 1);
+  const Spectrum& power = emission.powers[surface];
+  if (power.size() > 0)
+    rows.push_back({name, "surface", area, power, area > 0 ? Spectrum(power / area) : Spectrum(0 * power)});
+  else
+    rows.push_back({name, "surface", area, area * material.exitance(), material.exitance()});
 }
 
 /// As other light from outside, with what falls on a horizontal plane there, and across the beam of the sun.
@@ -38,6 +100,15 @@ void add_sky(const Sky& sky, const BandSet& bands, std::vector<LuminaireRow>& ro
   if (sky.kind != SkyKind::kNone)
     rows.push_back({"sky", sky.description, 0, Spectrum(), horizontal_sky_irradiance(sky, bands)});
   if (sky.sun_shines()) rows.push_back({"sun", "sun", 0, Spectrum(), sky.sun->irradiance});
+}
+
+std::vector<LuminaireRow> list_all(const Scene& scene, const SurfaceEmission& emission) {
+  std::vector<LuminaireRow> rows;
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+    add_surface(scene.surfaces[s].name, scene.material_of(scene.surfaces[s]), emission, s, rows);
+  for (const PunctualLight& light : scene.lights) rows.push_back(row_of(light));
+  if (scene.sky) add_sky(*scene.sky, scene.bands, rows);
+  return rows;
 }
 
 Spectrum total_power(const std::vector<LuminaireRow>& rows, const BandSet& bands) {
@@ -49,20 +120,20 @@ Spectrum total_power(const std::vector<LuminaireRow>& rows, const BandSet& bands
 
 }  // namespace
 
-std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshReport& report) {
-  std::vector<LuminaireRow> rows;
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
-    add_surface(scene.surfaces[s].name, scene.material_of(scene.surfaces[s]), report.surfaces[s], rows);
-  for (const PunctualLight& light : scene.lights) rows.push_back(row_of(light));
-  if (scene.sky) add_sky(*scene.sky, scene.bands, rows);
-  return rows;
+std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshResult& meshed) {
+  return list_all(scene, emission_of(scene, meshed));
+}
+
+std::vector<LuminaireRow> list_luminaires(const Scene& scene, const Solution& solution) {
+  return list_all(scene, emission_of(solution));
 }
 
 std::vector<LuminaireRow> list_luminous_surfaces(const Solution& solution) {
+  const SurfaceEmission emission = emission_of(solution);
   std::vector<LuminaireRow> rows;
   for (std::size_t s = 0; s < solution.surface_names.size(); ++s)
     add_surface(solution.surface_names[s], solution.materials[solution.surface_materials[s].index()],
-                solution.mesh_report.surfaces[s], rows);
+                emission, s, rows);
   return rows;
 }
 

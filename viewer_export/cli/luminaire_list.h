@@ -19,8 +19,11 @@ struct LuminaireRow {
   Spectrum power_per_area{};  ///< Exitance of a surface or irradiance across a beam [W/m2]; else size 0.
 };
 
-/// Emissive surfaces in the order of the room, then lights without area.
-std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshReport& report);
+/// Emissive surfaces in the order of the room, then lights without area. Textures count where they lie,
+/// cut-outs by what is there of them.
+std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshResult& meshed);
+/// The same of a room that has been solved, by the zones of its solution.
+std::vector<LuminaireRow> list_luminaires(const Scene& scene, const Solution& solution);
 
 /// The emissive surfaces of a solution, for when its room cannot be read: lights without area are not in it.
 std::vector<LuminaireRow> list_luminous_surfaces(const Solution& solution);

@@ -207,7 +207,7 @@ std::string room_text(const Scene& scene, const MeshResult& meshed) {
   text += fmt::format("not modelled  {}\n", counts_text(scene.not_modelled));
   text += models_text(scene, meshed);
   text += '\n' + materials_text(scene) + '\n' + surfaces_text(scene, meshed.report) + '\n' +
-          luminaires_text(list_luminaires(scene, meshed.report), scene.bands) + '\n' + cameras_text(scene);
+          luminaires_text(list_luminaires(scene, meshed), scene.bands) + '\n' + cameras_text(scene);
   for (const std::string& note : scene.notes) text += "note: " + note + '\n';
   return text;
 }
@@ -250,7 +250,7 @@ Json room_json(const Scene& scene, const MeshResult& meshed, const std::vector<s
     json["model_power_shares"][share.model] = share.power;
   }
   json["surfaces"] = surfaces_json(scene, meshed.report);
-  add_luminaires(json, list_luminaires(scene, meshed.report), scene.bands);
+  add_luminaires(json, list_luminaires(scene, meshed), scene.bands);
   json["cameras"] = cameras_json(scene);
   json["refused"] = counts_json(scene.refused);
   json["not_modelled"] = counts_json(scene.not_modelled);

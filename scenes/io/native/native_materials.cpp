@@ -261,6 +261,7 @@ void NativeMaterials::share_total_powers(Scene& scene) const {
           "Use the material, or remove its emission.");
     }
     material.emitted_radiance = radiance_of_exitance(total.power / area, material);
+    material.area_of_total_power = area;
     check_strength(material.emitted_radiance, total.at);
   }
 }
