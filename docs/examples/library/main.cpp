@@ -13,8 +13,8 @@
 int main(int argc, char** argv) try {
   reemit::Scene room = reemit::read_scene(argc > 1 ? argv[1] : "room.json");
   reemit::MeshResult zones = reemit::build_zones(room);
-  reemit::spread_total_powers(zones.report, zones.mesh,
-                              room);  // of luminaires that overlap or stand on things
+  // Of luminaires that overlap or stand on things.
+  reemit::spread_total_powers(zones.report, zones.mesh, room);
   reemit::SolverSettings settings;
   settings.error_target = 0.05;
   const std::atomic<bool> interrupt{false};  // true from anywhere ends the run with what it has
