@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/model/total_powers.h"
+#include "mesh/zones/total_powers.h"
 #include "scenes/io/scene_reader.h"
 #include "scenes/model/error.h"
 

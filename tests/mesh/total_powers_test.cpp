@@ -1,4 +1,4 @@
-#include "mesh/model/total_powers.h"
+#include "mesh/zones/total_powers.h"
 
 #include <gtest/gtest.h>
 

@@ -37,8 +37,9 @@ struct ExportOptions {
   std::vector<std::filesystem::path> outputs;  ///< At least one; all hold the same values.
   VertexSettings vertex;
   bool form_factors = false;
-  bool photometric = false;    ///< Write lx and cd/m2 instead of W/m2 and W/(m2 sr).
-  std::optional<bool> smooth;  ///< Unset: gathered vertices without an error target.
+  bool photometric = false;                ///< Write lx and cd/m2 instead of W/m2 and W/(m2 sr).
+  std::optional<bool> smooth;              ///< Unset: gathered vertices without an error target.
+  const char* gathering_option = nullptr;  ///< One that was given and says how vertices are gathered.
   ToneMapSettings tone_map;
   OutputStyle style;
 };
@@ -67,6 +68,25 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
                            percent_text(known_error(data.info)), zones_text(data.info.zones), seconds));
 }
 
+bool shows_colours(const ExportOptions& options) {
+  return std::any_of(options.outputs.begin(), options.outputs.end(), [](const std::filesystem::path& output) {
+    return export_format_of(output).shows_colours;
+  });
+}
+
+/// Refuses what would have no effect on these values and formats.
+void check_has_effect(const ExportOptions& options) {
+  if (options.vertex.average_zones && options.gathering_option != nullptr)
+    throw InputError(options.gathering_option, "means of zones are not gathered",
+                     "leave it out, or gather (--values gather)");
+  if (options.vertex.average_zones && options.smooth.value_or(false))
+    throw InputError("--smooth on", "means of zones are not smoothed",
+                     "leave it out, or gather (--values gather)");
+  if (options.tone_map.exposure_ev && !shows_colours(options))
+    throw InputError("--exposure", "no file of this export shows colours",
+                     "leave it out, or write .ply or .glb");
+}
+
 /// Refuses unknown formats, files that cannot be written and one file given twice before the work.
 void check_outputs(const ExportOptions& options) {
   std::set<std::filesystem::path> seen;
@@ -87,10 +107,8 @@ ExitCode run_export(const ExportOptions& options) {
     return export_form_factors({options.solution, options.outputs.front(), options.vertex.seed,
                                 options.vertex.threads, options.style});
   }
-  if (options.vertex.average_zones && options.smooth.value_or(false))
-    throw InputError("--smooth on", "means of zones are not smoothed",
-                     "leave it out, or gather (--values gather)");
   check_outputs(options);
+  check_has_effect(options);
   const Solution solution = load_solution(options.solution, options.style);
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs) check_keeps_room(output, scene);
@@ -105,10 +123,7 @@ ExitCode run_export(const ExportOptions& options) {
       room, solution, options.vertex, [&progress](double done) { progress.update(done); },
       interrupt.requested());
   progress.finish();
-  const bool shows_colours =
-      std::any_of(options.outputs.begin(), options.outputs.end(),
-                  [](const std::filesystem::path& output) { return export_format_of(output).shows_colours; });
-  if (shows_colours)
+  if (shows_colours(options))
     data.tone_map =
         tone_map_of_room(room, solution, options.tone_map, options.vertex.threads, interrupt.requested());
   for (const std::filesystem::path& output : options.outputs)
@@ -209,7 +224,9 @@ void add_export_command(CLI::App& program, Action& action) {
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);
   add_progress_options(command, options->style);
-  command.callback([options, &action] {
+  command.callback([options, &command, &action] {
+    for (const char* gathering : {"--samples", "--light-samples", "--error"})
+      if (command.count(gathering) > 0) options->gathering_option = gathering;
     const bool is_gathered = !options->vertex.average_zones;
     options->vertex.smooth =
         options->smooth.value_or(is_gathered && options->vertex.error_target == 0) && is_gathered;

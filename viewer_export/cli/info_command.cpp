@@ -61,6 +61,7 @@ RoomOfSolution find_room(const Solution& solution, const std::filesystem::path& 
 
 ExitCode show_solution(const InfoOptions& options) {
   const std::filesystem::path& file = options.files.front();
+  check_no_read_options(options.read, file);
   const Solution solution = load_solution(file, options.style);
   const RoomOfSolution room = find_room(solution, file, options.style);
   if (options.style.json) {

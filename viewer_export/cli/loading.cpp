@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "mesh/model/total_powers.h"
+#include "mesh/zones/total_powers.h"
+#include "scenes/model/error.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "solver/zoning/build_zones.h"
@@ -57,6 +58,21 @@ MeshResult mesh_room(Scene& scene, const MeshSettings& settings, const OutputSty
 
 bool is_meant_as_solution(const fs::path& file) {
   return is_solution_file(file) || file.extension() == ".h5" || file.extension() == ".hdf5";
+}
+
+void check_no_read_options(const ReadOptions& options, const fs::path& solution) {
+  const ReadOptions unset;
+  const char* given = nullptr;
+  if (options.bands.given()) given = "--bands";
+  if (options.gltf_emissive_units != unset.gltf_emissive_units) given = "--emissive-units";
+  if (options.gltf_light_efficacy) given = "--gltf-light-efficacy";
+  if (options.force_two_sided) given = "--two-sided";
+  if (!options.sky.empty()) given = "--sky";
+  if (!options.sun.empty()) given = "--sun";
+  if (given == nullptr) return;
+  throw InputError(
+      given, "is for rooms, and " + solution.string() + " is a solution, whose room is as it was solved",
+      "Leave it out, or solve the room again with it.");
 }
 
 Solution load_solution(const fs::path& file, const OutputStyle& style) {

@@ -20,6 +20,9 @@ Scene load_room(const std::vector<std::filesystem::path>& files, const ReadOptio
 MeshResult mesh_room(Scene& scene, const MeshSettings& settings, const OutputStyle& style);
 /// True for a solution file, also one that is cut short at its start, empty or not there.
 bool is_meant_as_solution(const std::filesystem::path& file);
+/// Throws InputError, which names the option, if any of those that say how a room is to be read was given for
+/// a solution, whose room is read as it was when it was solved.
+void check_no_read_options(const ReadOptions& options, const std::filesystem::path& solution);
 /// As reemit::load_solution.
 Solution load_solution(const std::filesystem::path& file, const OutputStyle& style);
 /// As read_room_of.

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mesh/model/solid_areas.h"
+#include "mesh/zones/solid_areas.h"
 #include "solver/emit/punctual_emitter.h"
 #include "solver/texture/room_textures.h"
 #include "solver/texture/zone_means.h"

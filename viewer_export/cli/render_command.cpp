@@ -53,6 +53,7 @@ struct RenderOptions {
   std::vector<fs::path> room;   ///< Of a solution, if it was moved.
   fs::path output;
   std::string format;  ///< Of pictures in a folder: an extension with its dot.
+  bool format_given = false;
   CameraOptions camera;
   PixelSize size;  ///< 0x0: as the camera says.
   StillSettings still;
@@ -197,6 +198,7 @@ struct Source {
 Source load_source(const RenderOptions& options) {
   const fs::path& file = options.files.front();
   if (options.files.size() == 1 && is_meant_as_solution(file)) {
+    check_no_read_options(options.read, file);
     Solution solution = load_solution(file, options.style);
     Scene scene = load_room_of(solution, file, options.room, options.style);
     return {std::move(scene), std::move(solution)};
@@ -213,6 +215,18 @@ Source load_source(const RenderOptions& options) {
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
   Solution solution = new_solution(scene, std::move(meshed), {});
   return {std::move(scene), std::move(solution)};
+}
+
+/// Of all pictures. Throws InputError if it is unknown, or where options would have no effect on it.
+const ImageFormat& check_format(const RenderOptions& options, bool into_folder) {
+  const ImageFormat& format = image_format_of(into_folder ? fs::path("a" + options.format) : options.output);
+  if (options.tone_map.exposure_ev && !format.tone_mapped)
+    throw InputError("--exposure", fmt::format("{} pictures hold radiance and have none", format.extension),
+                     "leave it out, or write .png");
+  if (options.format_given && !into_folder)
+    throw InputError("--format", "it is for pictures in a folder, and -o names a file",
+                     "leave it out, for the extension of the file says it, or end -o with a /");
+  return format;
 }
 
 /// What the options leave open of it.
@@ -234,9 +248,8 @@ void choose_quality(RenderOptions& options) {
 ExitCode run_render(RenderOptions options) {
   check_view(options.camera);
   const bool into_folder = options.into_folder();
-  // Refuses what is unknown, and what cannot be loaded, before the work.
-  if (image_format_of(into_folder ? fs::path("a" + options.format) : options.output).by_image_library)
-    image_library();
+  // Refuses what cannot be loaded before the work.
+  if (check_format(options, into_folder).by_image_library) image_library();
   const auto check_output = [&](const fs::path& output) {
     for (const fs::path& file : options.files) check_output_file(output, file);
   };
@@ -375,7 +388,10 @@ void add_render_command(CLI::App& program, Action& action) {
   render.option_defaults()->group("Output");
   add_json_option(render, options->style);
   add_progress_options(render, options->style);
-  render.callback([options, &action] { action = [options] { return run_render(*options); }; });
+  render.callback([options, &render, &action] {
+    options->format_given = render.count("--format") > 0;
+    action = [options] { return run_render(*options); };
+  });
 }
 
 }  // namespace reemit::cli

@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include <reemit/mesh/model/total_powers.h>
+#include <reemit/mesh/zones/total_powers.h>
 #include <reemit/scenes/io/scene_reader.h>
 #include <reemit/solver/progressive_solver.h>
 #include <reemit/solver/solution/mean_light.h>

@@ -24,19 +24,17 @@ class LuminairePower : public ::testing::Test {
   /// Power [W] that info says of a room, that audit has of its solution, that info says of it, and that it
   /// says once the room is gone.
   std::vector<double> powers(const std::string& lamp, const std::string& objects) const {
-    const std::string room = folder_
-                                 .write("room.json", R"({"format": "reemit-room", "version": 1,
- "materials": {"w": {"reflectance": 0.5}, "lamp": {)" + lamp +
-                                                         R"(}},
- "objects": [{"material": "w", "box": {"min": [0, 0, 0], "max": [4, 3, 4], "inward": true}},
-)" + objects + "]}")
-                                 .string();
+    const std::string text = R"({"format": "reemit-room", "version": 1,
+ "materials": {"w": {"reflectance": 0.5}, "lamp": {)" +
+                             lamp + R"(}},
+ "objects": [{"material": "w", "box": {"min": [0, 0, 0], "max": [4, 3, 4], "inward": true}}, )" +
+                             objects + "]}";
+    const std::string room = folder_.write("room.json", text).string();
     const std::string solution = (folder_ / "room.h5").string();
     std::vector<double> powers{run({"info", room, "--json"})["total_power_W"][0]};
     run({"solve", room, "-o", solution, "--packets", "2000", "--json"});
     powers.push_back(run({"audit", solution, "--json"})["bands"][0]["emitted_W"]);
     powers.push_back(run({"info", solution, "--json"})["total_power_W"][0]);
-    run({"export", solution, "-o", (folder_ / "room.ply").string(), "--values", "zones", "--json"});
     std::filesystem::remove(room);
     powers.push_back(run({"info", solution, "--json"})["total_power_W"][0]);
     return powers;
@@ -50,8 +48,8 @@ const std::string kPanel =
 
 TEST_F(LuminairePower, GivenForAllIsSentWhateverMeshingLeavesOfThem) {
   const std::string standing = R"({"material": "lamp", "box": {"min": [3, 0, 3], "max": [3.5, 1, 3.5]}})";
-  for (const std::string& lamps : {kPanel, kPanel + ", " + kPanel, kPanel + ", " + standing})
-    for (const double power : powers(R"("total_power": 7)", lamps)) EXPECT_NEAR(power, 7, 1e-9) << lamps;
+  for (const double power : powers(R"("total_power": 7)", kPanel + ", " + kPanel + ", " + standing))
+    EXPECT_NEAR(power, 7, 1e-9);
   for (const double power : powers(R"("total_power": 7, "opacity": 0.25)", kPanel))
     EXPECT_NEAR(power, 7, 1e-6);
 }

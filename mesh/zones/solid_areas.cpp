@@ -1,4 +1,4 @@
-#include "mesh/model/solid_areas.h"
+#include "mesh/zones/solid_areas.h"
 
 namespace reemit {
 

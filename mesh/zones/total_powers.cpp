@@ -1,9 +1,9 @@
-#include "mesh/model/total_powers.h"
+#include "mesh/zones/total_powers.h"
 
 #include <cmath>
 #include <vector>
 
-#include "mesh/model/solid_areas.h"
+#include "mesh/zones/solid_areas.h"
 
 namespace reemit {
 
