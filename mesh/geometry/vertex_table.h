@@ -18,6 +18,12 @@ class VertexTable {
   /// one.
   std::uint32_t weld(const Vec3& p);
 
+  /// Makes room for this many, so that they need not be moved when there are more.
+  void reserve(std::size_t points) {
+    points_.reserve(points);
+    cells_.reserve(points);
+  }
+
   const Vec3& operator[](std::uint32_t i) const { return points_[i]; }
   std::size_t size() const { return points_.size(); }
   const std::vector<Vec3>& points() const { return points_; }

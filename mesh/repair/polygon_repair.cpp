@@ -42,6 +42,7 @@ class PolygonRepair {
   std::vector<FacePiece> run();
 
  private:
+  void reserve();
   void repair(SurfaceId surface, std::uint32_t face);
   FaceLoops read(SurfaceId surface, std::uint32_t face);
   std::vector<Corner> read_loop(SurfaceId surface, const std::vector<std::uint32_t>& loop,
@@ -375,7 +376,20 @@ void PolygonRepair::repair(SurfaceId surface, std::uint32_t face) {
   largest_bend_ = std::max(largest_bend_, bend);
 }
 
+// Most rooms have about as many pieces as faces, and far fewer vertices than corners.
+void PolygonRepair::reserve() {
+  std::size_t faces = 0;
+  std::size_t positions = 0;
+  for (const Surface& surface : scene_.surfaces) {
+    faces += surface.faces.size();
+    positions += surface.positions.size();
+  }
+  pieces_.reserve(faces);
+  vertices_.reserve(positions);
+}
+
 std::vector<FacePiece> PolygonRepair::run() {
+  reserve();
   for (std::size_t s = 0; s < scene_.surfaces.size(); ++s)
     for (std::size_t f = 0; f < scene_.surfaces[s].faces.size(); ++f)
       repair(SurfaceId(s), static_cast<std::uint32_t>(f));

@@ -116,6 +116,10 @@ void keep_room_paths(const std::vector<fs::path>& room, Solution& solution) {
 }
 
 Start new_run(const SolveOptions& options) {
+  for (const fs::path& file : options.room)
+    if (is_solution_file(file))
+      throw InputError(file.string(), "it is a solution, and a new run begins with a room",
+                       "Give the room, or go on with the solution: reemit solve --resume " + file.string());
   const bool matrix = options.solver.method == SolveMethod::kMatrix;
   if (matrix && has_stopping_rule(options.solver)) refuse_stopping_rules(options.solver);
   Start start{load_room(options.room, options.read, options.style), {}};

@@ -85,6 +85,16 @@ TEST(Usage, MistakesEndWithCode2AndAHint) {
   }
 }
 
+TEST(Usage, SolutionsAreNotSolvedAnew) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  solve_small_room(folder, "room.h5");
+  const std::string solution = (folder / "room.h5").string();
+  const ProgramRun run = run_reemit({"solve", solution, "-o", (folder / "other.h5").string()});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--resume " + solution));
+}
+
 TEST(Usage, MissingFoldersAreNamed) {
   const TempFolder folder;
   folder.write("room.json", small_json_room());
