@@ -18,7 +18,8 @@ FilesRead::~FilesRead() {
 }
 
 void FilesRead::add(const std::filesystem::path& file) {
-  if (innermost == nullptr) return;
+  // Some files are read a million times; what is asked of the file system is asked once.
+  if (innermost == nullptr || !innermost->given_.insert(file.native()).second) return;
   std::string name = std::filesystem::absolute(file).lexically_normal().string();
   std::vector<std::string>& files = innermost->files_;
   if (std::find(files.begin(), files.end(), name) == files.end()) files.push_back(std::move(name));

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace reemit {
@@ -23,6 +24,7 @@ class FilesRead {
 
  private:
   FilesRead* outer_;
+  std::unordered_set<std::string> given_;  // as they were given
   std::vector<std::string> files_;
 };
 
