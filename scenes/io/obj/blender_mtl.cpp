@@ -7,23 +7,20 @@
 
 namespace reemit {
 
-std::optional<BlenderExporter> blender_exporter_of(std::string_view mtl) {
+bool is_written_by_blender(std::string_view mtl) {
   const std::string_view first = mtl.substr(0, mtl.find('\n'));
-  if (first.starts_with("# Blender MTL File")) return BlenderExporter::kPython;
-  if (first.starts_with("# Blender ") && first.find(" MTL File") != std::string_view::npos)
-    return BlenderExporter::kCpp;
-  return std::nullopt;
+  return first.starts_with("# Blender ") && first.find("MTL File") != std::string_view::npos;
 }
 
-void read_as_written_by_blender(BlenderExporter exporter, tinyobj::material_t& material) {
+void read_as_written_by_blender(tinyobj::material_t& material) {
   using Real = tinyobj::real_t;
   constexpr int kMetal = 3;
   constexpr int kHighlight = 2;
+  constexpr Real kLargest = 1000;  // Ns of what is not rough
   constexpr Real kSharpest = 1e6F;
   std::fill_n(material.specular, 3, Real(0));
   if (material.illum != kMetal || !material.diffuse_texname.empty()) return;
-  const Real largest = exporter == BlenderExporter::kPython ? 900.0F : 1000.0F;
-  const Real smooth = std::sqrt(std::clamp(material.shininess / largest, Real(0), Real(1)));
+  const Real smooth = std::sqrt(std::clamp(material.shininess / kLargest, Real(0), Real(1)));
   const Real alpha = (1 - smooth) * (1 - smooth);
   material.shininess = std::min(kSharpest, 2 / (alpha * alpha) - 2);
   for (int c = 0; c < 3; ++c) {

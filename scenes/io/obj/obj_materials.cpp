@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -283,7 +282,7 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
   std::vector<tinyobj::material_t> loaded;
   std::string ignored_warning, ignored_error;  // about what checked_text has refused
   tinyobj::LoadMtl(&names, &loaded, &stream, &ignored_warning, &ignored_error);
-  const std::optional<BlenderExporter> blender = blender_exporter_of(text);
+  const bool by_blender = is_written_by_blender(text);
   for (tinyobj::material_t& m : loaded) {
     if (m.name.empty()) continue;
     Material* place = place_of(m.name);
@@ -292,10 +291,10 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
                                       file.string(), m.name));
       continue;
     }
-    if (blender) read_as_written_by_blender(*blender, m);
+    if (by_blender) read_as_written_by_blender(m);
     *place = convert(m, file, images_, {warnings_, refused, not_modelled, notes});
   }
-  if (blender) notes.push_back(file.string() + ": " + kBlenderNote);
+  if (by_blender) notes.push_back(file.string() + ": " + kBlenderNote);
 }
 
 Material* ObjMaterials::place_of(const std::string& name) {

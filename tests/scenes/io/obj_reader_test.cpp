@@ -211,7 +211,7 @@ TEST_F(ObjReader, BlendersMaterialsHaveNoSpecularShareOfTheLight) {
 
   // Roughness 0.5 and three quarters of metal, as both exporters write it.
   for (const std::string head : {"# Blender 4.0 MTL File: 'None'\nnewmtl wall\nNs 250\n",
-                                 "# Blender MTL File: 'a.blend'\nnewmtl wall\nNs 225\n"}) {
+                                 "# Blender MTL File: 'a.blend'\nnewmtl wall\nNs 250\n"}) {
     const Scene scene = read_with(head + "Ka 0.75 0.75 0.75\nKd 0.8 0.4 0.2\nKs 0.5 0.5 0.5\nillum 3\n");
     const Material& metal = scene.materials[0];
     for (int c = 0; c < 3; ++c) {
