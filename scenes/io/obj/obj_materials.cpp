@@ -300,12 +300,13 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
 Material* ObjMaterials::place_of(const std::string& name) {
   const auto [entry, added] = index_.try_emplace(name, materials.size());
   if (added) return &materials.emplace_back();
+  const std::size_t material = entry->second;
   const auto asked = std::find_if(undefined_.begin(), undefined_.end(),
-                                  [&](const Undefined& u) { return u.material == entry->second; });
+                                  [&](const Undefined& u) { return u.material == material; });
   if (asked == undefined_.end()) return nullptr;
   undefined_.erase(asked);
   if (--refused["materials"] == 0) refused.erase("materials");
-  return &materials[entry->second];
+  return &materials[material];
 }
 
 std::size_t ObjMaterials::index_of(const std::string& name, const std::string& where) {
