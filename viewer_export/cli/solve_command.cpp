@@ -171,6 +171,12 @@ Start resumed_run(const SolveOptions& options) {
   return start;
 }
 
+/// Whether a run came to its end, with all that follows the last batch.
+bool is_whole(const SolveRecord& record) {
+  return record.stopped != StopReason::kUnderWay && record.stopped != StopReason::kInterrupted &&
+         !record.cut_off;
+}
+
 /// Whether a run that goes on would have nothing to do.
 bool is_done(const SolveOptions& options, Start& start) {
   const StopReason stopped = start.solution.record.stopped;
@@ -275,8 +281,19 @@ ExitCode run_solve(const SolveOptions& options) {
                                          start.solution.mesh.zone_count(), start.scene.bands});
   // Before the first batch there is nothing to keep.
   InterruptGuard interrupt(InterruptGuard::kLater);
-  const Solution solution = solve_with_progress(start, options, log, interrupt);
+  const SolveRecord before = start.solution.record;
+  Solution solution = solve_with_progress(start, options, log, interrupt);
   if (log) log->finish(solution);
+  if (!options.resume.empty() && is_whole(before) && solution.record.packets == before.packets) {
+    // What follows the last batch was taken out to go on, and there was no time to do it again.
+    solution = load_solution(options.resume, options.style);
+    if (!options.style.quiet)
+      print_note("there was no time for another batch of packets; the solution stays as it was");
+    if (options.output == options.resume) {
+      report(start.scene, solution, options);
+      return ExitCode::kDone;
+    }
+  }
   save(solution, options);
   report(start.scene, solution, options);
   return ExitCode::kDone;

@@ -104,6 +104,23 @@ TEST(ResumedProgram, ATimeGivenNowCountsFromWhatStands) {
   EXPECT_EQ(load_solution(solution).record.packets, after.record.packets) << "nothing is left of it";
 }
 
+TEST(ResumedProgram, WithoutTimeForABatchTheSolutionStaysAsItWas) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  solve_small_room(folder, "room.h5");
+  const fs::path solution = folder / "room.h5";
+  const std::string before = read_bytes(solution);
+  const ProgramRun run = run_reemit({"solve", "--resume", solution.string(), "--time", "0.000001s"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("stays as it was"));
+  EXPECT_TRUE(read_bytes(solution) == before);
+  const fs::path other = folder / "other.h5";
+  EXPECT_EQ(run_reemit({"solve", "--resume", solution.string(), "--time", "0.000001s", "-o", other.string()})
+                .exit_code,
+            0);
+  expect_same_files(solution, other);
+}
+
 TEST(ResumedProgram, KeepsWhatARunHasOneOf) {
   const TempFolder folder;
   folder.write("room.json", small_json_room());
