@@ -123,6 +123,24 @@ std::string tidy(const std::string& text) {
   return line;
 }
 
+/// Names the file of a buffer that is not there; one whose name has escaped characters is left to others.
+void refuse_missing_buffers(const nlohmann::json& document, const std::filesystem::path& file) {
+  const auto buffers = document.find("buffers");
+  if (buffers == document.end() || !buffers->is_array()) return;
+  for (std::size_t i = 0; i < buffers->size(); ++i) {
+    const nlohmann::json& buffer = (*buffers)[i];
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    const auto uri = buffer["uri"].get<std::string>();
+    std::error_code ignored;
+    if (uri.starts_with("data:") || uri.find('%') != std::string::npos ||
+        std::filesystem::exists(file.parent_path() / uri, ignored))
+      continue;
+    throw InputError(fmt::format("{}#/buffers/{}/uri", file.string(), i),
+                     fmt::format("there is no file '{}', which holds the geometry", tidy(uri)),
+                     "Put it beside the room, or export the room as one file (.glb).");
+  }
+}
+
 }  // namespace
 
 GltfModel load_gltf_model(const std::filesystem::path& file) {
@@ -154,6 +172,7 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
     errors = problem.what();
   }
   if (!parsed) {
+    refuse_missing_buffers(document, file);
     throw InputError(loaded.file, tidy(errors.empty() ? "not a valid glTF file" : errors),
                      "Check the file with the Khronos glTF validator, or export it anew.");
   }

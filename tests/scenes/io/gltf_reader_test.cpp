@@ -51,6 +51,9 @@ TEST(GltfReader, GlbAndExternalBufferReadAlike) {
   const Scene external = read_gltf_scene(folder.write("room.gltf", gltf.json.dump()), {});
   EXPECT_EQ(glb.surfaces.at(0).positions, external.surfaces.at(0).positions);
   EXPECT_EQ(glb.surfaces.at(0).faces[1].outer, external.surfaces.at(0).faces[1].outer);
+  gltf.json["buffers"][0]["uri"] = "gone.bin";
+  expect_input_error([&] { read_gltf_scene(folder.write("room.gltf", gltf.json.dump()), {}); },
+                     {"#/buffers/0/uri", "gone.bin", "Put it beside the room"});
 }
 
 TEST(GltfReader, IndexTypesAndNoIndices) {
