@@ -12,23 +12,22 @@ bool is_written_by_blender(std::string_view mtl) {
   return first.starts_with("# Blender ") && first.find("MTL File") != std::string_view::npos;
 }
 
-void read_as_written_by_blender(tinyobj::material_t& material) {
+std::optional<double> read_as_written_by_blender(tinyobj::material_t& material) {
   using Real = tinyobj::real_t;
   constexpr int kMetal = 3;
   constexpr int kHighlight = 2;
-  constexpr Real kLargest = 1000;  // Ns of what is not rough
-  constexpr Real kSharpest = 1e6F;
+  constexpr double kLargest = 1000;  // Ns of what is not rough
   std::fill_n(material.specular, 3, Real(0));
-  if (material.illum != kMetal || !material.diffuse_texname.empty()) return;
-  const Real smooth = std::sqrt(std::clamp(material.shininess / kLargest, Real(0), Real(1)));
-  const Real alpha = (1 - smooth) * (1 - smooth);
-  material.shininess = std::min(kSharpest, 2 / (alpha * alpha) - 2);
+  if (material.illum != kMetal || !material.diffuse_texname.empty()) return std::nullopt;
   for (int c = 0; c < 3; ++c) {
     const Real metal = std::min(material.ambient[c], Real(1));
     material.specular[c] = metal * material.diffuse[c];
     material.diffuse[c] *= 1 - metal;
   }
   material.illum = kHighlight;
+  const double rough =
+      1 - std::sqrt(std::clamp(static_cast<double>(material.shininess) / kLargest, 0.0, 1.0));
+  return rough * rough;
 }
 
 }  // namespace reemit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -240,6 +241,13 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, TextureImag
   return material;
 }
 
+// Of Blender's metals, in place of Phong's lobe.
+void make_metal(double roughness, NonDiffusePart& part) {
+  part.roughness = roughness;
+  part.lobe = GlossLobe::kGgx;
+  part.angle_law = AngleLaw::kSchlick;
+}
+
 // The file as it is named; else one of that name beside the room, whatever its case: paths of another
 // computer and file systems that ignore case leave both. Empty if there is none.
 fs::path find_library(const fs::path& folder, const std::string& name) {
@@ -291,8 +299,9 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
                                       file.string(), m.name));
       continue;
     }
-    if (by_blender) read_as_written_by_blender(m);
+    const std::optional<double> metal = by_blender ? read_as_written_by_blender(m) : std::nullopt;
     *place = convert(m, file, images_, {warnings_, refused, not_modelled, notes});
+    if (metal) make_metal(*metal, place->non_diffuse);
   }
   if (by_blender) notes.push_back(file.string() + ": " + kBlenderNote);
 }

@@ -220,6 +220,8 @@ TEST_F(ObjReader, BlendersMaterialsHaveNoSpecularShareOfTheLight) {
       EXPECT_NEAR(metal.reflectance[c], 0.25 * colour, 1e-6);
     }
     EXPECT_NEAR(metal.non_diffuse.roughness, 0.25, 1e-6) << head;
+    EXPECT_EQ(metal.non_diffuse.lobe, GlossLobe::kGgx);
+    EXPECT_EQ(metal.non_diffuse.angle_law, AngleLaw::kSchlick);
     EXPECT_THAT(scene.notes, Contains(HasSubstr("Blender wrote it")));
   }
 }
