@@ -192,7 +192,7 @@ void add_value_options(CLI::App& command, ExportOptions& options) {
                        "Keep the backs of surfaces that no light reached and that do not emit"));
   add_seed_and_threads(command, options.vertex.seed, options.vertex.threads);
   form_factors->excludes(
-      add_parsed_option(command, "--exposure", options.tone_map.exposure_ev, parse_number, "EV",
+      add_parsed_option(command, "--exposure", options.tone_map.exposure_ev, parse_exposure, "EV",
                         "Exposure of displayable colours (PLY, GLB) in stops: radiance times 2^EV\n"
                         "(default: as the still from the first camera)"));
 }

@@ -73,6 +73,7 @@ ExitCode show_solution(const InfoOptions& options) {
   print_result(solution_text(solution, file, room.status) + '\n' +
                light_text(solution, room.luminaires, room.outside));
   std::fflush(stdout);
+  if (options.style.quiet) return ExitCode::kDone;
   print_warnings(solution.mesh_report.warnings);
   print_warnings(solution.light_warnings);
   return ExitCode::kDone;
@@ -93,6 +94,7 @@ ExitCode show_room(const InfoOptions& options) {
     print_result(room_text(scene, meshed));
     if (reports) print_result('\n' + inspection_text(scene, meshed, options.report));
     std::fflush(stdout);
+    if (options.style.quiet) return ExitCode::kDone;
     print_warnings(scene.warnings);
     print_warnings(meshed.report.warnings);
     print_warnings(light_warnings);
@@ -144,6 +146,7 @@ void add_info_command(CLI::App& program, Action& action) {
   add_read_options(info, options->read);
   add_sky_options(info, options->read);
   add_json_option(info, options->style);
+  add_progress_options(info, options->style);
   info.callback([options, &action] { action = [options] { return show(*options); }; });
 }
 

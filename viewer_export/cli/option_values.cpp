@@ -100,9 +100,11 @@ double parse_positive(const std::string& text) {
   return *value;
 }
 
-double parse_number(const std::string& text) {
+double parse_exposure(const std::string& text) {
+  constexpr double kMost = 100;
   const auto value = finite_number(text);
-  if (!value) refuse(text, "a finite number");
+  if (!value || !(std::abs(*value) <= kMost))
+    refuse(text, fmt::format("a number of stops from -{0} to {0}", kMost));
   return *value;
 }
 

@@ -20,8 +20,8 @@ std::uint64_t parse_count(const std::string& text);
 std::uint64_t parse_integer(const std::string& text, std::uint64_t least, std::uint64_t most);
 /// Finite number > 0.
 double parse_positive(const std::string& text);
-/// Finite number.
-double parse_number(const std::string& text);
+/// Stops in [-100, 100].
+double parse_exposure(const std::string& text);
 /// Three finite numbers "X,Y,Z".
 Vec3 parse_direction(const std::string& text);
 /// The same within limits::kFarthest [m].

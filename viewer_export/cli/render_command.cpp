@@ -357,7 +357,7 @@ void add_quality_options(CLI::App& render, RenderOptions& options) {
       "pictures, unless --error asks for pixels that are good by themselves");
   add_choice_option<PixelFilter>(render, "--filter", options.still.filter,
                                  {{"box", PixelFilter::kBox}, {"tent", PixelFilter::kTent}}, "Pixel filter");
-  add_parsed_option(render, "--exposure", options.tone_map.exposure_ev, parse_number, "EV",
+  add_parsed_option(render, "--exposure", options.tone_map.exposure_ev, parse_exposure, "EV",
                     "Exposure of PNG in stops: radiance times 2^EV (default: from the picture)");
   add_choice_option(render, "--format", options.format, format_choices(), "Format of pictures in a folder");
 }

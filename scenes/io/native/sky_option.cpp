@@ -3,6 +3,7 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -103,6 +104,9 @@ Json sky_object(const std::string& text) {
     sky["type"] = "cie";
     sky["cie_type"] = static_cast<int>(number_of(kind.substr(3), "--sky", kSkyAdvice));
   }
+  static const std::set<std::string> need_strength{"uniform", "overcast", "clear", "cie"};
+  if (strength.empty() && need_strength.contains(sky["type"]))
+    throw InputError("--sky", fmt::format("'{}' has no strength", kind), kSkyAdvice);
   if (kind == "image") {
     sky["file"] = strength;
   } else if (!strength.empty()) {
@@ -126,6 +130,9 @@ void add_sky(const std::string& sky, const std::string& sun, Scene& scene) {
     scene.notes.push_back("The sky of the file is replaced by that of the options --sky and --sun.");
   Json object = sky.empty() ? Json{{"type", "none"}} : sky_object(sky);
   if (!sun.empty()) object["sun"] = sun_object(sun);
+  if (sky.empty() && !object["sun"].contains("illuminance_lx") && !object["sun"].contains("irradiance"))
+    throw InputError("--sun", "there is neither sky nor sun, for it has no strength",
+                     "Add ,lx=80000, or give a --sky.");
   const std::string option = sky.empty() ? "--sun" : "--sky";
   read_sky(JsonCursor(object, option), {}, scene);
 }

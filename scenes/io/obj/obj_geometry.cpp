@@ -63,7 +63,9 @@ class ObjChecker {
     for (std::size_t i = 1; i < line.words.size() && line.words[i][0] != '#'; ++i, ++count)
       if (!parse_number(line.words[i]))
         throw InputError(where_, fmt::format("'{}' is not a finite number", line.words[i]),
-                         "Was the file cut off?");
+                         line.words[i].find(',') != std::string_view::npos
+                             ? "Write numbers with a decimal point."
+                             : "Was the file cut off?");
     return count;
   }
 

@@ -126,6 +126,10 @@ TEST_F(ObjReader, NamesFileAndLineOfEveryMistake) {
     EXPECT_THAT(refusal(kSquare + bad + "\n"), HasSubstr("room.obj:7: ")) << bad;
 }
 
+TEST_F(ObjReader, DecimalCommasAreNamed) {
+  EXPECT_THAT(refusal("v 0,5 1,0 2,0\n"), AllOf(HasSubstr("room.obj:1"), HasSubstr("decimal point")));
+}
+
 TEST_F(ObjReader, IgnoredStatementsAreNamedOnce) {
   const Scene scene = read(kSquare + "s 1\nvt 0 0\nl 1 2\nl 2 3\ncurv 0 1 1 2\nf 1 2 3\n");
   EXPECT_EQ(scene.warnings.size(), 2U);

@@ -235,7 +235,8 @@ TEST(Sky, mistakes_in_options_name_the_option) {
   refused("image:nowhere.hdr", "", {"nowhere.hdr"});
   refused("", "altitude=-4,lx=5", {"--sun", "below the horizon"});
   refused("", "height=4,lx=5", {"--sun", "height=4"});
-  refused("", "altitude=4", {"--sun", "neither sky nor sun"});
+  refused("", "altitude=4", {"--sun", "neither sky nor sun", "lx=80000"});
+  refused("overcast", "", {"--sky", "'overcast' has no strength", "overcast:10000lx"});
 }
 
 TEST(Sky, image_options_name_the_file_wherever_they_are_used) {

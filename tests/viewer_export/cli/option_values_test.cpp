@@ -49,11 +49,11 @@ TEST(OptionValues, CountsAreWhole) {
 }
 
 TEST(OptionValues, NumbersAreFinite) {
-  EXPECT_DOUBLE_EQ(parse_number("-1.5"), -1.5);
-  EXPECT_DOUBLE_EQ(parse_number("+2"), 2);
+  EXPECT_DOUBLE_EQ(parse_exposure("-1.5"), -1.5);
+  EXPECT_DOUBLE_EQ(parse_exposure("+2"), 2);
   EXPECT_DOUBLE_EQ(parse_positive("0.25"), 0.25);
-  for (const char* text : {"", "x", "nan", "inf", "1e999", "1 2"}) {
-    EXPECT_THROW(parse_number(text), std::invalid_argument) << text;
+  for (const char* text : {"", "x", "nan", "inf", "1e999", "1 2", "1e9", "-101"}) {
+    EXPECT_THROW(parse_exposure(text), std::invalid_argument) << text;
   }
   EXPECT_THROW(parse_positive("0"), std::invalid_argument);
   EXPECT_THROW(parse_positive("-1"), std::invalid_argument);
