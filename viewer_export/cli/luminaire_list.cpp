@@ -52,16 +52,16 @@ SurfaceEmission emission_of(const MeshReport& report, const ZoneMesh& mesh, cons
 
 SurfaceEmission emission_of(const Scene& scene, const MeshResult& meshed) {
   const ZoneMesh& mesh = meshed.mesh;
-  const auto varies = [&](SurfaceId s) {
-    const Material& material = scene.material_of(scene.surfaces[s.index()]);
+  const auto varies_over = [&](const Surface& surface) {
+    const Material& material = scene.material_of(surface);
     return material.emits() && material.textures.emission;
   };
-  std::size_t s = 0;
-  while (s < scene.surfaces.size() && !varies(SurfaceId(s))) ++s;
-  // Means of textures take a look at every texel.
-  if (s == scene.surfaces.size()) return {solid_areas(meshed.report, mesh), std::vector<Spectrum>(s)};
+  const auto varies = [&](SurfaceId s) { return varies_over(scene.surfaces[s.index()]); };
   const std::size_t bands = scene.bands.count();
-  const ZoneTextureMeans means = zone_texture_means(RoomTextures(scene, mesh), mesh, bands);
+  ZoneTextureMeans means;
+  // To take them is to look at every texel.
+  if (std::any_of(scene.surfaces.begin(), scene.surfaces.end(), varies_over))
+    means = zone_texture_means(RoomTextures(scene, mesh), mesh, bands);
   return emission_of(meshed.report, mesh, varies, [&](ZoneId z) {
     Material material = scene.material_of(scene.surfaces[mesh.zone_surface(z).index()]);
     const bool emits = mesh.zone_shows_front(z) || material.emits_both_sides;
@@ -102,13 +102,9 @@ void add_sky(const Sky& sky, const BandSet& bands, std::vector<LuminaireRow>& ro
   if (sky.sun_shines()) rows.push_back({"sun", "sun", 0, Spectrum(), sky.sun->irradiance});
 }
 
-std::vector<LuminaireRow> list_all(const Scene& scene, const SurfaceEmission& emission) {
-  std::vector<LuminaireRow> rows;
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
-    add_surface(scene.surfaces[s].name, scene.material_of(scene.surfaces[s]), emission, s, rows);
+void add_lights(const Scene& scene, std::vector<LuminaireRow>& rows) {
   for (const PunctualLight& light : scene.lights) rows.push_back(row_of(light));
   if (scene.sky) add_sky(*scene.sky, scene.bands, rows);
-  return rows;
 }
 
 Spectrum total_power(const std::vector<LuminaireRow>& rows, const BandSet& bands) {
@@ -121,11 +117,18 @@ Spectrum total_power(const std::vector<LuminaireRow>& rows, const BandSet& bands
 }  // namespace
 
 std::vector<LuminaireRow> list_luminaires(const Scene& scene, const MeshResult& meshed) {
-  return list_all(scene, emission_of(scene, meshed));
+  const SurfaceEmission emission = emission_of(scene, meshed);
+  std::vector<LuminaireRow> rows;
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+    add_surface(scene.surfaces[s].name, scene.material_of(scene.surfaces[s]), emission, s, rows);
+  add_lights(scene, rows);
+  return rows;
 }
 
 std::vector<LuminaireRow> list_luminaires(const Scene& scene, const Solution& solution) {
-  return list_all(scene, emission_of(solution));
+  std::vector<LuminaireRow> rows = list_luminous_surfaces(solution);
+  add_lights(scene, rows);
+  return rows;
 }
 
 std::vector<LuminaireRow> list_luminous_surfaces(const Solution& solution) {

@@ -255,7 +255,6 @@ ExitCode run_render(RenderOptions options) {
   };
   if (!into_folder) check_output(options.output);
   const auto [scene, solution] = load_source(options);
-  if (!into_folder) check_keeps_room(options.output, scene);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
   const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, room, into_folder));

@@ -172,15 +172,13 @@ Start resumed_run(const SolveOptions& options) {
 }
 
 /// Whether a run came to its end, with all that follows the last batch.
-bool is_whole(const SolveRecord& record) {
-  return record.stopped != StopReason::kUnderWay && record.stopped != StopReason::kInterrupted &&
-         !record.cut_off;
+bool has_ended(const SolveRecord& record) {
+  return record.stopped != StopReason::kUnderWay && record.stopped != StopReason::kInterrupted;
 }
 
 /// Whether a run that goes on would have nothing to do.
 bool is_done(const SolveOptions& options, Start& start) {
-  const StopReason stopped = start.solution.record.stopped;
-  if (stopped == StopReason::kUnderWay || stopped == StopReason::kInterrupted) return false;
+  if (!has_ended(start.solution.record)) return false;
   return !has_stopping_rule(options.solver) || rule_that_holds(start.scene, start.solution);
 }
 
@@ -267,13 +265,18 @@ Solution solve_with_progress(Start& start, const SolveOptions& options, std::opt
   return solved;
 }
 
+/// Ends a run that had nothing to add to the solution it was to go on from.
+ExitCode leave_as_it_was(const Scene& scene, const Solution& solution, const SolveOptions& options) {
+  if (options.output != options.resume) save(solution, options);
+  report(scene, solution, options);
+  return ExitCode::kDone;
+}
+
 ExitCode run_solve(const SolveOptions& options) {
   Start start = begin_run(options);
   if (!options.resume.empty() && is_done(options, start)) {
     note_done(start.solution, options);
-    if (options.output != options.resume) save(start.solution, options);
-    report(start.scene, start.solution, options);
-    return ExitCode::kDone;
+    return leave_as_it_was(start.scene, start.solution, options);
   }
   std::optional<RunLog> log;
   if (!options.log.empty())
@@ -284,15 +287,14 @@ ExitCode run_solve(const SolveOptions& options) {
   const SolveRecord before = start.solution.record;
   Solution solution = solve_with_progress(start, options, log, interrupt);
   if (log) log->finish(solution);
-  if (!options.resume.empty() && is_whole(before) && solution.record.packets == before.packets) {
+  if (!options.resume.empty() && has_ended(before) && !before.cut_off &&
+      solution.record.packets == before.packets) {
     // What follows the last batch was taken out to go on, and there was no time to do it again.
     solution = load_solution(options.resume, options.style);
+    if (!options.room.empty()) keep_room_paths(options.room, solution);
     if (!options.style.quiet)
       print_note("there was no time for another batch of packets; the solution stays as it was");
-    if (options.output == options.resume) {
-      report(start.scene, solution, options);
-      return ExitCode::kDone;
-    }
+    return leave_as_it_was(start.scene, solution, options);
   }
   save(solution, options);
   report(start.scene, solution, options);

@@ -124,20 +124,17 @@ std::string tidy(const std::string& text) {
 }
 
 /// Names the file of a buffer that is not there; one whose name has escaped characters is left to others.
-void refuse_missing_buffers(const nlohmann::json& document, const std::filesystem::path& file) {
+void refuse_missing_buffers(const JsonCursor& document, const std::filesystem::path& folder) {
   const auto buffers = document.find("buffers");
-  if (buffers == document.end() || !buffers->is_array()) return;
-  for (std::size_t i = 0; i < buffers->size(); ++i) {
-    const nlohmann::json& buffer = (*buffers)[i];
-    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
-    const auto uri = buffer["uri"].get<std::string>();
+  for (std::size_t i = 0; buffers && i < buffers->size(); ++i) {
+    const auto uri = (*buffers)[i].find("uri");
+    if (!uri) continue;
+    const std::string& name = uri->string();
     std::error_code ignored;
-    if (uri.starts_with("data:") || uri.find('%') != std::string::npos ||
-        std::filesystem::exists(file.parent_path() / uri, ignored))
-      continue;
-    throw InputError(fmt::format("{}#/buffers/{}/uri", file.string(), i),
-                     fmt::format("there is no file '{}', which holds the geometry", tidy(uri)),
-                     "Put it beside the room, or export the room as one file (.glb).");
+    if (!name.starts_with("data:") && name.find('%') == std::string::npos &&
+        !std::filesystem::exists(folder / name, ignored))
+      uri->fail(fmt::format("there is no file '{}', which holds the geometry", tidy(name)),
+                "Put it beside the room, or export the room as one file (.glb).");
   }
 }
 
@@ -172,7 +169,7 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
     errors = problem.what();
   }
   if (!parsed) {
-    refuse_missing_buffers(document, file);
+    refuse_missing_buffers(JsonCursor(document, loaded.file), file.parent_path());
     throw InputError(loaded.file, tidy(errors.empty() ? "not a valid glTF file" : errors),
                      "Check the file with the Khronos glTF validator, or export it anew.");
   }

@@ -11,8 +11,7 @@ namespace reemit {
 /// What a room that was read by Blender's conventions says of it.
 inline constexpr const char* kBlenderNote =
     "Blender wrote it: Ks, its Specular, is no share of the light, and what dielectrics reflect (4 %) counts "
-    "as "
-    "diffuse, as in glTF; illum 3 is metal of the colour Kd, as rough as Ns says";
+    "as diffuse, as in glTF; illum 3 is metal of the colour Kd, as rough as Ns says";
 
 /// Whether Blender wrote a MTL file, by the comment in its first line.
 bool is_written_by_blender(std::string_view mtl);
