@@ -107,13 +107,13 @@ inline void add_read_options(CLI::App& command, ReadOptions& options) {
 
 /// What stands around the room, where its file does not say it.
 inline void add_sky_options(CLI::App& command, ReadOptions& options) {
-  const auto same = [](const std::string& text) { return text; };
-  add_parsed_option(command, "--sky", options.sky, with_absolute_path, "SKY",
+  const auto parse_sky = [](const std::string& text) { return with_absolute_path(parse_word(text)); };
+  add_parsed_option(command, "--sky", options.sky, parse_sky, "SKY",
                     "Sky around the room, in place of that of its file: uniform:10000lx, overcast:10000lx,\n"
                     "clear:20000lx (with --sun), cie7:15000lx, perez:15000lx,direct=600,diffuse=120 or\n"
                     "image:FILE; then ,ground=0.2,up=z,north=0/1/0,color=1/1/1,scale=1,rotation=0. Lux on a\n"
                     "horizontal plane outside, without the sun");
-  add_parsed_option(command, "--sun", options.sun, same, "SUN",
+  add_parsed_option(command, "--sun", options.sun, parse_word, "SUN",
                     "Sun: altitude=40,azimuth=180,lx=80000 or latitude=48.2,longitude=16.4,\n"
                     "time=2024-06-21T12:00+02:00,lx=80000. Degrees, azimuth from north towards east; lux\n"
                     "across the beam; without lx it only says where the sun stands");

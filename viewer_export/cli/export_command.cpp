@@ -24,6 +24,7 @@
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/cli/thread_limit.h"
 #include "viewer_export/formats/export_table.h"
 #include "viewer_export/still/room_exposure.h"
 #include "viewer_export/vertex/vertex_radiance.h"
@@ -100,12 +101,13 @@ void check_outputs(const ExportOptions& options) {
 }
 
 ExitCode run_export(const ExportOptions& options) {
+  const ThreadLimit limit(options.vertex.threads);
   if (options.form_factors) {
     if (options.outputs.size() > 1)
       throw InputError("-o", fmt::format("{} files for form factors", options.outputs.size()),
                        "give one file with --form-factors");
-    return export_form_factors({options.solution, options.outputs.front(), options.vertex.seed,
-                                options.vertex.threads, options.style});
+    return export_form_factors(
+        {options.solution, options.outputs.front(), options.vertex.seed, options.style});
   }
   check_outputs(options);
   check_has_effect(options);

@@ -6,11 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-#include <tbb/task_arena.h>
 
 #include "solver/run/schedule.h"
 #include "solver/solution/solution_file.h"
-#include "solver/solution/thread_count.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/output_path.h"
@@ -55,12 +53,9 @@ ExitCode export_form_factors(const FormFactorExport& options) {
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;
   Progress progress("form factors", progress_style(options.style.quiet, options.style.verbose));
-  tbb::task_arena arena(thread_count(options.threads));
-  const FormFactors factors = arena.execute([&] {
-    return compute_form_factors(
-        cells, rays, {.seed = options.seed, .enforce_closure = true},
-        [&progress](double done) { progress.update(done); }, interrupt.requested());
-  });
+  const FormFactors factors = compute_form_factors(
+      cells, rays, {.seed = options.seed, .enforce_closure = true},
+      [&progress](double done) { progress.update(done); }, interrupt.requested());
   progress.finish();
   const FormFactorReport& report = factors.report();
   write_output([&] {

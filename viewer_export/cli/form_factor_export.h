@@ -12,7 +12,6 @@ struct FormFactorExport {
   std::filesystem::path solution;
   std::filesystem::path output;
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0 = all cores.
   OutputStyle style;
 };
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "mesh/zones/total_powers.h"
+#include "scenes/io/common/text_parse.h"
 #include "scenes/model/error.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
@@ -40,12 +41,30 @@ std::string reading(const std::vector<fs::path>& files) {
   return text;
 }
 
+/// The option given that is for glTF alone; null if none is.
+const char* gltf_option(const ReadOptions& options) {
+  if (options.gltf_emissive_units != ReadOptions{}.gltf_emissive_units) return "--emissive-units";
+  return options.gltf_light_efficacy ? "--gltf-light-efficacy" : nullptr;
+}
+
+void check_reads_gltf(const ReadOptions& options, const Scene& scene) {
+  const char* option = gltf_option(options);
+  if (option == nullptr) return;
+  for (const std::string& file : scene.files) {
+    const std::string extension = lower_case_extension(file);
+    if (extension == ".gltf" || extension == ".glb") return;
+  }
+  throw InputError(option, "is for glTF, and no file of this room is glTF", "Leave it out.");
+}
+
 }  // namespace
 
 Scene load_room(const std::vector<fs::path>& files, const ReadOptions& options, const OutputStyle& style) {
   const StepNote note(reading(files), style);
   const WaitingLine line(reading(files), style_of(style));
-  return read_scene(files, options);
+  Scene scene = read_scene(files, options);
+  check_reads_gltf(options, scene);
+  return scene;
 }
 
 MeshResult mesh_room(Scene& scene, const MeshSettings& settings, const OutputStyle& style) {
@@ -61,11 +80,8 @@ bool is_meant_as_solution(const fs::path& file) {
 }
 
 void check_no_read_options(const ReadOptions& options, const fs::path& solution) {
-  const ReadOptions unset;
-  const char* given = nullptr;
+  const char* given = gltf_option(options);
   if (options.bands.given()) given = "--bands";
-  if (options.gltf_emissive_units != unset.gltf_emissive_units) given = "--emissive-units";
-  if (options.gltf_light_efficacy) given = "--gltf-light-efficacy";
   if (options.force_two_sided) given = "--two-sided";
   if (!options.sky.empty()) given = "--sky";
   if (!options.sun.empty()) given = "--sun";

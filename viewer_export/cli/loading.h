@@ -13,7 +13,7 @@ namespace reemit::cli {
 // What comes before a command can begin, with a line of progress where it takes longer than a second. Nothing
 // guards it: a signal ends the program at once.
 
-/// As read_scene.
+/// As read_scene; throws InputError also for options that are for glTF if the room has none of it.
 Scene load_room(const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                 const OutputStyle& style);
 /// As build_zones, and settles the luminaires by it (spread_total_powers).

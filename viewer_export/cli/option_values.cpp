@@ -64,6 +64,12 @@ double parse_share(const std::string& text) {
   refuse(text, "a share between 0 and 1; write 1% or 0.01");
 }
 
+std::string parse_word(const std::string& text) {
+  if (trimmed(text).empty())
+    throw std::invalid_argument("nothing is given; leave the option out, or say what is meant");
+  return text;
+}
+
 double parse_seconds(const std::string& text) {
   static constexpr std::pair<std::string_view, double> kUnits[] = {
       {"", 1}, {"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}};

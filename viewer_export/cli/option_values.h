@@ -12,6 +12,8 @@ namespace reemit::cli {
 
 /// Share of one in (0,1): "1%", "0.5 %" or "0.01".
 double parse_share(const std::string& text);
+/// Any text but none.
+std::string parse_word(const std::string& text);
 /// Time [s] > 0: "60", "60s", "500ms", "2min" or "1h".
 double parse_seconds(const std::string& text);
 /// Whole number in [1, 1e18]: "250000", "1e6" or "2.5e6".

@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <tbb/task_arena.h>
 
 #include "scenes/io/images/image_library.h"
 #include "scenes/model/error.h"
@@ -20,7 +19,6 @@
 #include "solver/losses/open_room.h"
 #include "solver/progressive_solver.h"
 #include "solver/run/schedule.h"
-#include "solver/solution/thread_count.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
@@ -33,6 +31,7 @@
 #include "viewer_export/cli/progress.h"
 #include "viewer_export/cli/step_note.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/cli/thread_limit.h"
 #include "viewer_export/still/eye_place.h"
 #include "viewer_export/still/image_file.h"
 #include "viewer_export/still/render_still.h"
@@ -124,9 +123,7 @@ class Renderer {
     const StillImage image = render_still(*light_, job.camera, on_progress, interrupt_.requested());
     progress.finish();
     std::optional<WrittenImage> written;
-    tbb::task_arena arena(thread_count(options_.still.threads));  // compression is parallel
-    write_output(
-        [&] { arena.execute([&] { written = write_still_image(image, job.file, options_.tone_map); }); });
+    write_output([&] { written = write_still_image(image, job.file, options_.tone_map); });
     if (!options_.style.quiet) explain_missed_target(job, image);
     report(job, image, *written, seconds_since(start));
   }
@@ -246,6 +243,7 @@ void choose_quality(RenderOptions& options) {
 }
 
 ExitCode run_render(RenderOptions options) {
+  const ThreadLimit limit(options.still.threads);
   check_view(options.camera);
   const bool into_folder = options.into_folder();
   // Refuses what cannot be loaded before the work.
@@ -300,10 +298,9 @@ std::string format_help() {
 void add_view_options(CLI::App& render, RenderOptions& options) {
   render.option_defaults()->group("View");
   auto* camera =
-      render.add_option("--camera", options.camera.name,
+      add_parsed_option(render, "--camera", options.camera.name, parse_word, "NAME|all",
                         "Camera of the room by name, or 'all' (default: the first; all into a folder).\n"
                         "A room without cameras has auto-1, auto-2, ... inside its free space");
-  camera->type_name("NAME|all");
   auto* eye = add_parsed_option(render, "--eye", options.camera.eye, parse_point, kPointType,
                                 "A camera of its own: where it is [m]");
   eye->excludes(camera);

@@ -26,6 +26,7 @@
 #include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/step_note.h"
 #include "viewer_export/cli/text_table.h"
+#include "viewer_export/cli/thread_limit.h"
 
 namespace reemit::cli {
 namespace {
@@ -273,6 +274,7 @@ ExitCode leave_as_it_was(const Scene& scene, const Solution& solution, const Sol
 }
 
 ExitCode run_solve(const SolveOptions& options) {
+  const ThreadLimit limit(options.solver.threads);
   Start start = begin_run(options);
   if (!options.resume.empty() && is_done(options, start)) {
     note_done(start.solution, options);

@@ -57,6 +57,9 @@ TEST(Usage, MistakesEndWithCode2AndAHint) {
       {{"render", "x.h5", "-o", "x.png", "--eye", "1,2,3"}, "--look-at"},
       {{"render", "x.h5", "-o", "x.png", "--eye", "1", "2", "3"}, "write --eye 1,2,3"},
       {{"render", "--look-at=1,", "-2,", "3", "x.h5", "-o", "x.png"}, "write --look-at 1,-2,3"},
+      {{"render", "x.h5", "-o", "x.png", "--camera", ""}, "nothing is given"},
+      {{"solve", "room.json", "-o", "x.h5", "--sky", ""}, "nothing is given"},
+      {{"solve", "room.json", "-o", "x.h5", "--sun", " "}, "nothing is given"},
       {{"render", "x.h5", "-o", "x.png", "--camera", "front", "--fov", "50"}, "is for a view by --eye"},
       {{"render", "x.h5", "-o", "x.exr", "--exposure", "1"}, ".exr pictures hold radiance"},
       {{"render", "x.h5", "-o", "x.png", "--format", "png"}, "for pictures in a folder"},
@@ -93,6 +96,17 @@ TEST(Usage, SolutionsAreNotSolvedAnew) {
   const ProgramRun run = run_reemit({"solve", solution, "-o", (folder / "other.h5").string()});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("--resume " + solution));
+}
+
+TEST(Usage, OptionsForGltfAreRefusedWhereNothingIsGltf) {
+  const TempFolder folder;
+  const std::string room = folder.write("room.json", small_json_room()).string();
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--emissive-units", "cd/m2"}, {"--gltf-light-efficacy", "100"}}) {
+    const ProgramRun run = run_reemit({"info", room, option[0], option[1]});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr(option[0] + ": is for glTF")) << run.err;
+  }
 }
 
 TEST(Usage, MissingFoldersAreNamed) {
