@@ -191,10 +191,9 @@ ZoneLight by_shadow_rays(const Room& room, const DirectLight& direct, int rays, 
 ZoneLight by_packets(const PacketRoom& transport, const PacketSources& sources, std::uint32_t packets,
                      std::uint32_t batch) {
   SolverSettings settings;
-  settings.stop_share = 1e9;  // ends after the first flight
   settings.seed = 11;
   BatchBooks books = transport.new_books();
-  shoot_batch({transport, sources, settings, batch, packets}, books);
+  shoot_first_flight({transport, sources, settings, batch, packets}, books);
   ZoneLight light(transport.zones());
   for (std::size_t z = 0; z < light.size(); ++z)
     light[z] = static_cast<double>(books.direct[z * transport.channels().count()]) *

@@ -101,6 +101,9 @@ void ZoneMesh::add_cells() {
 void ZoneMesh::add_split_cells(SideId side, std::size_t& next_cut) {
   const std::uint32_t n = sides_[side.index()].divisions;
   const std::size_t first = nodes_.size();
+  // Every cell has a cut at least: sides of a damaged file must not make us allocate cells that are not there.
+  if (std::size_t{n} * n > splits_.cuts.size() - next_cut)
+    throw std::invalid_argument("splits that end too early");
   sides_[side.index()].nodes = static_cast<std::uint32_t>(first);
   nodes_.resize(first + std::size_t{n} * n);
   for (std::uint32_t c = 0; c < n * n; ++c) add_node(side, first + c, grid_cell(n, c), next_cut);
@@ -190,7 +193,7 @@ SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
 }
 
 double ZoneMesh::zone_area(ZoneId z) const {
-  if (is_group(z)) return solid_share(z) * members_area_[first_member(z) + member_count(z) - 1];
+  if (is_group(z)) return solid_share(z) * group_area(z);
   return solid_share(z) * triangle_area(zone_triangle(z)) * zone_corners_[z.index()].share();
 }
 
@@ -209,7 +212,7 @@ Vec3 ZoneMesh::zone_normal(ZoneId z) const {
       const TriangleId t = member_triangle(z, m);
       sum += triangle_area(t) * side_normal(side_of(t, zone_is_front(z)));
     }
-    return sum.norm() > 1e-9 * zone_area(z) ? Vec3(sum.normalized()) : side_normal(zone_side_[z.index()]);
+    return sum.norm() > 1e-9 * group_area(z) ? Vec3(sum.normalized()) : side_normal(zone_side_[z.index()]);
   }
   const auto c = zone_barycentrics(z);
   const Vec3 n = normal(zone_triangle(z), (c[0].u + c[1].u + c[2].u) / 3, (c[0].v + c[1].v + c[2].v) / 3);
@@ -244,7 +247,7 @@ Vec3 ZoneMesh::zone_centroid(ZoneId z) const {
       const TriangleId t = member_triangle(z, m);
       sum += triangle_area(t) * point(t, 1.0 / 3, 1.0 / 3);
     }
-    return sum / zone_area(z);
+    return sum / group_area(z);
   }
   const auto c = zone_barycentrics(z);
   return point(zone_triangle(z), (c[0].u + c[1].u + c[2].u) / 3, (c[0].v + c[1].v + c[2].v) / 3);

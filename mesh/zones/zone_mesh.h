@@ -148,7 +148,7 @@ class ZoneMesh {
   Vec3 point(TriangleId t, double u, double v) const;  ///< [m], on the shape where it is curved.
   /// Barycentric position in t of a point on it [m].
   Barycentric barycentric_of(TriangleId t, const Vec3& point) const;
-  Vec3 zone_centroid(ZoneId z) const;  ///< [m]; of a group, the mean over its area.
+  Vec3 zone_centroid(ZoneId z) const;  ///< [m]; of a group, the mean over its area, holes of cut-outs too.
 
  private:
   static constexpr std::uint32_t kWhole = 0xffffffff;
@@ -165,6 +165,10 @@ class ZoneMesh {
 
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   std::size_t first_member(ZoneId group) const { return first_member_[group.index() - cell_zone_count()]; }
+  /// With the holes of cut-outs [m2].
+  double group_area(ZoneId group) const {
+    return members_area_[first_member(group) + member_count(group) - 1];
+  }
   SideCell member_cell(ZoneId group, float& u) const;
   /// Of a side with cells that are cut further.
   ZoneId zone_in_parts(const Side& side, float u, float v) const;

@@ -96,10 +96,11 @@ void add_textures(Hasher& hash, const MaterialTextures& textures) {
   add_spectra(hash, textures.emission_spectra);
 }
 
-void add_texture_point(Hasher& hash, const TexturePoint& point) {
+void add_texture_point(Hasher& hash, const TexturePoint& point, bool has_colours) {
   for (const auto& uv : point.uv)
     for (const double x : uv) hash.add(x);
-  for (const float x : point.colour) hash.add(static_cast<double>(x));
+  // Colours that the surface does not show count as white.
+  for (const float x : has_colours ? point.colour : TexturePoint{}.colour) hash.add(static_cast<double>(x));
 }
 
 void add_material(Hasher& hash, const Material& m) {
@@ -143,7 +144,7 @@ void add_surface(Hasher& hash, const Surface& surface, bool is_textured) {
              surface.normals);  // creases, and with them shared vertices, follow from these
     if (is_textured)
       for (const std::uint32_t point : face.texture_points)
-        add_texture_point(hash, surface.texture_points[point]);
+        add_texture_point(hash, surface.texture_points[point], surface.has_vertex_colours);
   }
   if (surface.shapes.empty()) return;
   hash.add(std::uint64_t{surface.shapes.size()});

@@ -78,9 +78,14 @@ std::uint64_t peak_memory() {
 }
 
 void check_memory(const std::string& what, double needed, std::optional<std::uint64_t> available) {
+  check_memory([&] { return what; }, needed, available);
+}
+
+void check_memory(const std::function<std::string()>& what, double needed,
+                  std::optional<std::uint64_t> available) {
   if (!available || needed <= static_cast<double>(*available)) return;
   constexpr double kGigabyte = 1e9;
-  throw ResourceError(what,
+  throw ResourceError(what(),
                       fmt::format("takes at least {:.2g} GB of memory, and {:.2g} GB are free",
                                   needed / kGigabyte, static_cast<double>(*available) / kGigabyte),
                       "Simplify the room, close other programs, or use a machine with more memory.");

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,5 +16,8 @@ std::uint64_t peak_memory();
 /// Throws ResourceError if `what` needs clearly more memory than there is, before it is spent. `needed`
 /// [bytes] should rather be too small: a room that might just fit is tried.
 void check_memory(const std::string& what, double needed, std::optional<std::uint64_t> available);
+/// The same for what takes time to name.
+void check_memory(const std::function<std::string()>& what, double needed,
+                  std::optional<std::uint64_t> available);
 
 }  // namespace reemit

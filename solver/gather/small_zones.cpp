@@ -37,6 +37,9 @@ constexpr double kMostRounding = 0.1;
 /// that is allowed.
 constexpr double kMostTimesEnough = 32;
 constexpr double kCheap = 0.25;
+/// Points per replicate that a zone gets at least: the smallest zones first if not all can have them. Few rays
+/// miss a bright spot, and leave no trace of that in the error.
+constexpr double kLeastPoints = 8;
 /// Gather rays per shadow ray.
 constexpr int kGathersPerPoint = 2;
 constexpr std::uint64_t kRaysPerPoint = kReplicates * (1 + kGathersPerPoint);
@@ -338,14 +341,16 @@ class SmallZoneRun {
       chosen_.push_back(zones[i]);
       packets_.push_back(packet_light(room_, solution_, zones[i], limits_.direct_is_sampled, watts_per_ray_));
     }
-    chosen_.resize(std::min(chosen_.size(), static_cast<std::size_t>(std::max(0.0, points_left_))));
+    chosen_.resize(
+        std::min(chosen_.size(), static_cast<std::size_t>(std::max(0.0, points_left_ / kLeastPoints))));
   }
 
   int points_per_replicate() const {
     // As many rays as the mean zone meets packets leave about its error. But few shadow rays find a window,
     // and zones that are few are sensors: more cost next to nothing then.
     const auto count = static_cast<double>(chosen_.size());
-    const double enough = packet_rays_ / static_cast<double>(solution_.mesh.zone_count() * kRaysPerPoint);
+    const double enough = std::max(
+        kLeastPoints, packet_rays_ / static_cast<double>(solution_.mesh.zone_count() * kRaysPerPoint));
     const double cheap = std::min(kMostTimesEnough * enough, kCheap * affordable_ / count);
     return whole_points(std::min(std::max(enough, cheap), points_left_ / count));
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <variant>
 
 #include <fmt/format.h>
@@ -15,13 +16,14 @@
 namespace reemit {
 namespace {
 
-constexpr double kLeastShareLost = 1e-5;     // of the emitted power; less is below any error target
-constexpr double kClosedShare = 0.01;        // a room that loses less through openings counts as closed
-constexpr double kMostlyClosedShare = 0.05;  // the same where most of the loss goes through gaps
-constexpr double kOutdoorShare = 0.3;        // a room that loses more from places outside is meant to
-constexpr double kDarkShare = 0.5;           // of the space enclosed; walls and furniture have less in them
-constexpr double kNarrow = 0.01;             // width of a gap, of the diagonal of the room
-constexpr double kOnePlace = 0.05;           // distance within which losses are in one place, of the diagonal
+constexpr double kLeastShareLost = 1e-5;      // of the emitted power; less is below any error target
+constexpr double kClosedShare = 0.01;         // a room that loses less through openings counts as closed
+constexpr double kMostlyClosedShare = 0.05;   // the same where most of the loss goes through gaps
+constexpr double kOutdoorShare = 0.3;         // a room that loses more from places outside is meant to
+constexpr double kLuminaireBackShare = 0.01;  // on backs of one luminaire; less is no mistake
+constexpr double kDarkShare = 0.5;            // of the space enclosed; walls and furniture have less in them
+constexpr double kNarrow = 0.01;              // width of a gap, of the diagonal of the room
+constexpr double kOnePlace = 0.05;  // distance within which losses are in one place, of the diagonal
 constexpr std::uint32_t kProbes = 1U << 16;
 constexpr std::size_t kMostLosses = 512;
 constexpr std::size_t kMostPlaces = 3;
@@ -169,6 +171,15 @@ double room_diagonal(const Scene& scene) {
   return bounds(scene).size().norm();
 }
 
+/// Whether light may leave a room whose faces close as it should.
+bool has_windows(const PacketRoom& transport) {
+  const SurfaceModel& surfaces = transport.surface_model();
+  const std::vector<Material>& materials = transport.scene().materials;
+  return surfaces.any_transmits() || surfaces.any_cut_outs() ||
+         std::any_of(materials.begin(), materials.end(),
+                     [](const Material& m) { return m.non_diffuse.transmits_diffusely(); });
+}
+
 bool is_lit_from_outside(const Scene& scene) {
   if (scene.sky) return true;
   return std::any_of(scene.lights.begin(), scene.lights.end(),
@@ -210,9 +221,12 @@ void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission,
   const EnergyAudit& audit = solution.audit;
   double escaped = 0;
   for (const BandAudit& band : audit.bands) escaped += audit.watts(band, band.total_escaped());
-  const double share = escaped / audit.emitted_watts();
+  double share = escaped / audit.emitted_watts();
   if (!(share > kLeastShareLost)) return;
   const EscapedLight found = find_escapes(transport, emission, solution, stop);
+  // The books do not know what went out through windows.
+  if (has_windows(transport)) share = found.share;
+  if (!(share > kLeastShareLost)) return;
   const bool by_gaps = 2 * found.through_gaps > share && found.through_openings < kMostlyClosedShare;
   const bool closed = found.through_openings < kClosedShare && share < kOutdoorShare &&
                       !is_lit_from_outside(transport.scene());
@@ -237,6 +251,10 @@ void warn_of_backs(const PacketRoom& transport, const PacketSources& emission, c
   for (const BandAudit& band : audit.bands)
     for (std::size_t s = 0; s < watts.size(); ++s) watts[s] += audit.watts(band, band.absorbed_on_backs[s]);
   const double emitted = audit.emitted_watts();
+  // The back of a lamp is dark, and a little light gets there.
+  for (std::size_t s = 0; s < watts.size(); ++s)
+    if (watts[s] < kLuminaireBackShare * emitted && scene.material_of(scene.surfaces[s]).emits())
+      watts[s] = 0;
   const double lost = std::accumulate(watts.begin(), watts.end(), 0.0);
   if (!(lost > kLeastShareLost * emitted) || is_lit_from_outside(scene)) return;
   std::vector<std::size_t> order(watts.size());
@@ -290,11 +308,14 @@ EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emis
     double watts;
     SurfaceId from;
   };
+  std::optional<RayTracer> without_holes;
+  if (transport.surface_model().any_cut_outs()) without_holes.emplace(transport.mesh());
+  const RayTracer& rays = without_holes ? *without_holes : transport.rays();
   std::vector<Escape> escapes;
   visit_probes(transport, emission, solution, stop, [&](const ProbeRay& probe, double watts, SurfaceId from) {
-    if (!probe.met) escapes.push_back({probe.origin, probe.direction, watts, from});
+    if (!probe.met && (!without_holes || rays.escapes(probe.origin, probe.direction)))
+      escapes.push_back({probe.origin, probe.direction, watts, from});
   });
-  const RayTracer& rays = transport.rays();
   const double diagonal = room_diagonal(transport.scene());
   const double emitted = solution.audit.emitted_watts();
   thin_out(escapes);
@@ -304,6 +325,7 @@ EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emis
     end_if_requested(stop);
     const ExitPlace exit = find_exit(rays, escape.origin, escape.direction);
     Loss loss{escape.watts, exit.point, exit.width, LightLoss::Way::kGap, {}};
+    found.share += loss.watts / emitted;
     if (exit.found && exit.width < kNarrow * diagonal) {
       loss.surfaces.assign(exit.surfaces.begin(), exit.surfaces.end());
       found.through_gaps += loss.watts / emitted;

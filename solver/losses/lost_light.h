@@ -27,14 +27,17 @@ struct EscapedLight {
   std::vector<LightLoss> places;  ///< Where it does so; largest first.
   double through_gaps = 0;        ///< Share of the emitted power [0,1], by probes.
   double through_openings = 0;    ///< Share of the emitted power [0,1], by probes.
+  double share = 0;               ///< Of the emitted power [0,1], all together, by probes.
 };
-/// By probes that leave luminaires and zones as their light does. Deterministic. Throws Interrupted when
+/// By probes that leave luminaires and zones as their light does. What goes out through panes, sheets that
+/// transmit and the holes of cut-outs is meant to, and not counted. Deterministic. Throws Interrupted when
 /// `stop` (may be null) is requested.
 EscapedLight find_escapes(const PacketRoom& transport, const PacketSources& emission,
                           const Solution& solution, const StopToken* stop = nullptr);
 
 /// Warnings about light that a room loses although its faces close, with share, place and surfaces: light
-/// that escapes, and light that ends on backs of one-sided faces; before them that most of the space that
+/// that escapes, but for what goes out through windows (find_escapes), and light that ends on backs of
+/// one-sided faces, of luminaires only if it is more than 1 %; before them that most of the space that
 /// faces enclose is dark (dark_space.h), and then nothing of what escapes outside of it; where light comes
 /// from outside, only if a camera looks at the dark or there is none. Faces count as closed when at most 1 %
 /// of the light leaves through openings, or 5 % if most of what leaves does so through gaps. A room with an

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include "mesh/geometry/disjoint_sets.h"
+#include "mesh/zones/zone_cells.h"
 #include "scenes/model/error.h"
 #include "solver/matrix/blocker_sieve.h"
 #include "solver/matrix/closure.h"
@@ -46,13 +48,16 @@ struct RowCounts {
 }  // namespace
 
 double FormFactors::factor_error(std::size_t i, std::size_t j) const {
+  if (i == j) return self_.empty() ? 0 : std::sqrt(self_[i].relative_variance);
   return std::sqrt(static_cast<double>(variance_.at(i, j)) * areas_[j] / areas_[i]);
 }
 
 Eigen::VectorXd FormFactors::row_sums() const {
   const auto n = static_cast<Eigen::Index>(zones());
   const Eigen::Map<const Eigen::VectorXd> areas(areas_.data(), n);
-  return exchange_.times(Eigen::VectorXd::Ones(n)).cwiseQuotient(areas);
+  Eigen::VectorXd sums = exchange_.times(Eigen::VectorXd::Ones(n));
+  for (std::size_t i = 0; i < self_.size(); ++i) sums(static_cast<Eigen::Index>(i)) += self_[i].exchange;
+  return sums.cwiseQuotient(areas);
 }
 
 class FormFactorBuilder {
@@ -203,8 +208,49 @@ FormFactors compute_form_factors(const ZoneMesh& mesh, const RayTracer& rays,
   if (mesh.groups().count > 0)
     throw InputError("form factors",
                      "the room has zones of several triangles, and form factors are those of one",
-                     "Mesh it with MeshSettings::share_zones = false, as --method matrix does.");
+                     "Mesh it with MeshSettings::share_zones = false, as --method matrix does, or join those "
+                     "of its cells (join_cells).");
   return FormFactorBuilder(mesh, rays, settings).build(progress, interrupt);
+}
+
+FormFactors join_cells(const FormFactors& cells, const ZoneMesh& mesh) {
+  const ZoneCells all(mesh);
+  if (all.size() != cells.zones()) throw std::invalid_argument("form factors of other cells");
+  std::vector<std::size_t> zone(all.size());
+  for (std::size_t c = 0; c < all.size(); ++c) zone[c] = all.zone(c).index();
+  const std::size_t zones = mesh.zone_count();
+  FormFactors joined;
+  for (std::size_t z = 0; z < zones; ++z) joined.areas_.push_back(mesh.zone_area(ZoneId(z)));
+  joined.exchange_ = SymmetricTable<double>(zones);
+  SymmetricTable<double> variance(zones);  // of exchange areas [m4]
+  joined.self_.resize(zones);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const std::size_t i = zone[c];
+    const double* exchange = cells.exchange_.row(c);
+    const float* relative = cells.variance_.row(c);
+    for (std::size_t d = c + 1; d < all.size(); ++d, ++exchange, ++relative) {
+      const std::size_t j = zone[d];
+      const double of_pair = static_cast<double>(*relative) * cells.areas_[c] * cells.areas_[d];
+      if (i == j) {  // from each to the other
+        joined.self_[i].exchange += 2 * *exchange;
+        joined.self_[i].relative_variance += 4 * of_pair / (joined.areas_[i] * joined.areas_[i]);
+      } else {
+        joined.exchange_.add(i, j, *exchange);
+        variance.add(i, j, of_pair);
+      }
+    }
+  }
+  joined.variance_ = SymmetricTable<float>(zones);
+  for (std::size_t i = 0; i < zones; ++i)
+    for (std::size_t k = 0; k < variance.row_length(i); ++k)
+      joined.variance_.row(i)[k] =
+          static_cast<float>(variance.row(i)[k] / (joined.areas_[i] * joined.areas_[i + 1 + k]));
+  joined.report_ = cells.report_;
+  joined.report_.zones = zones;
+  const Eigen::VectorXd sums = joined.row_sums();
+  joined.report_.after.lowest = sums.size() > 0 ? sums.minCoeff() : 0;
+  joined.report_.after.highest = sums.size() > 0 ? sums.maxCoeff() : 0;
+  return joined;
 }
 
 }  // namespace reemit

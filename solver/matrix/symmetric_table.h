@@ -26,6 +26,11 @@ class SymmetricTable {
     if (i > j) std::swap(i, j);
     return values_[first_of(i) + (j - i - 1)];
   }
+  /// Pre: i and j differ.
+  void add(std::size_t i, std::size_t j, T value) {
+    if (i > j) std::swap(i, j);
+    values_[first_of(i) + (j - i - 1)] += value;
+  }
   /// Pairs of i with i+1 .. size-1.
   T* row(std::size_t i) { return values_.data() + first_of(i); }
   const T* row(std::size_t i) const { return values_.data() + first_of(i); }

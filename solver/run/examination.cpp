@@ -1,5 +1,6 @@
 #include "solver/run/examination.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,7 +31,12 @@ void gather_what_is_small(const Room& room, bool direct_is_sampled, const Schedu
   SolveRecord& record = solution.record;
   SmallZoneLimits limits;
   limits.direct_is_sampled = direct_is_sampled;
-  limits.solver_rays = kSmallZoneShare / (1 - kSmallZoneShare) * static_cast<double>(record.rays);
+  // Short runs may do half as much again, or small things that are there to be measured, sensors on a table,
+  // would keep the few packets that met them by chance.
+  constexpr double kShortRun = 4e6;
+  const auto rays = static_cast<double>(record.rays);
+  limits.solver_rays =
+      std::max(kSmallZoneShare / (1 - kSmallZoneShare) * rays, std::min(rays / 2, kShortRun));
   if (schedule.limit_s > 0) limits.seconds = schedule.gather_s - seconds_since(schedule.start);
   const bool clock_had_a_say =
       gather_small_zones(room, limits, solution, schedule.token(schedule.gather_s, interrupt));

@@ -14,6 +14,7 @@
 #include "solver/shoot/flight.h"
 #include "solver/shoot/packet_batch.h"
 #include "solver/shoot/packet_tracer.h"
+#include "solver/shoot/walk_flight.h"
 
 namespace reemit {
 namespace {
@@ -22,6 +23,10 @@ constexpr std::uint32_t kPacketsPerTask = 4096;
 /// A batch ends here even when power is left (a sealed part whose walls reflect everything); the rest is
 /// unshot.
 constexpr std::uint32_t kMostSweeps = 200'000;
+/// Of the packets of a batch, those that walk with what sweeps have left.
+constexpr double kWalkingShare = 1.0 / 64;
+/// Of each of them at least, so that no share of it is rounded by much.
+constexpr double kLeastQuantaOfWalk = 1e4;
 
 /// Traces packets of one sweep and books each where it ends. One per task.
 class SweepTracer {
@@ -230,9 +235,10 @@ void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std:
   });
 }
 
-}  // namespace
+/// How long a batch goes on.
+enum class BatchEnd { kWholeLight, kFirstFlight };
 
-bool shoot_batch(const BatchTask& task, BatchBooks& books) {
+bool shoot(const BatchTask& task, BatchEnd end, BatchBooks& books) {
   const PacketRoom& transport = task.transport;
   const Channels channels = transport.channels();
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
@@ -272,30 +278,32 @@ bool shoot_batch(const BatchTask& task, BatchBooks& books) {
       reflect(transport, accounts, books.indirect, books);
     }
     const auto left = static_cast<double>(allocation.measure(accounts));
-    if (!whole || left <= task.settings.stop_share * emitted || sweep + 1 == kMostSweeps) break;
+    if (!whole || left == 0 || end == BatchEnd::kFirstFlight || sweep + 1 == kMostSweeps) break;
     whole = task.stop == nullptr || !task.stop->requested();
     if (!whole) break;
     // From here on the power is in the flight, which must be traced before the batch may end.
-    const double sent = std::max(1.0, std::round(left / quantum));
+    const bool walks = left <= task.settings.stop_share * emitted;
+    const double wanted = walks ? std::min(kWalkingShare * packets, left / kLeastQuantaOfWalk) : left / quantum;
+    const double sent = std::max(1.0, std::round(wanted));
     allocation.plan(accounts, left / sent, offsets.uniform4(0, task.batch, sweep + 1)[0], flight, books);
+    if (!walks) continue;
+    if (arrivals) arrivals->begin(sweep + 1, left / sent, 0);
+    whole = walk_flight(task, flight, sweep + 1, points, books);
+    break;
   }
   for (std::size_t i = 0; i < accounts.unshot.size(); ++i)
     books.unshot[i % channels.count()] += accounts.unshot[i];
   return whole;
 }
 
+}  // namespace
+
+bool shoot_batch(const BatchTask& task, BatchBooks& books) {
+  return shoot(task, BatchEnd::kWholeLight, books);
+}
+
 bool shoot_first_flight(const BatchTask& task, BatchBooks& books) {
-  SolverSettings settings = task.settings;
-  settings.stop_share = 1;
-  return shoot_batch({.transport = task.transport,
-                      .emission = task.emission,
-                      .settings = settings,
-                      .batch = task.batch,
-                      .packets = task.packets,
-                      .stop = task.stop,
-                      .ray_observer = task.ray_observer,
-                      .first_together = task.first_together},
-                     books);
+  return shoot(task, BatchEnd::kFirstFlight, books);
 }
 
 }  // namespace reemit

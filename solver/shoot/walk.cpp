@@ -7,9 +7,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "solver/shoot/flight.h"
-#include "solver/shoot/packet_batch.h"
 #include "solver/shoot/packet_tracer.h"
+#include "solver/shoot/walk_flight.h"
 
 namespace reemit {
 namespace {
@@ -56,9 +55,11 @@ struct WalkAccounts {
 /// Follows packets, 16 rays at a time; those that end make room so that blocks stay full.
 class WalkTask {
  public:
-  WalkTask(const BatchTask& task, BatchBooks& books, WalkAccounts& zones, std::vector<std::int64_t>& absorbed,
-           bool shared)
-      : transport_(task.transport),
+  /// `first`: number of the flight, as of walk_flight.
+  WalkTask(const BatchTask& task, std::uint32_t first, BatchBooks& books, WalkAccounts& zones,
+           std::vector<std::int64_t>& absorbed, bool shared)
+      : first_(first),
+        transport_(task.transport),
         channels_(task.transport.channels()),
         values_(channels_.count()),
         rng_(task.settings.seed, RngPurpose::kReflection),
@@ -72,15 +73,16 @@ class WalkTask {
         block_(channels_) {}
 
   /// False if it was cut off: packets that have not ended, or not set out, are unshot.
-  bool run(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
+  bool run(const Flight& flight, const FlightNumbers& numbers, const ArrivalPoints* points,
+           std::uint32_t begin, std::uint32_t end) {
     if (stop_requested()) {
       leave_unshot(flight, begin, end, books_);
       return false;
     }
-    start(flight, numbers, begin, end);
-    for (std::uint32_t bounce = 1; !waiting_.packets.empty(); ++bounce) {
+    start(flight, numbers, points, begin, end);
+    for (std::uint32_t bounce = first_ + 1; !waiting_.packets.empty(); ++bounce) {
       const bool whole = !stop_requested();
-      if (!whole || bounce == kMostBounces) {
+      if (!whole || bounce == first_ + kMostBounces) {
         leave_waiting_unshot();
         return whole;
       }
@@ -94,16 +96,17 @@ class WalkTask {
  private:
   bool stop_requested() const { return stop_ != nullptr && stop_->requested(); }
 
-  void start(const Flight& flight, const FlightNumbers& numbers, std::uint32_t begin, std::uint32_t end) {
+  void start(const Flight& flight, const FlightNumbers& numbers, const ArrivalPoints* points,
+             std::uint32_t begin, std::uint32_t end) {
     waiting_.clear();
-    FlightCursor cursor(transport_, flight, begin);
+    FlightCursor cursor(transport_, flight, begin, points);
     for (std::uint32_t first = begin; first < end; first += 16) {
       block_.number(first, static_cast<int>(std::min<std::uint32_t>(16, end - first)));
       const int behind = cursor.start16(first, block_.count, numbers, block_.rays, block_.power.data());
       if (behind > 0) count_event(books_.events.starts_behind, static_cast<std::uint64_t>(behind));
-      trace(0);
+      trace(first_);
     }
-    finish(0);
+    finish(first_);
   }
 
   void trace_on(std::uint32_t bounce) {
@@ -213,6 +216,7 @@ class WalkTask {
       book(books_.unshot[i % values_], waiting_.quanta[i]);
   }
 
+  std::uint32_t first_;
   const PacketRoom& transport_;
   Channels channels_;
   std::size_t values_;  // of each packet
@@ -242,11 +246,15 @@ void add(const std::vector<std::int64_t>& from, std::vector<std::int64_t>& to) {
 bool walk_batch(const BatchTask& task, BatchBooks& books) {
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
   const Flight flight = plan_first_flight(task.emission, task.packets, offsets.uniform4(0, task.batch, 0)[0]);
-  const FlightNumbers numbers(task.settings.sampling, task.settings.seed, task.batch, 0);
   for (std::size_t i = 0; i < flight.quanta.size(); ++i)
     books.emitted[i % books.channels.count()] += flight.quanta[i];
   books.packets += flight.packets();
+  return walk_flight(task, flight, 0, nullptr, books);
+}
 
+bool walk_flight(const BatchTask& task, const Flight& flight, std::uint32_t number,
+                 const ArrivalPoints* points, BatchBooks& books) {
+  const FlightNumbers numbers(task.settings.sampling, task.settings.seed, task.batch, number);
   // Absorbed power is few numbers that every packet adds to, so each thread has its own in any case.
   const std::size_t copies = account_copies(2 * books.direct.size() + books.caustic.size());
   const bool shared = accounts_are_shared(copies);
@@ -262,10 +270,10 @@ bool walk_batch(const BatchTask& task, BatchBooks& books) {
   const std::uint32_t tasks = (flight.packets() + kWalksPerTask - 1) / kWalksPerTask;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tasks, 1), [&](const auto& range) {
     const std::size_t thread = current_copy();
-    WalkTask walk(task, books, accounts[shared ? 0 : thread], accounts[thread].absorbed, shared);
+    WalkTask walk(task, number, books, accounts[shared ? 0 : thread], accounts[thread].absorbed, shared);
     for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
       const std::uint32_t end = std::min(flight.packets(), (t + 1) * kWalksPerTask);
-      if (!walk.run(flight, numbers, t * kWalksPerTask, end)) whole = false;
+      if (!walk.run(flight, numbers, points, t * kWalksPerTask, end)) whole = false;
     }
     accounts[thread].rays += walk.rays();
   });

@@ -33,6 +33,7 @@ struct GroupedMean {
     weigh_light(all, other.all);
     for (std::size_t g = 0; g < ZoneSums::kGroups; ++g) weigh_light(groups[g], other.groups[g]);
     area = both;
+    met_by_packets = met_by_packets || other.met_by_packets;
   }
 
   struct Light {
@@ -41,6 +42,7 @@ struct GroupedMean {
     Spectrum reflected;   // sum over zones of area times what textures make them reflect more than their mean
   };
   double area = 0;                              // [m2]
+  bool met_by_packets = false;                  // by some zone; else all of it was gathered
   Spectrum emitted;                             // by the zones themselves [W/m2]
   Spectrum scatters;                            // 0 where no light is reflected or let through
   Light all;                                    // of all batches
@@ -74,6 +76,7 @@ class Sides {
 
   std::vector<GroupedMean> gather() {
     add_emission();
+    mark_what_packets_meet();
     add_irradiance();
     for (std::size_t s = 0; s < sides_.size(); ++s)
       scatter(solution_.materials[solution_.surface_materials[s / 2].index()], sides_[s], sides_[s ^ 1U],
@@ -117,6 +120,13 @@ class Sides {
             reflectance_varies() ? emitted + mesh_.zone_area(ZoneId(z)) / side.area * (here - emitted) : here;
       }
     }
+  }
+
+  void mark_what_packets_meet() {
+    std::vector<bool> gathered(mesh_.zone_count());
+    for (const ZoneId z : solution_.gathered.zones) gathered[z.index()] = true;
+    for (std::size_t z = 0; z < mesh_.zone_count(); ++z)
+      if (!gathered[z] && !mesh_.is_sealed(ZoneId(z))) side_of(ZoneId(z)).met_by_packets = true;
   }
 
   void add_irradiance() {
@@ -163,6 +173,19 @@ class Sides {
   std::vector<GroupedMean> sides_;
 };
 
+/// Incident power that one ray of the packets carried on average, by band [W]; 0 without packets.
+Spectrum power_per_ray(const Solution& solution) {
+  const auto bands = static_cast<Eigen::Index>(solution.bands.count());
+  Spectrum power = Spectrum::Zero(bands);
+  const std::uint64_t rays = solution.record.rays - solution.gathered.rays;
+  if (solution.record.packets == 0 || rays == 0 || solution.sums.batches == 0) return power;
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    for (Eigen::Index b = 0; b < bands; ++b)
+      power[b] += solution.mesh.zone_area(ZoneId(z)) *
+                  solution.irradiance(ZoneId(z), static_cast<std::size_t>(b)).mean;
+  return power / static_cast<double>(rays);
+}
+
 /// Weights of the groups that have batches.
 struct GroupWeights {
   explicit GroupWeights(const ZoneSums& sums) {
@@ -177,9 +200,12 @@ struct GroupWeights {
 };
 
 /// `value_of` is linear in the light, but for a constant: it takes the mean or that of a group. The error is
-/// that of a ratio estimate, as ZoneSums has it for batches.
+/// that of a ratio estimate, as ZoneSums has it for batches. `of_one_packet`: the light that one brings. The
+/// spread of batches knows nothing of packets that might have come, and little of few that did: the variance
+/// is that of one more, so that n packets leave n + 1 times the square of what one brings.
 template <class Function>
-Estimate estimate(const ZoneSums& sums, const GroupedMean& light, Function&& value_of) {
+Estimate estimate(const ZoneSums& sums, const GroupedMean& light, const GroupedMean::Light& of_one_packet,
+                  Function&& value_of) {
   const double mean = value_of(light.all);
   if (sums.batches == 0) return {mean, 0};
   if (sums.batches == 1) return {mean, std::numeric_limits<double>::infinity()};
@@ -189,13 +215,20 @@ Estimate estimate(const ZoneSums& sums, const GroupedMean& light, Function&& val
     const double deviation = static_cast<double>(sums.group_weight[g]) * (value_of(light.groups[g]) - mean);
     squares += deviation * deviation;
   }
-  return {mean, std::sqrt(squares / (weights.sum * weights.sum - weights.of_squares))};
+  const Spectrum none = Spectrum::Zero(light.emitted.size());
+  const double of_one = value_of(of_one_packet) - value_of(GroupedMean::Light{none, none, none});
+  return {mean, std::hypot(std::sqrt(squares / (weights.sum * weights.sum - weights.of_squares)), of_one)};
 }
 
-MeanLight finished(const Solution& solution, const GroupedMean& grouped) {
+MeanLight finished(const Solution& solution, const GroupedMean& grouped, const Spectrum& watts_per_ray) {
   using Light = GroupedMean::Light;
   const Spectrum& efficacy = solution.bands.efficacy_lm_per_w();
-  const auto of = [&](auto&& value_of) { return estimate(solution.sums, grouped, value_of); };
+  Light of_one_packet{Spectrum::Zero(efficacy.size()), Spectrum::Zero(efficacy.size()), {}};
+  if (grouped.met_by_packets && grouped.area > 0) {
+    of_one_packet.irradiance = watts_per_ray / grouped.area;
+    of_one_packet.scattered = grouped.scatters * of_one_packet.irradiance;
+  }
+  const auto of = [&](auto&& value_of) { return estimate(solution.sums, grouped, of_one_packet, value_of); };
   MeanLight light;
   light.area = grouped.area;
   for (Eigen::Index b = 0; b < efficacy.size(); ++b) {
@@ -219,6 +252,7 @@ MeanLight finished(const Solution& solution, const GroupedMean& grouped) {
 RoomLight mean_light(const Solution& solution) {
   const std::vector<GroupedMean> sides = Sides(solution).gather();
   std::vector<GroupedMean> by_material(solution.materials.size(), GroupedMean(solution.bands.count()));
+  const Spectrum watts_per_ray = power_per_ray(solution);
   RoomLight room;
   for (std::size_t s = 0; s < solution.surface_names.size(); ++s) {
     const MaterialId material = solution.surface_materials[s];
@@ -228,10 +262,11 @@ RoomLight mean_light(const Solution& solution) {
       if (!(side.area > 0)) continue;
       const bool counts = dark ? front : !side.dark();
       if (counts) by_material[material.index()].merge(side);
-      room.sides.push_back({SurfaceId(s), front, counts, finished(solution, side)});
+      room.sides.push_back({SurfaceId(s), front, counts, finished(solution, side, watts_per_ray)});
     }
   }
-  for (const GroupedMean& material : by_material) room.materials.push_back(finished(solution, material));
+  for (const GroupedMean& material : by_material)
+    room.materials.push_back(finished(solution, material, watts_per_ray));
   const GroupWeights weights(solution.sums);
   if (solution.sums.batches > 1) room.degrees_of_freedom = weights.sum * weights.sum / weights.of_squares - 1;
   return room;

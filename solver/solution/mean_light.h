@@ -7,7 +7,8 @@ namespace reemit {
 
 /// Area-weighted means over zones of one material. Standard errors come from the spread of the same means in
 /// the batch groups (ZoneSums::kGroups), so they hold how the errors of zones and of bands go together; they
-/// are infinite with one batch and 0 without any, as those of a zone.
+/// are infinite with one batch and 0 without any, as those of a zone. Where packets bring the light, the
+/// variance is that of one packet more than came: so what few met, or none, is not taken for exact.
 struct MeanLight {
   double area = 0;                   ///< [m2]
   std::vector<Estimate> irradiance;  ///< Per band [W/m2].

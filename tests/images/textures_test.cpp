@@ -349,6 +349,18 @@ TEST_F(Textures, TheHashIsThatOfImageAndCoordinates) {
       << "coordinates without a texture say nothing";
 }
 
+TEST_F(Textures, TheHashTellsWhetherColoursOfVerticesAreUsed) {
+  test::write_pixmap(folder_ / "t.ppm", 2, 1, {{255, 255, 255}, {7, 7, 7}});
+  Scene scene = native(R"("texture": {"file": "t.ppm"}, "radiance": 1)");
+  Surface& surface = scene.surfaces.front();
+  ASSERT_FALSE(surface.texture_points.empty());
+  const std::string plain = content_hash(scene);
+  for (TexturePoint& point : surface.texture_points) point.colour = {0.25F, 0.5F, 1};
+  EXPECT_EQ(content_hash(scene), plain) << "colours that the surface does not show say nothing";
+  surface.has_vertex_colours = true;
+  EXPECT_NE(content_hash(scene), plain);
+}
+
 TEST_F(Textures, CopiesOfAnImageKeepItsMean) {
   std::vector<std::array<int, 3>> pixels;
   for (int i = 0; i < 7 * 5; ++i) pixels.push_back({(i * 37) % 256, (i * 91) % 256, (i * i) % 256});

@@ -207,7 +207,9 @@ TEST(CellSplits, WhatCannotBeIsRefused) {
     return ZoneMesh(base, std::move(groups), std::move(splits));
   };
   EXPECT_EQ(mesh_of({{front}, {1, 3, 0, 0, 0}}).zone_count(), 5U);
-  EXPECT_THROW(mesh_of({{front}, {1, 3, 0, 0}}), std::invalid_argument);          // ends too early
+  EXPECT_THROW(mesh_of({{front}, {1, 3, 0, 0}}), std::invalid_argument);  // ends too early
+  EXPECT_THROW(ZoneMesh(two_triangles(65535, 1), {}, {{front}, {1, 3, 0, 0, 0}}),
+               std::invalid_argument);  // without memory for 65535^2 cells
   EXPECT_THROW(mesh_of({{front}, {1, 3, 0, 0, 0, 0}}), std::invalid_argument);    // more than cells
   EXPECT_THROW(mesh_of({{no_zones}, {1, 3, 0, 0, 0}}), std::invalid_argument);    // no zones there
   EXPECT_THROW(mesh_of({{SideId(99)}, {1, 3, 0, 0, 0}}), std::invalid_argument);  // no such side

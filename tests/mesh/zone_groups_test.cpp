@@ -53,6 +53,11 @@ TEST(ZoneGroups, MembersShareAZoneAndTheOthersKeepTheirs) {
   EXPECT_LT((mesh.zone_normal(sealed) + Vec3::UnitZ()).norm(), 1e-15);
   const Vec3 centre = (0.5 * Vec3(1.0 / 3, 1.0 / 3, 1) + 4.5 * Vec3(1, 1, 3)) / 5;
   EXPECT_LT((mesh.zone_centroid(group) - centre).norm(), 1e-14);
+
+  ZoneMesh cut_out(four_triangles(), two_groups());
+  cut_out.set_solid_shares(std::vector<float>(7, 0.25F));
+  EXPECT_DOUBLE_EQ(cut_out.zone_area(group), 0.25 * 5);
+  EXPECT_LT((cut_out.zone_centroid(group) - centre).norm(), 1e-14) << "holes do not move it";
 }
 
 TEST(ZoneGroups, PointsOfAGroupAreUniformOverItsArea) {

@@ -21,7 +21,7 @@ Camera camera_of_options(const CameraOptions& options, const Scene& scene) {
   const std::string problem = distance_problem(camera.eye, room.centre(), room.size().maxCoeff());
   if (!problem.empty()) throw InputError("--eye", problem, "Move it nearer and narrow --fov.");
   camera.look_at = options.look_at.value();
-  camera.up = options.up.value_or(up_of_format(scene));
+  camera.up = options.up.value_or(up_direction(scene));
   const Vec3 forward = camera.look_at - camera.eye;
   if (!options.up && forward.cross(camera.up).norm() < 1e-6 * forward.norm()) {
     camera.up =

@@ -13,7 +13,7 @@ struct CameraOptions {
   std::string name;               ///< Of a camera, or "all"; empty: not given.
   std::optional<Vec3> eye;        ///< [m] A camera of its own; needs look_at.
   std::optional<Vec3> look_at;    ///< [m]
-  std::optional<Vec3> up;         ///< Unset: up_of_format.
+  std::optional<Vec3> up;         ///< Unset: up_direction.
   std::optional<double> fov_deg;  ///< Full vertical field of view [deg], (0,180); unset: 45.
 };
 

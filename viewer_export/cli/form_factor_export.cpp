@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/model/error.h"
 #include "solver/run/schedule.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/interrupt.h"
@@ -23,7 +24,7 @@ namespace reemit::cli {
 namespace {
 
 std::vector<std::pair<std::string, std::string>> notes_of(const Solution& solution,
-                                                          const FormFactorReport& report,
+                                                          const FormFactorReport& report, std::size_t cells,
                                                           std::uint64_t seed) {
   std::vector<std::pair<std::string, std::string>> notes{
       {"program", fmt::format("reemit {}", kProgramVersion)},
@@ -32,7 +33,8 @@ std::vector<std::pair<std::string, std::string>> notes_of(const Solution& soluti
       {"meaning",
        "factor: share of the power that zone_from sends out uniformly which reaches zone_to directly"},
       {"zones", fmt::format("{}, numbered as in the solution file", report.zones)},
-      {"pairs", fmt::format("{} facing: {} open, {} walled off, {} clear, {} hidden, {} sampled",
+      {"cells", fmt::format("{}, of which zones consist", cells)},
+      {"pairs", fmt::format("of cells, {} facing: {} open, {} walled off, {} clear, {} hidden, {} sampled",
                             report.facing_pairs, report.open_pairs, report.walled_pairs, report.clear_pairs,
                             report.hidden_pairs, report.sampled_pairs)},
       {"row_sums", fmt::format("{} to {}", report.after.lowest, report.after.highest)},
@@ -47,19 +49,26 @@ ExitCode export_form_factors(const FormFactorExport& options) {
   form_factor_format_of(options.output);  // refuses an unknown one before the work
   check_output_file(options.output, options.solution);
   const Solution solution = reemit::load_solution(options.solution);
-  const ZoneMesh cells(solution.mesh.base());  // factors are those of zones of one piece
+  if (!solution.mesh.solid_shares().empty())
+    throw InputError(options.solution.string(),
+                     "the room has cut-outs, and form factors are those of opaque faces",
+                     "Leave their masks out to have them as if they were whole.");
+  const ZoneMesh cells(solution.mesh.base(), {}, solution.mesh.splits());
   const RayTracer rays(cells);
 
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard interrupt;
   Progress progress("form factors", progress_style(options.style.quiet, options.style.verbose));
-  const FormFactors factors = compute_form_factors(
-      cells, rays, {.seed = options.seed, .enforce_closure = true},
-      [&progress](double done) { progress.update(done); }, interrupt.requested());
+  const FormFactors factors =
+      join_cells(compute_form_factors(
+                     cells, rays, {.seed = options.seed, .enforce_closure = true},
+                     [&progress](double done) { progress.update(done); }, interrupt.requested()),
+                 solution.mesh);
   progress.finish();
   const FormFactorReport& report = factors.report();
   write_output([&] {
-    write_form_factors({factors, cells, solution.surface_names, notes_of(solution, report, options.seed)},
+    write_form_factors({factors, solution.mesh, solution.surface_names,
+                        notes_of(solution, report, cells.zone_count(), options.seed)},
                        options.output);
   });
 

@@ -309,7 +309,8 @@ void add_view_options(CLI::App& render, RenderOptions& options) {
   look_at->needs(eye);
   eye->needs(look_at);
   add_parsed_option(render, "--up", options.camera.up, parse_direction, kPointType,
-                    "Which way is up, with --eye (default: 0,0,1 for MGF rooms, else 0,1,0)");
+                    "Which way is up, with --eye (default: 0,0,1 for MGF rooms, else 0,1,0, or the other\n"
+                    "of these where the room's cameras, its sky or its lamps say so)");
   render
       .add_option("--fov", options.camera.fov_deg,
                   "Full vertical field of view [deg], with --eye (default: 45)")

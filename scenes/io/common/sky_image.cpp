@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -34,7 +35,80 @@ struct Pixels {
   std::vector<float> rgb;
 };
 
-Pixels load_pixels(const std::filesystem::path& file) {
+/// Makes latitude-longitude pixels fewer: means over what each has of the old ones, counted by solid angle.
+/// Takes them row by row, so that large images are never in memory as a whole.
+class RowAverager {
+ public:
+  /// Pre: 1 <= kept <= rows; the image has twice as many columns as rows, before and after.
+  RowAverager(int rows, int kept) : rows_(rows), kept_(kept), sum_(row_size(kept), 0.0) {
+    pixels_.rows = kept;
+    pixels_.columns = 2 * kept;
+    pixels_.rgb.reserve(static_cast<std::size_t>(kept) * row_size(kept));
+    for (std::int64_t x = 0; x < 2 * std::int64_t{rows}; ++x) columns_.push_back(divided(x));
+  }
+
+  /// The next row from the top: 3 values for each of 2 * rows columns.
+  void add(std::span<const float> rgb) {
+    if (kept_ == rows_) {
+      pixels_.rgb.insert(pixels_.rgb.end(), rgb.begin(), rgb.end());
+      return;
+    }
+    const Division row = divided(next_);
+    const double weight = std::sin(std::numbers::pi * (static_cast<double>(next_) + 0.5) / rows_);
+    add(rgb, weight * row.share);
+    ++next_;
+    if (!row.ends) return;
+    // Columns of one new pixel add up to this many old ones.
+    const double total = weight_ * rows_ / kept_;
+    for (double& s : sum_) {
+      pixels_.rgb.push_back(static_cast<float>(s / total));
+      s = 0;
+    }
+    weight_ = 0;
+    if (row.share < 1) add(rgb, weight * (1 - row.share));
+  }
+
+  Pixels take() { return std::move(pixels_); }
+
+ private:
+  /// Of an old row or column: the new one in which it begins, how much of it lies there, and whether that one
+  /// ends there. The rest lies in the next.
+  struct Division {
+    std::size_t part;
+    double share;
+    bool ends;
+  };
+  Division divided(std::int64_t i) const {
+    const std::int64_t begin = i * kept_, end = begin + kept_;
+    const std::int64_t part = begin / rows_;
+    const std::int64_t edge = (part + 1) * rows_;
+    return {static_cast<std::size_t>(part), static_cast<double>(std::min(end, edge) - begin) / kept_,
+            end >= edge};
+  }
+  static std::size_t row_size(int rows) { return 6 * static_cast<std::size_t>(rows); }
+
+  void add(std::span<const float> rgb, double weight) {
+    weight_ += weight;
+    for (std::size_t x = 0; x < columns_.size(); ++x) {
+      const auto [part, share, ends] = columns_[x];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double value = weight * static_cast<double>(rgb[3 * x + c]);
+        sum_[3 * part + c] += share * value;
+        if (share < 1) sum_[3 * (part + 1) + c] += (1 - share) * value;
+      }
+    }
+  }
+
+  std::int64_t rows_, kept_;
+  std::int64_t next_ = 0;
+  std::vector<Division> columns_;
+  std::vector<double> sum_;  // of the new row that is being made
+  double weight_ = 0;        // of the parts of old rows in it
+  Pixels pixels_;
+};
+
+/// Reads an image, with at most so many rows kept.
+Pixels load_pixels(const std::filesystem::path& file, int most_rows) {
   check_readable_file(file);
   const std::string name = file.string();
   const auto unreadable = [&](const std::string& reason) {
@@ -43,7 +117,8 @@ Pixels load_pixels(const std::filesystem::path& file) {
   };
   const OpenedImage opened = image_library().open(name);
   if (!opened.reader) throw unreadable(opened.problem);
-  const auto [columns, rows, channels, is_float, rows_together] = opened.reader->layout();
+  const ImageLayout layout = opened.reader->layout();
+  const int rows = layout.height, columns = layout.width, channels = layout.channels;
   if (rows < kLeastRows || columns != 2 * rows || channels < 1)
     throw InputError(
         name, fmt::format("{} x {} pixels are no latitude-longitude image of the sky", columns, rows),
@@ -52,49 +127,28 @@ Pixels load_pixels(const std::filesystem::path& file) {
     throw InputError(
         name, fmt::format("{} x {} pixels of {} values are too many", columns, rows, channels),
         fmt::format("Make it {} x {} or smaller, of red, green and blue.", 2 * kMostRowsRead, kMostRowsRead));
-  if (!is_float)
+  if (!layout.is_float)
     throw InputError(name, "its pixels are whole numbers, which cannot hold the range of a sky",
                      "Give an image of floating-point values: .hdr or .exr.");
-  const int used = channels >= 3 ? 3 : 1;
-  const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
-  std::vector<float> values(count * static_cast<std::size_t>(used));
-  if (!opened.reader->read_image(used, values.data())) throw unreadable(opened.reader->take_message());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] >= 0 && std::isfinite(values[i])) continue;
-    const std::size_t pixel = i / static_cast<std::size_t>(used);
-    throw InputError(name,
-                     fmt::format("pixel ({}, {}) has the value {}", pixel % static_cast<std::size_t>(columns),
-                                 pixel / static_cast<std::size_t>(columns), values[i]),
-                     "Radiance is a finite number of 0 or more: repair the image.");
-  }
-  Pixels pixels{rows, columns, std::move(values)};
-  if (used == 3) return pixels;
-  std::vector<float> grey = std::move(pixels.rgb);
-  pixels.rgb.resize(3 * count);
-  for (std::size_t i = 0; i < pixels.rgb.size(); ++i) pixels.rgb[i] = grey[i / 3];
-  return pixels;
-}
-
-/// Means over squares of so many pixels, each counted by its solid angle.
-Pixels shrunk(const Pixels& pixels, int factor) {
-  Pixels small{pixels.rows / factor, pixels.columns / factor, {}};
-  small.rgb.assign(static_cast<std::size_t>(small.rows) * static_cast<std::size_t>(small.columns) * 3, 0.0F);
-  for (int row = 0; row < small.rows; ++row) {
-    double total = 0;
-    std::vector<double> sum(static_cast<std::size_t>(small.columns) * 3, 0.0);
-    for (int r = row * factor; r < (row + 1) * factor; ++r) {
-      const double weight = std::sin(std::numbers::pi * (r + 0.5) / pixels.rows);
-      total += weight * factor;
-      const float* from =
-          &pixels.rgb[static_cast<std::size_t>(r) * static_cast<std::size_t>(pixels.columns) * 3];
-      for (std::size_t x = 0; x < static_cast<std::size_t>(small.columns * factor); ++x)
-        for (std::size_t c = 0; c < 3; ++c)
-          sum[x / static_cast<std::size_t>(factor) * 3 + c] += weight * static_cast<double>(from[3 * x + c]);
+  const auto width = static_cast<std::size_t>(columns), values = static_cast<std::size_t>(channels);
+  std::vector<float> block(width * values * static_cast<std::size_t>(layout.rows_together));
+  std::vector<float> rgb(3 * width);
+  RowAverager averager(rows, std::min(rows, most_rows));
+  for (int row = 0; row < rows; ++row) {
+    const int in_block = row % layout.rows_together;
+    if (in_block == 0 && !opened.reader->read_rows(row, std::min(row + layout.rows_together, rows),
+                                                   PixelType::kFloat, block.data()))
+      throw unreadable(opened.reader->take_message());
+    const float* from = &block[width * values * static_cast<std::size_t>(in_block)];
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+      rgb[i] = from[i / 3 * values + (channels >= 3 ? i % 3 : 0)];
+      if (!(rgb[i] >= 0 && std::isfinite(rgb[i])))
+        throw InputError(name, fmt::format("pixel ({}, {}) has the value {}", i / 3, row, rgb[i]),
+                         "Radiance is a finite number of 0 or more: repair the image.");
     }
-    std::transform(sum.begin(), sum.end(), small.rgb.begin() + static_cast<std::ptrdiff_t>(sum.size()) * row,
-                   [&](double s) { return static_cast<float>(s / total); });
+    averager.add(rgb);
   }
-  return small;
+  return averager.take();
 }
 
 /// The pixel that stands in a column once the picture has been turned.
@@ -105,9 +159,12 @@ std::size_t turned(std::size_t column, double rotation_deg, std::size_t columns)
 }
 
 Pixels shrunk_to(Pixels pixels, int most_rows) {
-  int factor = 1;
-  while (pixels.rows / factor > most_rows) ++factor;
-  return factor > 1 ? shrunk(pixels, factor) : pixels;
+  if (pixels.rows <= most_rows) return pixels;
+  RowAverager averager(pixels.rows, most_rows);
+  const std::size_t size = 3 * static_cast<std::size_t>(pixels.columns);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(pixels.rows); ++row)
+    averager.add(std::span(pixels.rgb).subspan(row * size, size));
+  return averager.take();
 }
 
 }  // namespace
@@ -142,7 +199,7 @@ std::shared_ptr<const SkyImage> spectral_sky_image(const SkyImage& image, const 
 
 std::shared_ptr<const SkyImage> read_sky_image(const std::filesystem::path& file, double scale,
                                                double rotation_deg, const BandSet& bands) {
-  const Pixels pixels = shrunk_to(load_pixels(file), kMostRowsKept);
+  const Pixels pixels = load_pixels(file, kMostRowsKept);
   auto image = std::make_shared<SkyImage>();
   image->rows = static_cast<std::size_t>(pixels.rows);
   image->columns = static_cast<std::size_t>(pixels.columns);

@@ -15,10 +15,6 @@ constexpr double kMostlyDown = 0.8;
 /// Share of its length that the `up` of a camera has along an axis it names.
 constexpr double kAlongAxis = 0.9;
 
-std::string extension_of(const Scene& scene) {
-  return lower_case_extension(scene.source);
-}
-
 /// Mean of the normals of emitting faces, weighted by power: of unit length if all look the same way.
 Vec3 mean_emission_direction(const Scene& scene) {
   Vec3 sum(0, 0, 0);
@@ -49,13 +45,12 @@ bool all_cameras_say(const Scene& scene, const Vec3& up) {
 
 }  // namespace
 
-Vec3 up_of_format(const Scene& scene) {
-  return extension_of(scene) == ".mgf" ? Vec3::UnitZ() : Vec3::UnitY();
-}
-
 Vec3 up_direction(const Scene& scene) {
-  const std::string extension = extension_of(scene);
-  const Vec3 custom = up_of_format(scene);
+  if (scene.sky)
+    for (const Vec3& axis : {Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
+      if (scene.sky->up.dot(axis) > kAlongAxis) return axis;
+  const std::string extension = lower_case_extension(scene.source);
+  const Vec3 custom = extension == ".mgf" ? Vec3::UnitZ() : Vec3::UnitY();
   const Vec3 other = Vec3::UnitY() + Vec3::UnitZ() - custom;
   if (extension == ".json" || extension == ".obj") {
     if (all_cameras_say(scene, custom)) return custom;

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <optional>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -62,7 +64,9 @@ class DracoPrimitives {
  public:
   explicit DracoPrimitives(GltfModel& gltf) : gltf_(gltf) {}
 
-  void decode(const JsonCursor& at, tinygltf::Primitive& primitive) {
+  /// `pointer`: that of the primitive in its file.
+  void decode(const JsonCursor& at, const std::string& pointer, tinygltf::Primitive& primitive) {
+    view_pointer_ = fmt::format("{}/extensions/{}/bufferView", pointer, kDracoCompression);
     const JsonCursor extension = at.at("extensions").at(kDracoCompression);
     const auto listed = extension.at("attributes").members();
     const auto indices = at.find("indices");
@@ -119,7 +123,7 @@ class DracoPrimitives {
   const draco::Mesh& mesh(const Source& source, const JsonCursor& at) {
     std::unique_ptr<draco::Mesh>& known = meshes_[source];
     if (!known) {
-      const auto [bytes, size] = GltfAccessors(gltf_).view_bytes(source.view, pointer_of(at));
+      const auto [bytes, size] = GltfAccessors(gltf_).view_bytes(source.view, view_pointer_);
       known = decode_draco_mesh(bytes, size, source.faces, at);
     }
     return *known;
@@ -189,19 +193,15 @@ class DracoPrimitives {
 
   void take_memory(double bytes, const JsonCursor& at) {
     total_ += bytes;
-    check_memory(at.where() + ": the decoded geometry", total_, available_memory());
-  }
-
-  /// Without the file, as GltfAccessors takes it.
-  static std::string pointer_of(const JsonCursor& at) {
-    const std::string where = at.where();
-    return where.substr(where.find('#') + 1);
+    check_memory([&] { return at.where() + ": the decoded geometry"; }, total_, available_);
   }
 
   GltfModel& gltf_;
   std::map<Source, std::unique_ptr<draco::Mesh>> meshes_;
   std::map<std::tuple<Source, int, int>, int> attributes_;  ///< Accessor by source, id and promised accessor.
   std::map<Source, int> indices_;
+  std::string view_pointer_;  ///< Of the data of the primitive that is being decoded, for messages.
+  const std::optional<std::uint64_t> available_ = available_memory();
   double total_ = 0;  ///< Decoded so far [bytes].
 };
 
@@ -215,7 +215,8 @@ void decode_draco_primitives(const nlohmann::json& document, GltfModel& gltf) {
     std::vector<tinygltf::Primitive>& all = gltf.model.meshes[m].primitives;
     for (std::size_t p = 0; p < all.size(); ++p)
       if (const auto extensions = listed[p].find("extensions"))
-        if (extensions->find(kDracoCompression)) primitives.decode(listed[p], all[p]);
+        if (extensions->find(kDracoCompression))
+          primitives.decode(listed[p], fmt::format("/meshes/{}/primitives/{}", m, p), all[p]);
   }
 }
 

@@ -48,7 +48,8 @@ std::string advice_for(const std::string& extension, const std::string& file) {
   if (extension != "KHR_meshopt_compression") return "Export without this extension.";
   return fmt::format(
       "The geometry is compressed in a way that is newer than EXT_meshopt_compression; decode it with: "
-      "gltf-transform copy '{}' decoded.glb (npm install -g @gltf-transform/cli)",
+      "gltf-transform copy '{}' decoded.glb (npm install -g @gltf-transform/cli); it takes out who wrote the "
+      "file: if that was Blender, see --emissive-units and --gltf-light-efficacy",
       file);
 }
 

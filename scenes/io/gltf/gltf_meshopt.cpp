@@ -1,6 +1,7 @@
 #include "scenes/io/gltf/gltf_meshopt.h"
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,7 @@ std::vector<unsigned char> decode(const CompressedView& view, const JsonCursor& 
 
 void decode_meshopt_views(const nlohmann::json& document, GltfModel& gltf) {
   const auto views = JsonCursor(document, gltf.file).find("bufferViews");
+  const std::optional<std::uint64_t> available = available_memory();
   double total = 0;  // [bytes]
   for (std::size_t i = 0; i < gltf.model.bufferViews.size(); ++i) {
     const auto extensions = (*views)[i].find("extensions");
@@ -117,7 +119,7 @@ void decode_meshopt_views(const nlohmann::json& document, GltfModel& gltf) {
     if (!extension) continue;
     const CompressedView view = read_view(*extension, gltf);
     total += static_cast<double>(view.size());
-    check_memory(extension->where() + ": the decoded geometry", total, available_memory());
+    check_memory([&] { return extension->where() + ": the decoded geometry"; }, total, available);
     tinygltf::Buffer decoded;
     decoded.data = decode(view, *extension);
     tinygltf::BufferView& shown = gltf.model.bufferViews[i];

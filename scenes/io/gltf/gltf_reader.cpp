@@ -84,6 +84,13 @@ class NodeReader {
   }
 
  private:
+  /// How often a name was given; instances of a collection bring the names of its nodes again.
+  using NameUses = std::map<std::string, int>;
+  static std::string own_name(const std::string& name, NameUses& uses) {
+    const int count = ++uses[name];
+    return count == 1 ? name : fmt::format("{} #{}", name, count);
+  }
+
   [[noreturn]] void fail(const std::string& problem, const std::string& advice) const {
     fail_at(fmt::format("/nodes/{}: node \"{}\"", node_, gltf_.model.nodes[node_].name), problem, advice);
   }
@@ -110,13 +117,14 @@ class NodeReader {
   void read_mesh(const GltfPlacedNode& placed, int index) {
     const std::vector<GltfPrimitive>& primitives = mesh(index);
     const std::vector<Eigen::Affine3d> instances = gltf_instances(gltf_, accessors_, placed.node);
+    const std::string mesh_name = own_name(name_, mesh_names_);
     for (std::size_t i = 0; i < instances.size(); ++i) {
       const Eigen::Affine3d to_world = placed.to_world * instances[i];
       if (to_world.linear().determinant() == 0 || !to_world.matrix().allFinite()) {
         ++flattened_;
         continue;
       }
-      const std::string name = instances.size() > 1 ? fmt::format("{}[{}]", name_, i) : name_;
+      const std::string name = instances.size() > 1 ? fmt::format("{}[{}]", mesh_name, i) : mesh_name;
       for (std::size_t k = 0; k < primitives.size(); ++k) {
         append(primitives[k], to_world, primitives.size() > 1 ? fmt::format("{}/{}", name, k) : name);
       }
@@ -185,7 +193,7 @@ class NodeReader {
       fail("its light does not exist", "Export the file anew.");
     }
     const tinygltf::Light& source = gltf_.model.lights[static_cast<std::size_t>(index)];
-    const std::string name = source.name.empty() ? name_ : source.name;
+    const std::string name = own_name(source.name.empty() ? name_ : source.name, light_names_);
     std::vector<double> colour = source.color.empty() ? std::vector<double>{1, 1, 1} : source.color;
     const bool valid =
         colour.size() == 3 && source.intensity >= 0 && std::isfinite(source.intensity) &&
@@ -246,6 +254,7 @@ class NodeReader {
   std::size_t measured_ = 0;
   std::size_t node_ = 0;
   std::string name_;
+  NameUses mesh_names_, light_names_;
 };
 
 void state_conversions(const GltfUnits& units, Scene& scene) {
@@ -253,6 +262,14 @@ void state_conversions(const GltfUnits& units, Scene& scene) {
                                  [](const Material& material) { return material.emits(); });
   if (emits) scene.notes.push_back("emissive meshes: values are taken " + units.emissive_assumption);
   if (!scene.lights.empty()) scene.notes.push_back("lamps: strengths are taken " + units.lamp_assumption);
+  std::string options;
+  if (emits && units.emission_open) options += " --emissive-units W/sr/m2";
+  if (!scene.lights.empty() && units.lamps_open) options += " --gltf-light-efficacy 683";
+  if (!options.empty())
+    scene.warnings.push_back(
+        fmt::format("{} rewrote the file and did not keep the name of the program it comes from, whose units "
+                    "may be others; if that was Blender (3.4 or later), give{}",
+                    units.rewritten_by, options));
 }
 
 }  // namespace

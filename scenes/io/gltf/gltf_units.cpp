@@ -27,6 +27,14 @@ std::optional<std::pair<int, int>> blender_version(std::string_view generator) {
   return version;
 }
 
+/// The name of a program that compresses or rearranges files of others, and keeps their numbers but not the
+/// name of who made them; empty for others.
+std::string rewriter(std::string_view generator) {
+  for (const char* name : {"glTF-Transform", "gltfpack", "gltf-pipeline", "meshoptimizer"})
+    if (generator.find(name) != std::string_view::npos) return name;
+  return "";
+}
+
 /// What Blender's exporter multiplies watts by, from this version on, in its lighting mode "Standard".
 constexpr double kBlenderEfficacy = 683;
 constexpr std::pair kFirstWithEfficacy{3, 4};
@@ -45,6 +53,10 @@ GltfUnits gltf_units(const std::string& generator, const ReadOptions& options) {
   const auto blender = blender_version(generator);
   const std::string by_blender = fmt::format("the file was written by Blender (\"{}\")", generator);
   GltfUnits units;
+  units.rewritten_by = rewriter(generator);
+  units.lamps_open = !units.rewritten_by.empty() && !options.gltf_light_efficacy;
+  units.emission_open =
+      !units.rewritten_by.empty() && options.gltf_emissive_units == EmissiveUnits::kByGenerator;
   units.light_efficacy = kGltfEfficacy;
   if (options.gltf_light_efficacy) {
     units.light_efficacy = *options.gltf_light_efficacy;

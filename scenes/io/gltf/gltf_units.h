@@ -14,6 +14,9 @@ struct GltfUnits {
   double emissive_efficacy = 0;  ///< Of emissive meshes [lm/W]; 0: their values are W/(sr m2).
   std::string lamp_assumption;   ///< In words, for the notes of the room.
   std::string emissive_assumption;
+  /// The program that rewrote the file and took the name of the exporter out, if that leaves units open.
+  std::string rewritten_by;
+  bool lamps_open = false, emission_open = false;  ///< What it leaves open.
 
   /// Factor from the strength of a point or spot light to W/sr.
   double watts_per_sr() const;

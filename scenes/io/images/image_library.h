@@ -24,8 +24,6 @@ class ImageReader {
   /// Rows [begin, end) from the top, all channels of a pixel together: one row, or those of a row of tiles,
   /// which begins at a multiple of rows_together. False if the file ends early or is damaged.
   virtual bool read_rows(int begin, int end, PixelType type, void* values) = 0;
-  /// The first `channels` of the whole image. False as above.
-  virtual bool read_image(int channels, float* values) = 0;
   /// What the decoder has said since it was last asked; it may tell of what is harmless.
   virtual std::string take_message() = 0;
 };

@@ -13,6 +13,7 @@
 #include "scenes/io/common/text_file.h"
 #include "scenes/io/common/text_parse.h"
 #include "scenes/io/obj/blender_mtl.h"
+#include "scenes/io/obj/find_named_file.h"
 #include "scenes/io/obj/obj_light_shares.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
@@ -145,9 +146,14 @@ class MapReader {
   Texture read(const std::string& name, const tinyobj::texture_option_t& options, TextureEncoding encoding,
                const std::string& instead) {
     if (name.empty()) return {};
-    std::string relative = name;
-    std::replace(relative.begin(), relative.end(), '\\', '/');
-    TextureRead read = images_.from_file(folder_ / relative, encoding);
+    const fs::path found = find_named_file(folder_, name);
+    std::string as_named = name;
+    std::replace(as_named.begin(), as_named.end(), '\\', '/');
+    const fs::path named = folder_ / as_named;
+    TextureRead read = images_.from_file(found.empty() ? named : found, encoding);
+    if (read.problem.empty() && !found.empty() && found != named)
+      tell_.warnings.push_back(fmt::format("{}: there is no texture '{}'; '{}' is taken.", where_,
+                                           named.string(), found.string()));
     if (!read.problem.empty()) {
       ++tell_.refused["textures"];
       tell_.warnings.push_back(
@@ -201,7 +207,8 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, TextureImag
   MapReader maps(images, folder, where, tell);
   const Spectrum kd = spectrum_of(m.diffuse);
   Texture colour = maps.read(m.diffuse_texname, m.diffuse_texopt, TextureEncoding::kSrgb,
-                             fmt::format("Kd {:.3g} {:.3g} {:.3g}", kd[0], kd[1], kd[2]));
+                             fmt::format("Kd {:.3g} {:.3g} {:.3g}{}", kd[0], kd[1], kd[2],
+                                         (kd >= 1).any() ? ", which absorbs nothing," : ""));
   read_opacity_map(m, maps, material);
   const ObjLightShares shares = obj_light_shares(
       {colour ? Spectrum(Spectrum::Ones(3)) : kd, spectrum_of(m.specular), spectrum_of(m.transmittance),
@@ -248,24 +255,10 @@ void make_metal(double roughness, NonDiffusePart& part) {
   part.angle_law = AngleLaw::kSchlick;
 }
 
-// The file as it is named; else one of that name beside the room, whatever its case: paths of another
-// computer and file systems that ignore case leave both. Empty if there is none.
-fs::path find_library(const fs::path& folder, const std::string& name) {
-  std::error_code ignored;
-  if (fs::is_regular_file(folder / name, ignored)) return folder / name;
-  const std::string wanted = lower_case(fs::path(name).filename().string());
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored))
-    if (lower_case(entry.path().filename().string()) == wanted)
-      found.push_back(folder / entry.path().filename());
-  std::sort(found.begin(), found.end());  // folders are listed in any order
-  return found.empty() ? fs::path() : found.front();
-}
-
 }  // namespace
 
 void ObjMaterials::read(const fs::path& folder, const std::string& name, const std::string& where) {
-  const fs::path file = find_library(folder, name);
+  const fs::path file = find_named_file(folder, name);
   if (file.empty()) {
     ++refused["material_files"];
     warnings_.push_back(fmt::format("{}: there is no material file '{}'; its materials are taken as grey.",

@@ -142,6 +142,24 @@ TEST(GltfReader, MeshesAreInstanced) {
   EXPECT_EQ(scene.surfaces[3].positions[0].z(), 3);
 }
 
+TEST(GltfReader, NamesThatComeAgainAreNumbered) {
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"name", "bulb"}}};
+  for (int i = 1; i <= 2; ++i) {
+    gltf.node({{"name", "square"}, {"mesh", 0}, {"translation", {0, 0, i}}});
+    gltf.node({{"name", "lamp"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  }
+  const Scene scene = read_gltf(gltf);
+  ASSERT_EQ(scene.surfaces.size(), 3u);
+  EXPECT_EQ(scene.surfaces[0].name, "square");
+  EXPECT_EQ(scene.surfaces[1].name, "square #2");
+  EXPECT_EQ(scene.surfaces[2].name, "square #3");
+  ASSERT_EQ(scene.lights.size(), 2u);
+  EXPECT_EQ(name_of(scene.lights[0]), "bulb");
+  EXPECT_EQ(name_of(scene.lights[1]), "bulb #2");
+}
+
 TEST(GltfReader, ReadsTheDefaultScene) {
   GltfBuilder gltf;
   gltf.square();

@@ -74,6 +74,22 @@ TEST(GltfUnits, OtherProgramsAreTakenAtTheSpecification) {
   }
 }
 
+TEST(GltfUnits, RewrittenFilesSayThatTheirUnitsAreOpen) {
+  const auto warned = Contains(AllOf(HasSubstr("--emissive-units"), HasSubstr("--gltf-light-efficacy")));
+  for (const char* generator : {"glTF-Transform v4.5.1", "gltfpack 0.21"}) {
+    const Scene scene = read_gltf(exported(generator, 100, 5, 7));
+    expect_watts(scene, 100 * 683 / 179.0, 5 * 683 / 179.0, 7 / 179.0);
+    EXPECT_THAT(scene.warnings, warned) << generator;
+  }
+  ReadOptions options;
+  options.gltf_light_efficacy = 683;
+  options.gltf_emissive_units = EmissiveUnits::kWatt;
+  const Scene settled = read_gltf(exported("glTF-Transform v4.5.1", 100, 5, 7), options);
+  expect_watts(settled, 100, 5, 7);
+  EXPECT_THAT(settled.warnings, testing::Not(Contains(HasSubstr("rewrote"))));
+  EXPECT_THAT(read_gltf(exported("THREE.GLTFExporter", 100, 5, 7)).warnings, testing::Not(warned));
+}
+
 TEST(GltfUnits, OptionsGoFirst) {
   ReadOptions options;
   options.gltf_light_efficacy = 100;

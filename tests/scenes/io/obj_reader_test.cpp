@@ -282,6 +282,28 @@ TEST_F(ObjReader, TexturesAreAveragedInLinearLight) {
   EXPECT_EQ(scene.materials[0].textures.reflectance.image->width, 2);
 }
 
+TEST_F(ObjReader, TexturesAreFoundAsMaterialFilesAre) {
+  std::filesystem::create_directory(folder_ / "Maps");
+  write_texture("t.ppm", {{255, 255, 255}});
+  write_texture("Maps/in.ppm", {{255, 255, 255}});
+  const auto read_map = [&](const std::string& name) {
+    return read_with("newmtl wall\nKd 0.1 0.2 0.3\nmap_Kd " + name + "\n");
+  };
+  for (const char* name : {"C:\\Users\\Bob\\Desktop\\t.ppm", "/home/bob/t.ppm", "textures/t.ppm", "T.PPM",
+                           "\"t.ppm\"", "maps\\IN.ppm", "maps/in.PPM"}) {
+    const Scene scene = read_map(name);
+    EXPECT_TRUE(scene.materials.at(0).textures.reflectance) << name;
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("is taken"))) << name;
+  }
+  for (const char* name : {"t.ppm", "./t.ppm", "Maps\\in.ppm"}) {
+    const Scene scene = read_map(name);
+    EXPECT_TRUE(scene.materials.at(0).textures.reflectance) << name;
+    EXPECT_THAT(scene.warnings, IsEmpty()) << name;
+  }
+  const Scene white = read_with("newmtl wall\nKd 1 1 1\nmap_Kd none.ppm\n");
+  EXPECT_THAT(white.warnings, ElementsAre(HasSubstr("which absorbs nothing")));
+}
+
 TEST_F(ObjReader, MissingOrBrokenTexturesLeaveKd) {
   folder_.write("broken.png", "this is no image");
   for (const char* name : {"nothing.png", "broken.png", "sub\\nothing.png"}) {

@@ -171,6 +171,32 @@ TEST(Sky, images_keep_their_colours_in_spectral_bands) {
               lux(large, horizontal_sky_irradiance(*large.sky, large.bands)), 1e-4 * 179 * 20);
 }
 
+// 255 rows become 204, so each of these has parts of two: no row, no column and no angle may be lost.
+TEST(Sky, images_whose_sides_do_not_divide_keep_their_light) {
+  const TempFolder folder;
+  constexpr int kRows = 255;
+  std::vector<float> rgb = evening(kRows);
+  constexpr std::size_t kLast = 3 * (2 * kRows * (kRows / 4) + 2 * kRows - 1);
+  rgb[kLast] = 1000;  // a sun in the last column
+  write_image(folder, rgb, 2 * kRows, kRows);
+  folder.write("room.json", room_under(R"({"type": "image", "file": "sky.exr", "up": "z"})"));
+  const Scene large = read_scene(folder / "room.json");
+  ReadOptions options;
+  options.bands = {380, 780, 0.5};
+  const Scene small = read_scene(folder / "room.json", options);
+  const std::size_t rows = small.sky->image->rows;
+  ASSERT_EQ(rows, 204U);
+  const Eigen::Array3d before = large.bands.to_rgb(horizontal_sky_irradiance(*large.sky, large.bands));
+  const Eigen::Array3d after = small.bands.to_rgb(horizontal_sky_irradiance(*small.sky, small.bands));
+  EXPECT_TRUE(after.isApprox(before, 2e-4)) << before.transpose() << ", " << after.transpose();
+  // The sun stands in the last column still.
+  const std::size_t bands = small.bands.count(), columns = small.sky->image->columns;
+  const auto brightest =
+      std::max_element(small.sky->image->radiance.begin(), small.sky->image->radiance.end());
+  const auto place = static_cast<std::size_t>(brightest - small.sky->image->radiance.begin()) / bands;
+  EXPECT_EQ(place % columns, columns - 1);
+}
+
 TEST(Sky, absurd_images_are_refused) {
   const TempFolder folder;
   folder.write("room.json", room_under(R"({"type": "image", "file": "sky.exr"})"));

@@ -190,6 +190,67 @@ TEST(FormFactors, SameBitsOnAnyNumberOfThreads) {
     }
 }
 
+TEST(FormFactors, JoinedCellsGiveThoseOfGroups) {
+  // All walls of a unit cube but the last are one zone, which sees itself.
+  BaseMesh base = cube(2).mesh().mesh.base();
+  ZoneGroups groups{.of_side = std::vector<std::uint32_t>(2 * base.triangles.size(), ZoneGroups::kOwn),
+                    .count = 1};
+  for (std::size_t t = 0; t < base.triangles.size(); ++t) {
+    BaseTriangle& triangle = base.triangles[t];
+    if (triangle.surface == SurfaceId(5)) continue;
+    triangle.surface = SurfaceId(0);
+    groups.of_side[side_of(TriangleId(t), true).index()] = 0;
+  }
+  const ZoneMesh cells(base);
+  const RayTracer rays(cells);
+  const std::atomic<bool> interrupt = false;
+  const FormFactors of_cells = compute_form_factors(cells, rays, {.seed = 11}, nullptr, interrupt);
+  const ZoneMesh zones(base, groups);
+  const FormFactors f = join_cells(of_cells, zones);
+  ASSERT_EQ(f.zones(), zones.zone_count());
+  const std::size_t group = f.zones() - 1;
+  EXPECT_NEAR(f.zone_area(group), 5, 1e-12);
+  EXPECT_NEAR(f.factor(group, group), 4.0 / 5, 1e-11);
+  for (std::size_t z = 0; z < group; ++z) {
+    EXPECT_NEAR(f.factor(z, group), 1, 1e-11);
+    EXPECT_NEAR(f.factor(group, z), f.zone_area(z) / 5, 1e-11);
+  }
+  EXPECT_NEAR(f.report().after.lowest, 1, 1e-11);
+  EXPECT_NEAR(f.report().after.highest, 1, 1e-11);
+  // Without groups they stay what they are, with their errors.
+  const FormFactors block = factors_of(box_with_block(2));
+  const FormFactors same = join_cells(block, box_with_block(2).mesh().mesh);
+  for (std::size_t i = 0; i < block.zones(); ++i)
+    for (std::size_t j = 0; j < block.zones(); ++j) {
+      EXPECT_EQ(same.exchange_area(i, j), block.exchange_area(i, j));
+      EXPECT_NEAR(same.factor_error(i, j), block.factor_error(i, j), 1e-6 * block.factor_error(i, j));
+    }
+  EXPECT_THROW(join_cells(block, cells), std::invalid_argument);
+}
+
+TEST(FormFactors, ErrorsOfJoinedCellsAddUpInSquares) {
+  const MeshResult meshed = box_with_block(3).mesh();
+  const FormFactors of_cells = factors_of(box_with_block(3));
+  // The first wall and the block are zones.
+  ZoneGroups groups{.of_side = std::vector<std::uint32_t>(meshed.mesh.side_count(), ZoneGroups::kOwn),
+                    .count = 2};
+  const SurfaceId wall(0);
+  const SurfaceId block = meshed.mesh.zone_surface(ZoneId(meshed.mesh.zone_count() - 1));
+  for (std::size_t t = 0; t < meshed.mesh.triangle_count(); ++t) {
+    const SideId side = side_of(TriangleId(t), true);
+    if (meshed.mesh.surface(side) == wall) groups.of_side[side.index()] = 0;
+    if (meshed.mesh.surface(side) == block) groups.of_side[side.index()] = 1;
+  }
+  const ZoneMesh zones(meshed.mesh.base(), groups);
+  const FormFactors f = join_cells(of_cells, zones);
+  const std::size_t first = f.zones() - 2;
+  double error = 0;
+  const double factor = surface_factor(of_cells, meshed.mesh, wall.index(), block.index(), error);
+  EXPECT_NEAR(f.factor(first, first + 1), factor, 1e-12);
+  EXPECT_GT(error, 0);
+  EXPECT_NEAR(f.factor_error(first, first + 1), error, 1e-5 * error);
+}
+
 TEST(FormFactors, TooManyZonesAreRefusedWithAdvice) {
   EXPECT_THAT(test::refusal_of([] { factors_of(cube(40)); }), testing::HasSubstr("--zone-area"))
       << "19200 zones";

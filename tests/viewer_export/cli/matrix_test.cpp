@@ -11,6 +11,7 @@
 #include "tests/support/csv_file.h"
 #include "tests/support/run_program.h"
 #include "tests/support/small_rooms.h"
+#include "tests/support/solved_room.h"
 #include "tests/support/temp_folder.h"
 
 namespace reemit::test {
@@ -117,6 +118,19 @@ TEST(Matrix, FormFactorsAreExportedFromAnySolution) {
       run_reemit({"export", "--form-factors", solution, "-o", (folder / "factors.h5").string()});
   EXPECT_EQ(hdf5.exit_code, 0) << hdf5.err;
   EXPECT_EQ(read_bytes(folder / "factors.h5").substr(1, 3), "HDF");
+}
+
+// Zones that fit the light are cut unevenly, and sides that no light reaches share one.
+TEST(Matrix, FormFactorsAreThoseOfTheZonesOfTheSolution) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const std::string solution = solve_small_room(folder, "room.h5", {"--zones", "200"}).string();
+  const Json info = Json::parse(run_reemit({"info", solution, "--json"}).out);
+  const ProgramRun run =
+      run_reemit({"export", "--form-factors", solution, "-o", (folder / "factors.csv").string(), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["zones"], info["zones"]);
 }
 
 TEST(Matrix, UnknownFormFactorFormatsAndVertexOptionsAreRefused) {

@@ -36,9 +36,6 @@ class OpenImage final : public ImageReader {
     return input_->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, spec.z,
                               spec.z + 1, 0, spec.nchannels, type_of(type), values);
   }
-  bool read_image(int channels, float* values) override {
-    return input_->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values);
-  }
   std::string take_message() override { return input_->geterror(); }
 
  private:
