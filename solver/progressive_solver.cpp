@@ -389,13 +389,20 @@ const Room& ProgressiveSolver::room() const {
 std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution) {
   if (solution.record.stopped == StopReason::kNoLuminaire) return StopReason::kNoLuminaire;
   if (solution.sums.batches == 0 || solution.record.cut_off) return std::nullopt;
-  GatheredZones gathered;
-  gathered.keep(solution.sums, solution.gathered.zones);
-  solution.gathered.restore(solution.sums);
   const RoomTextures textures(scene, solution.mesh);
   const SurfaceModel surfaces(scene, solution.mesh, textures, 1);
-  const double bound = zone_error(surfaces, solution.mesh, solution.sums).bound;
-  gathered.restore(solution.sums);
+  double bound = 0;
+  {
+    // Puts back what was gathered, also if memory runs out meanwhile.
+    struct PutBack {
+      GatheredZones gathered;
+      ZoneSums& sums;
+      ~PutBack() { gathered.restore(sums); }
+    } put_back{{}, solution.sums};
+    put_back.gathered.keep(solution.sums, solution.gathered.zones);
+    solution.gathered.restore(solution.sums);
+    bound = zone_error(surfaces, solution.mesh, solution.sums).bound;
+  }
 
   const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);
   RunState state;

@@ -39,10 +39,12 @@ const Reader& reader_for(const std::filesystem::path& file) {
     if (extension == reader.extension) return reader;
   std::string known;
   for (const Reader& reader : kReaders) known += fmt::format(" {}", reader.extension);
-  throw InputError(file.string(),
-                   extension.empty() ? "the file name has no extension, so its format is not known"
-                                     : fmt::format("'{}' is not a known room format", extension),
-                   "Known extensions:" + known);
+  throw InputError(
+      file.string(),
+      extension.empty() ? "the file name has no extension, so its format is not known"
+                        : fmt::format("'{}' is not a known room format", extension),
+      "Known extensions:" + known +
+          (extension == ".ply" ? "; a PLY mesh is an object of a JSON room, by its \"file\"" : ""));
 }
 
 /// Whether `other` may be one room with `first`.

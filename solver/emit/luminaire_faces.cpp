@@ -52,6 +52,11 @@ Vec3 front_of_piece(const ZoneMesh& mesh, TriangleId t, const Pieces& pieces) {
   return pieces.vector_area.norm() > 0 ? Vec3(pieces.vector_area.normalized()) : mesh.triangle_normal(t);
 }
 
+/// Whether a face does not emit alike everywhere: by a texture, or because not all of it is there.
+bool varies(const SurfaceModel& surfaces, const ZoneMesh& mesh, TriangleId t) {
+  return surfaces.emission_varies(t) || surfaces.textures().is_cut_out(mesh.triangle(t).surface);
+}
+
 }  // namespace
 
 std::vector<LuminaireFace> luminaire_faces(const Room& room) {
@@ -60,7 +65,7 @@ std::vector<LuminaireFace> luminaire_faces(const Room& room) {
   for (std::size_t i = 0; i < mesh.flat_count(); ++i) {
     const TriangleId t(i);
     const BaseTriangle& triangle = mesh.triangle(t);
-    if (!room.surfaces().emits(triangle.surface) || room.surfaces().emission_varies(t)) continue;
+    if (!room.surfaces().emits(triangle.surface) || varies(room.surfaces(), mesh, t)) continue;
     if (!(mesh.triangle_area(t) > 0)) continue;
     Pieces& pieces = by_face[{triangle.surface, triangle.face}];
     pieces.triangles.push_back(t);
@@ -98,8 +103,9 @@ std::vector<LuminaireCell> luminaire_cells(const Room& room) {
   const ZoneCells cells(mesh);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const SideCell cell = cells.cell(i);
-    if (!surfaces.emission_varies(cell.triangle) || !surfaces.emits(cell.triangle, cell.front)) continue;
-    if (!(mesh.triangle_area(cell.triangle) > 0)) continue;
+    const bool is_flat = !mesh.triangle(cell.triangle).is_curved();
+    if (!is_flat || !varies(surfaces, mesh, cell.triangle)) continue;
+    if (!surfaces.emits(cell.triangle, cell.front) || !(mesh.triangle_area(cell.triangle) > 0)) continue;
     const SurfaceId surface = mesh.triangle(cell.triangle).surface;
     const Spectrum exitance = surfaces.exitance(cells.zone(i), surface);
     if (!(exitance > 0).any()) continue;
@@ -107,7 +113,8 @@ std::vector<LuminaireCell> luminaire_cells(const Room& room) {
     luminaire.corners = corner_points(mesh, cell);
     luminaire.triangle = cell.triangle;
     luminaire.front = cell.front;
-    luminaire.radiance = (surfaces.emission_exponent(surface) + 2) / (2 * std::numbers::pi) * exitance;
+    luminaire.radiance = mesh.solid_share(cells.zone(i)) * (surfaces.emission_exponent(surface) + 2) /
+                         (2 * std::numbers::pi) * exitance;
   }
   return result;
 }

@@ -79,8 +79,15 @@ void LuminaireTable::radiance_at(std::size_t entry, const Vec3f& target,
   const auto u = static_cast<float>(at.u);
   const auto v = static_cast<float>(at.v);
   const RoomTextures& textures = surfaces_->textures();
-  textures.radiance(t, u, v, 0, radiance);
-  if (!textures.is_cut_out(surfaces_->surface(t, true))) return;
+  const SurfaceId surface = surfaces_->surface(t, true);
+  if (surfaces_->emission_varies(t)) {
+    textures.radiance(t, u, v, 0, radiance);
+  } else {
+    radiance.clear();
+    for (const double even : surfaces_->normal_radiance(surface))
+      radiance.push_back(static_cast<float>(even));
+  }
+  if (!textures.is_cut_out(surface)) return;
   const float opacity = textures.opacity(t, u, v);
   for (float& r : radiance) r *= opacity;
 }

@@ -33,8 +33,9 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
   const DirectLight direct(room);
   const HemisphereGather gather(field, direct, GatherSettings{.continue_uneven = false, .seed = seed});
   const CounterRng rng(seed, RngPurpose::kDiscretisation);
+  constexpr std::uint32_t kOfProbes = kFieldHalves;  // batches of numbers that no half of the field uses
   const std::vector<ZoneProbe> probes =
-      choose_probes(solution, probe_count, static_cast<double>(rng.uniform4(0, 1, 0)[0]));
+      choose_probes(solution, probe_count, static_cast<double>(rng.uniform4(0, kOfProbes + 1, 0)[0]));
 
   // By probe and band: product of the two differences, product of the two zone values.
   std::vector<double> differences(probes.size() * bands);
@@ -48,7 +49,7 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
     GatherBatch batch(gather);
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i) {
-      const std::array<float, 4> u = rng.uniform4(i, 0, 0);
+      const std::array<float, 4> u = rng.uniform4(i, kOfProbes, 0);
       const SurfacePoint x = point_in_zone(room, probes[i].zone, {u[0], u[1]});
       for (std::size_t half = 0; half < kFieldHalves; ++half, next += 2 * bands) {
         const PointSampler sampler(seed, RngPurpose::kDiscretisation, i, static_cast<int>(half),

@@ -7,10 +7,11 @@ namespace reemit {
 struct PathKey {
   std::uint64_t index = 0;  ///< Pixel, vertex or zone.
   std::uint32_t batch = 0;  ///< Pass or replicate.
-  std::uint32_t path = 0;   ///< Number of the path within the batch, < 2^20.
+  std::uint32_t path = 0;   ///< Number of the path within the batch, < kMostPaths.
   std::uint32_t part = 0;   ///< Part of the zone solution that is read, < RadianceField::parts().
 
   static constexpr std::uint32_t kStepsPerPath = 4096;
+  static constexpr std::uint32_t kMostPaths = 1U << 20;
   std::uint32_t step(std::uint32_t number) const { return path * kStepsPerPath + number; }
 };
 

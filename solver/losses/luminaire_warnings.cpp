@@ -30,6 +30,12 @@ std::string warning_of(const OpeningLoss& loss, const Scene& scene) {
   if (!crosses) return lost + fmt::format("it ends on the back of {}; turn or thicken the surface", surface);
   if (!std::holds_alternative<PhotometricLight>(light))
     return lost + fmt::format("it lies in {}; move it off", surface);
+  const Vec3 size = std::get<PhotometricLight>(light).opening.size();
+  if (size.maxCoeff() > bounds(scene).size().maxCoeff())
+    return lost +
+           fmt::format(
+               "its opening of {:.3g} x {:.3g} m is larger than the room; is the unit of its file right?",
+               size.x(), size.y());
   return lost + fmt::format(
                     "its opening lies across {}; in a native room, \"mount\": \"ceiling\" or \"wall\" keeps "
                     "it on one side",

@@ -13,10 +13,12 @@ namespace {
 /// Memory that the accounts of all batches on their way may take [bytes].
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
-/// Of one batch: its books, and what zones have caught and have yet to send on in a sweep.
-std::size_t bytes_of_batch(const PacketRoom& transport) {
-  constexpr std::size_t kAccountsPerValue = 4;
-  return kAccountsPerValue * transport.zones() * transport.channels().count() * sizeof(std::int64_t);
+/// Of one batch: its books, and what zones have caught, by thread, and have yet to send on in a sweep.
+std::size_t bytes_of_batch(const PacketRoom& transport, int threads) {
+  constexpr std::size_t kAccountsPerValue = 3;
+  const std::size_t values = transport.zones() * transport.channels().count();
+  return (kAccountsPerValue + account_copies(values, static_cast<std::size_t>(threads))) * values *
+         sizeof(std::int64_t);
 }
 
 }  // namespace
@@ -27,8 +29,8 @@ BatchesAhead::BatchesAhead(const PacketRoom& transport, const PacketSources& emi
   // Threads inside a batch wait for each other at every sweep; batches are run in vain when the run ends, and
   // take memory. Between the two lies the root.
   const int together = std::max(1, static_cast<int>(std::sqrt(threads)));
-  const auto affordable = static_cast<int>(
-      std::clamp<std::size_t>(kMostBytes / std::max<std::size_t>(1, bytes_of_batch(transport)), 1, 1024));
+  const auto affordable = static_cast<int>(std::clamp<std::size_t>(
+      kMostBytes / std::max<std::size_t>(1, bytes_of_batch(transport, together)), 1, 1024));
   const int running = std::clamp(threads / together, 1, affordable);
   threads_per_batch_ = threads / running;
   // Batches of one size end at about the same time. One more waits for its threads, so that these have work

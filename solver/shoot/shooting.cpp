@@ -283,7 +283,8 @@ bool shoot(const BatchTask& task, BatchEnd end, BatchBooks& books) {
     if (!whole) break;
     // From here on the power is in the flight, which must be traced before the batch may end.
     const bool walks = left <= task.settings.stop_share * emitted;
-    const double wanted = walks ? std::min(kWalkingShare * packets, left / kLeastQuantaOfWalk) : left / quantum;
+    const double wanted =
+        walks ? std::min(kWalkingShare * packets, left / kLeastQuantaOfWalk) : left / quantum;
     const double sent = std::max(1.0, std::round(wanted));
     allocation.plan(accounts, left / sent, offsets.uniform4(0, task.batch, sweep + 1)[0], flight, books);
     if (!walks) continue;

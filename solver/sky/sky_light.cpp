@@ -204,6 +204,7 @@ const SkyLight::Survey& SkyLight::survey() const {
 }
 
 void SkyLight::make_survey() const {
+  survey_ = {};  // of one that memory did not suffice for
   std::vector<std::vector<UsefulLight>> useful = useful_sky();
   std::vector<UsefulLight> of_sun;
   if (beam_) of_sun = useful_sun();

@@ -31,9 +31,9 @@ inline void book(std::int64_t& account, std::int64_t quanta, bool shared) {
 
 /// How many copies of an array of accounts the threads of this arena should book into: one each while that is
 /// cheap, because memory that two cores write to in turn costs more than the rays do; else one for all.
-inline std::size_t account_copies(std::size_t values) {
+inline std::size_t account_copies(std::size_t values, std::size_t threads = static_cast<std::size_t>(
+                                                          tbb::this_task_arena::max_concurrency())) {
   constexpr std::size_t kMostBytes = std::size_t{256} << 20;
-  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   return threads * values * sizeof(std::int64_t) <= kMostBytes ? threads : 1;
 }
 inline bool accounts_are_shared(std::size_t copies) {

@@ -251,7 +251,7 @@ TEST(HardRooms, BrightWallsCostNoMoreThanTheirReflections) {
     settings.direct = DirectSource::kPackets;  // all flights count alike
     const Solution s = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
     rays[rho] = static_cast<double>(s.record.rays);
-    // Irradiance is E = 1/(1 - rho) but for what stop_share leaves unshot.
+    // Irradiance is E = 1/(1 - rho).
     EXPECT_NEAR(s.irradiance(ZoneId(0), 0).mean * (1 - rho), 1, 0.05) << rho;
   }
   RecordProperty("rays_0_9", std::to_string(rays[0.9]));

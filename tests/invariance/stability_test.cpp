@@ -70,7 +70,8 @@ double area_mean(const Solution& s) {
   return power / area;
 }
 
-// What a closed furnace of reflectance rho misses is what was unshot when a batch ended, at most stop_share.
+// What sweeps leave of a batch, a share of stop_share, walks bring home: nothing is lost, and the mean over a
+// closed furnace is that of the books but for the noise of so little.
 TEST(Stability, reflectance_near_one_loses_no_power) {
   for (const double rho : {0.9, 0.999}) {
     test::RoomBuilder room;
@@ -80,9 +81,9 @@ TEST(Stability, reflectance_near_one_loses_no_power) {
     settings.packets = 32'000;
     const Solution s = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
     const double relative = area_mean(s) * (1 - rho) - 1;
-    EXPECT_LE(relative, 1e-9) << rho;
-    EXPECT_GE(relative, -1.01 * settings.stop_share) << rho;
+    EXPECT_LT(std::abs(relative), 0.25 * settings.stop_share) << rho;
     EXPECT_EQ(s.audit.bands[0].total_escaped(), 0);
+    EXPECT_EQ(s.audit.bands[0].unshot, 0);
     EXPECT_TRUE(s.audit.balanced());
   }
 }

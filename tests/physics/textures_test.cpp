@@ -252,28 +252,42 @@ TEST_F(TexturedRooms, EmissiveTextureSendsThePowerOfItsIntegral) {
   EXPECT_NEAR(watts, pi * 7 * mean * 2, 1e-3 * watts);
 }
 
-TEST_F(TexturedRooms, DirectLightOfAnEmissiveTextureIsItsIntegral) {
-  const Scene scene = glowing(folder_);
+/// The point x of a level face, seen from below.
+SurfacePoint ceiling_point(const Room& walls, const Vec3& x) {
+  const ZoneMesh& mesh = walls.mesh();
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const TriangleId triangle(t);
+    const Barycentric b = mesh.barycentric_of(triangle, x);
+    if (std::abs(mesh.corner(triangle, 0).z() - x.z()) > 1e-9 || b.u < 0 || b.v < 0 || b.u + b.v > 1)
+      continue;
+    if (std::abs(mesh.triangle_normal(triangle).z()) < 0.5) continue;
+    return surface_point(walls.rays(), triangle, static_cast<float>(b.u), static_cast<float>(b.v),
+                         mesh.triangle_normal(triangle).z() < 0);
+  }
+  ADD_FAILURE() << "no face there";
+  return surface_point(walls.rays(), TriangleId(0), 0.3F, 0.3F, true);
+}
+
+/// Irradiance at a point of the ceiling by shadow rays [W/m2].
+MeanTest direct_light_at(const Scene& scene, const Vec3& x) {
   MeshSettings settings;
   settings.zone_area = 0.1;
   const MeshResult meshed = build_mesh(scene, settings);
   const Room walls(scene, meshed.mesh);
   const DirectLight light(walls);
+  const SurfacePoint point = ceiling_point(walls, x);
+  MeanTest mean;
+  for (std::uint64_t k = 0; k < 32; ++k) {
+    double sum = 0;
+    light.add_samples(point, SobolSequence(500 + k), 0, 1024, &sum);
+    mean.add(sum / 1024);
+  }
+  return mean;
+}
+
+TEST_F(TexturedRooms, DirectLightOfAnEmissiveTextureIsItsIntegral) {
   // A point of the ceiling above the screen, and the quadrature of the interpolated image.
   const Vec3 x(0.7, 0.4, 3);
-  std::uint32_t ceiling = 0;
-  Barycentric at{};
-  for (std::uint32_t t = 0; t < meshed.mesh.triangle_count(); ++t) {
-    const Barycentric b = meshed.mesh.barycentric_of(TriangleId(t), x);
-    if (std::abs(meshed.mesh.corner(TriangleId(t), 0).z() - 3) > 1e-9 || b.u < 0 || b.v < 0 || b.u + b.v > 1)
-      continue;
-    if (std::abs(meshed.mesh.triangle_normal(TriangleId(t)).z()) < 0.5) continue;
-    ceiling = t;
-    at = b;
-  }
-  const bool front = meshed.mesh.triangle_normal(TriangleId(ceiling)).z() < 0;
-  const SurfacePoint point = surface_point(walls.rays(), TriangleId(ceiling), static_cast<float>(at.u),
-                                           static_cast<float>(at.v), front);
   const auto value = [](double u, double v) {
     const double px = std::clamp(u * 5 - 0.5, 0.0, 4.0);
     const double py = std::clamp((1 - v) * 3 - 0.5, 0.0, 2.0);
@@ -295,14 +309,41 @@ TEST_F(TexturedRooms, DirectLightOfAnEmissiveTextureIsItsIntegral) {
       const double cosine = way.z() / way.norm();
       truth += 7 * value(u, v) * cosine * cosine / way.squaredNorm() * 2 / (kGrid * kGrid);
     }
-  MeanTest mean;
-  for (std::uint64_t k = 0; k < 32; ++k) {
-    double sum = 0;
-    light.add_samples(point, SobolSequence(500 + k), 0, 1024, &sum);
-    mean.add(sum / 1024);
-  }
+  const MeanTest mean = direct_light_at(glowing(folder_), x);
   EXPECT_TRUE(mean.agrees_with(truth));
   EXPECT_TRUE(mean.would_notice(0.02, truth));
+}
+
+const std::string kCeiling =
+    R"({"name": "ceiling", "material": "black", "quad": {"corner": [0, 0, 3], "u": [0, 4, 0], "v": [4, 0, 0]}})";
+
+// Packets leave a zone with what is there of it; shadow rays must not find more.
+TEST_F(TexturedRooms, LuminousCutOutSendsWhatIsThereOfIt) {
+  // From a square, on its axis: c = (4/pi) a/sqrt(1+a^2) atan(a/sqrt(1+a^2)) with a = half side / distance.
+  const Scene sheet = room(R"("lace": {"reflectance": 0, "exitance": 100, "opacity": 0.25})",
+                           kCeiling + R"(, {"name": "lamp", "material": "lace",
+                              "quad": {"corner": [1, 1, 0], "u": [2, 0, 0], "v": [0, 2, 0]}})");
+  const double a = 1.0 / 3;
+  const double side = a / std::sqrt(1 + a * a);
+  const double truth = 0.25 * 100 * 4 / pi * side * std::atan(side);
+  const MeanTest even = direct_light_at(sheet, {2, 2, 3});
+  EXPECT_TRUE(even.agrees_with(truth));
+  EXPECT_TRUE(even.would_notice(0.02, truth));
+
+  // Squares that are there and squares that are not, and a texture that makes them glow differently.
+  const std::string holes =
+      R"("reflectance": 0, "opacity_texture": {"file": "checks.ppm", "filter": "nearest"}, "opacity_cutoff": 0.5)";
+  const std::string quad = R"(, {"name": "lamp", "material": "lace",
+                              "quad": {"corner": [0, 0, 0], "u": [4, 0, 0], "v": [0, 4, 0]}})";
+  const Scene cut = room(R"("lace": {)" + holes + R"(, "radiance": 10})", kCeiling + quad);
+  const Scene faces = room(R"("lace": {"reflectance": 0})", kCeiling + checks_as_faces("lamp", ""));
+  const MeanTest of_faces = direct_light_at(faces, {1.3, 2.2, 3});
+  const MeanTest of_holes = direct_light_at(cut, {1.3, 2.2, 3});
+  EXPECT_TRUE(test::agree(of_holes, of_faces));
+  EXPECT_TRUE(of_holes.would_notice(0.1, of_faces.mean()));
+  // What packets find is the same light.
+  const Solution s = solve(sheet, SolveMethod::kShooting, 1, 1024);
+  EXPECT_NEAR(s.audit.watts(s.audit.bands[0], s.audit.bands[0].emitted), 0.25 * 100 * 4, 1e-3);
 }
 
 const std::string kChambers =

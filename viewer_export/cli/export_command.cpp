@@ -88,6 +88,21 @@ void check_has_effect(const ExportOptions& options) {
                      "leave it out, or write .ply or .glb");
 }
 
+/// A vertex has one value, so images on surfaces are as coarse as vertices are.
+void note_textures(const ExportOptions& options, const Scene& scene) {
+  if (options.style.quiet || !shows_colours(options)) return;
+  const auto has_image = [&](const Surface& surface) {
+    const MaterialTextures& textures = scene.material_of(surface).textures;
+    return textures.reflectance || textures.emission;
+  };
+  const auto count = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), has_image);
+  if (count > 0)
+    print_note(
+        fmt::format("{} surface(s) have textures, of which colours show one value at each vertex; the "
+                    "irradiance that is exported with them has none of the image in it",
+                    count));
+}
+
 /// Refuses unknown formats, files that cannot be written and one file given twice before the work.
 void check_outputs(const ExportOptions& options) {
   std::set<std::filesystem::path> seen;
@@ -114,6 +129,7 @@ ExitCode run_export(const ExportOptions& options) {
   const Solution solution = load_solution(options.solution, options.style);
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs) check_keeps_room(output, scene);
+  note_textures(options, scene);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
 

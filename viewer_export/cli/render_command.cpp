@@ -216,6 +216,11 @@ Source load_source(const RenderOptions& options) {
 
 /// Of all pictures. Throws InputError if it is unknown, or where options would have no effect on it.
 const ImageFormat& check_format(const RenderOptions& options, bool into_folder) {
+  if (!into_folder && !options.output.has_extension())
+    throw InputError(options.output.string(), "has no extension, from which the format follows",
+                     fmt::format("Name it {0}.png, .exr or .hdr; a folder for several pictures ends with a "
+                                 "slash: {0}/",
+                                 options.output.string()));
   const ImageFormat& format = image_format_of(into_folder ? fs::path("a" + options.format) : options.output);
   if (options.tone_map.exposure_ev && !format.tone_mapped)
     throw InputError("--exposure", fmt::format("{} pictures hold radiance and have none", format.extension),

@@ -295,7 +295,9 @@ ExitCode run_solve(const SolveOptions& options) {
     solution = load_solution(options.resume, options.style);
     if (!options.room.empty()) keep_room_paths(options.room, solution);
     if (!options.style.quiet)
-      print_note("there was no time for another batch of packets; the solution stays as it was");
+      print_note(
+          "there was no time for another batch of packets; the solution stays as it was (give it more "
+          "--time)");
     return leave_as_it_was(start.scene, solution, options);
   }
   save(solution, options);

@@ -6,6 +6,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/gather/path_key.h"
+
 namespace reemit {
 namespace {
 
@@ -65,7 +67,8 @@ VertexRefinement::VertexRefinement(const VertexGatherer& gatherer, const VertexR
       chunks_((rings.size() + kChunk - 1) / kChunk) {}
 
 int VertexRefinement::most_points(const VertexSettings& settings) {
-  return settings.error_target > 0 ? kMostPoints : settings.points_per_replicate();
+  const int of_numbers = static_cast<int>(PathKey::kMostPaths) / settings.gathers_per_point();
+  return settings.error_target > 0 ? std::min(kMostPoints, of_numbers) : settings.points_per_replicate();
 }
 
 std::size_t VertexRefinement::first(std::size_t chunk) const {
@@ -95,7 +98,7 @@ void VertexRefinement::run_to_target() {
   std::vector<float> means(rings_.size() * gatherer_.values_per_vertex(), 0.0F);
   std::vector<RefinedPart> parts(chunks_);
   int points = 0;
-  while (points < kMostPoints && !interrupt_) {
+  while (points < most_points(settings_) && !interrupt_) {
     const PointBlock block{points, std::max(kFirstPoints, points)};
     for_chunks([&](std::size_t c) {
       if (parts[c].is_active())

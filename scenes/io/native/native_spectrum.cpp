@@ -134,9 +134,11 @@ Spectrum read_spectrum(const JsonCursor& at, const BandSet& bands, Quantity quan
     return values;
   }
   if (!at.is_object()) {
-    at.fail("expected a spectrum", fmt::format("Write a number, {} number(s) for the bands of this room, or "
-                                               "{{\"nm\": [...], \"value\": [...]}}.",
-                                               bands.count()));
+    at.fail("expected a spectrum",
+            fmt::format("Write a number, {} number(s) for the bands of this room, "
+                        "{{\"nm\": [...], \"value\": [...]}}, {{\"rgb\": [r, g, b]}} or "
+                        "{{\"srgb\": \"#rrggbb\"}}.",
+                        bands.count()));
   }
   if (at.find("srgb") || at.find("rgb")) return read_colour(at, bands, quantity, most);
   demand_spectral(at, bands);

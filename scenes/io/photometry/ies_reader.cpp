@@ -99,7 +99,7 @@ class IesFile {
       if (keyword == "LUMCAT" && catalogue.empty()) catalogue = line.substr(value);
     }
     text_.fail("this is not an IES photometric file: no line begins with TILT=",
-               "Give a file in the IES LM-63 format.");
+               "Give a file in the IES LM-63 format; EULUMDAT files end in .ldt.");
   }
 
   void read_tilt() {
@@ -210,7 +210,8 @@ class IesFile {
         text_.fail_at(
             lines[i],
             fmt::format("the {} angles do not increase: {} after {}", what, angles[i], angles[i - 1]),
-            "Sort them and name each once; check the counts of angles.");
+            "Sort them and name each once; check the counts of angles, and that decimals have points, not "
+            "commas.");
   }
 
   void read_grid() {

@@ -156,8 +156,8 @@ TEST(GltfReader, NamesThatComeAgainAreNumbered) {
   EXPECT_EQ(scene.surfaces[1].name, "square #2");
   EXPECT_EQ(scene.surfaces[2].name, "square #3");
   ASSERT_EQ(scene.lights.size(), 2u);
-  EXPECT_EQ(name_of(scene.lights[0]), "bulb");
-  EXPECT_EQ(name_of(scene.lights[1]), "bulb #2");
+  EXPECT_EQ(std::get<PointLight>(scene.lights[0]).name, "bulb");
+  EXPECT_EQ(std::get<PointLight>(scene.lights[1]).name, "bulb #2");
 }
 
 TEST(GltfReader, ReadsTheDefaultScene) {

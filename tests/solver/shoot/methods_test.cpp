@@ -97,6 +97,34 @@ TEST(Methods, ShootingAndWalkAgreeZoneByZone) {
   }
 }
 
+// A lit room may have a millionth of the power of all, as in a building on a large site in the sun: its light
+// must not end with that of the rest. A panel shines into the open beside a closed furnace.
+TEST(Methods, LightOfASmallShareOfThePowerIsFollowedToItsEnd) {
+  for (const SolveMethod method : kMethods) {
+    for (const double share : {1e-6, 1e-9}) {
+      constexpr double kRho = 0.5;
+      RoomBuilder room = furnace(kRho, 2);
+      const MaterialId sun = room.material("sun", 0.5, 22 / share);  // the furnace has 22 m2
+      room.quad(sun, {Vec3(9, 0, 0), Vec3(10, 0, 0), Vec3(10, 1, 0), Vec3(9, 1, 0)}, 1);
+      test::MeanTest mean;
+      for (std::uint64_t seed = 1; seed <= 32; ++seed) {
+        SolverSettings settings = settings_of(method, 65'536);
+        settings.seed = seed;
+        settings.direct = DirectSource::kPackets;
+        const Solution s = run(room, settings);
+        EXPECT_EQ(s.audit.bands[0].unshot, 0);
+        double power = 0;
+        for (std::size_t z = 0; z < s.mesh.zone_count(); ++z)
+          if (s.mesh.zone_surface(ZoneId(z)).index() < 6)
+            power += s.mesh.zone_area(ZoneId(z)) * s.irradiance(ZoneId(z), 0).mean;
+        mean.add(power / 22);
+      }
+      EXPECT_TRUE(mean.agrees_with(1 / (1 - kRho))) << to_string(method) << ", " << share;
+      EXPECT_TRUE(mean.would_notice(0.2, 1 / (1 - kRho))) << mean.standard_error();
+    }
+  }
+}
+
 /// Mean irradiance over the zones of a quad, with a bound of its standard error whatever their correlation.
 test::Measured mean_over_quad(const Solution& s, std::size_t quad, std::uint32_t divisions) {
   const std::size_t zones = std::size_t{2} * divisions * divisions;
