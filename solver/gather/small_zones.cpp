@@ -37,9 +37,12 @@ constexpr double kMostRounding = 0.1;
 /// that is allowed.
 constexpr double kMostTimesEnough = 32;
 constexpr double kCheap = 0.25;
-/// Points per replicate that a zone gets at least: the smallest zones first if not all can have them. Few rays
-/// miss a bright spot, and leave no trace of that in the error.
+/// Points per replicate that a zone gets at least: the smallest zones first if not all can have them. Few
+/// rays miss a bright spot, and leave no trace of that in the error.
 constexpr double kLeastPoints = 8;
+/// So many points, half a second's work, may be had by zones that packets do not meet, whatever the limit:
+/// sensors in a large room.
+constexpr double kMostPointsAtAnyCost = 32768;
 /// Gather rays per shadow ray.
 constexpr int kGathersPerPoint = 2;
 constexpr std::uint64_t kRaysPerPoint = kReplicates * (1 + kGathersPerPoint);
@@ -98,13 +101,19 @@ struct ZoneReplicates {
   }
 };
 
+/// Area that can expect so many packets [m2].
+double area_of_packets(const Solution& solution, double packets) {
+  const ZoneMesh& mesh = solution.mesh;
+  return packets * mean_zone_area(mesh) * static_cast<double>(mesh.zone_count()) /
+         static_cast<double>(solution.record.rays);
+}
+
 /// By zone, 1 where so few packets are to be expected by its area that what they brought says next to
 /// nothing. What they did bring has no say, or the lucky zones would be read and the others not.
 std::vector<std::uint8_t> little_known_zones(const Solution& solution) {
   constexpr double kFewPackets = 16;
   const ZoneMesh& mesh = solution.mesh;
-  const double of_few = kFewPackets * mean_zone_area(mesh) * static_cast<double>(mesh.zone_count()) /
-                        static_cast<double>(solution.record.rays);
+  const double of_few = area_of_packets(solution, kFewPackets);
   std::vector<std::uint8_t> result(mesh.zone_count());
   for (std::size_t z = 0; z < result.size(); ++z) result[z] = mesh.zone_area(ZoneId(z)) < of_few ? 1 : 0;
   return result;
@@ -303,6 +312,7 @@ class SmallZoneRun {
 
   /// True if the clock had a say in what was gathered.
   bool run(std::vector<ZoneId> zones) {
+    affordable_ = std::max(affordable_, std::min(kMostPointsAtAnyCost, points_of_hopeless(zones)));
     // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
     zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable_ / 3)));
     std::vector<GatheredLight> pilots(zones.size());
@@ -314,6 +324,14 @@ class SmallZoneRun {
   }
 
  private:
+  /// Points for those that packets will not meet even once, by their area; smallest zones come first.
+  double points_of_hopeless(const std::vector<ZoneId>& zones) const {
+    const double area = area_of_packets(solution_, 1);
+    const auto end = std::find_if(zones.begin(), zones.end(),
+                                  [&](ZoneId z) { return solution_.mesh.zone_area(z) >= area; });
+    return (1 + kLeastPoints) * static_cast<double>(end - zones.begin());
+  }
+
   /// Sets how many points are left. False if it was cut off.
   bool pilot(const std::vector<ZoneId>& zones, std::vector<GatheredLight>& pilots) {
     const auto start = std::chrono::steady_clock::now();

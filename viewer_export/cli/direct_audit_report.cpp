@@ -51,7 +51,14 @@ std::string direct_audit_text(const DirectAudit& audit, const Solution& solution
     return text + fmt::format("None of {} zones differs by more than chance explains\n", audit.compared);
   text += fmt::format("{} OF {} ZONES DIFFER by more than chance explains; irradiance [W/m2]:\n",
                       audit.different.size(), audit.compared);
-  return text + worst_zones_text(audit, solution);
+  text += worst_zones_text(audit, solution);
+  const auto emits = [](double exitance) { return exitance > 0; };
+  if (std::any_of(solution.zone_exitances.begin(), solution.zone_exitances.end(), emits))
+    text +=
+        "packets leave a zone of a luminous image evenly, shadow rays as the image is: what is close to one "
+        "may "
+        "differ; smaller zones lessen it\n";
+  return text;
 }
 
 nlohmann::ordered_json direct_audit_json(const DirectAudit& audit, const Solution& solution) {

@@ -328,6 +328,31 @@ TEST(SmallZones, are_known_well_where_they_are_few) {
   EXPECT_LT(power.stderr_of_mean, 0.03 * power.mean);
 }
 
+// A hundred sensors of 1 cm2 in a hall that a hundred thousand packets hardly light: none meets a packet but
+// by luck, and each is known. All walls emit, so that the irradiance is M/(1 - rho) everywhere.
+TEST(SmallZones, are_all_found_where_packets_meet_none) {
+  test::RoomBuilder room;
+  const MaterialId wall = room.material("wall", 0.5, 1);
+  const MaterialId sensor = room.material("sensor", 0.01);
+  room.box({0, 0, 0}, {20, 4, 20}, {wall, wall, wall, wall, wall, wall}, 8);
+  for (int i = 0; i < 10; ++i)
+    for (int j = 0; j < 10; ++j) {
+      const Vec3 corner(1 + 1.9 * i, 0.8, 1.1 + 1.9 * j);
+      room.quad(sensor,
+                {corner, corner + Vec3(0, 0, 0.01), corner + Vec3(0.01, 0, 0.01), corner + Vec3(0.01, 0, 0)},
+                1);
+    }
+  const Solution s = solved_by(room, 100'000);
+  EXPECT_EQ(s.record.gathered_zones, 200U);
+  for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
+    if (s.mesh.zone_area(ZoneId(z)) > 1e-3) continue;
+    const Estimate e = s.irradiance(ZoneId(z), 0);
+    // 15 degrees of freedom: odds of 1 in 10^4 for all zones together.
+    EXPECT_NEAR(e.mean, 2, 8 * e.stderr_of_mean);
+    EXPECT_LT(e.stderr_of_mean, 0.04);
+  }
+}
+
 TEST(SmallZones, need_all_batch_groups) {
   SolverSettings settings;
   settings.packets = 30'000;

@@ -101,6 +101,62 @@ TEST_F(LostLight, ASkylightIsNoLeak) {
   EXPECT_THAT(warnings(), IsEmpty());
 }
 
+/// A ceiling whose part from x = 1 to 2 is of such a window, and that has a gap if `gap` is not 0.
+class LostLightBesideWindows : public LostLight {
+ protected:
+  void window(const Material& material, double gap) {
+    box(false);
+    ceiling(0, 1 - gap);
+    ceiling(2, 4);
+    room_.scene().materials.push_back(material);
+    const MaterialId pane(room_.scene().materials.size() - 1);
+    room_.quad(pane, {Vec3(1, 3, 0), Vec3(2, 3, 0), Vec3(2, 3, 4), Vec3(1, 3, 4)}, 4);
+  }
+  Material grey() const { return room_.scene().materials[sides_[0].index()]; }
+};
+
+TEST_F(LostLightBesideWindows, WhatGoesOutThroughThemIsMeantTo) {
+  Material glass = grey();
+  glass.two_sided = true;
+  glass.reflectance = Spectrum::Zero(1);
+  Material clear = glass;
+  clear.non_diffuse.specular_transmittance = Spectrum::Constant(1, 0.9);
+  Material opal = glass;
+  opal.non_diffuse.diffuse_transmittance = Spectrum::Constant(1, 0.5);
+  Material lace = glass;
+  lace.textures.opacity_factor = 0.5;
+  for (const Material& material : {clear, opal, lace}) {
+    room_ = RoomBuilder();
+    const MaterialId wall = room_.material("grey", 0.5);
+    const MaterialId lamp = room_.material("lamp", 0.5, 10);
+    sides_ = {wall, wall, lamp, wall, wall, wall};
+    window(material, 0);
+    const Solution solution = solved();
+    EXPECT_GT(escaped_share(solution), 0.02);
+    EXPECT_THAT(solution.light_warnings, IsEmpty());
+  }
+}
+
+TEST_F(LostLightBesideWindows, GapsAreNamedAllTheSame) {
+  Material lace = grey();
+  lace.two_sided = true;
+  lace.textures.opacity_factor = 0.5;
+  window(lace, 0.004);
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("leaves the room"), HasSubstr("gap of about"))));
+}
+
+TEST_F(LostLight, ALittleLightOnTheBackOfALampIsNoMistake) {
+  box(true);
+  const MaterialId panel = room_.material("panel", 0, 10);
+  room_.quad(panel, {Vec3(1, 2.98, 1), Vec3(2, 2.98, 1), Vec3(2, 2.98, 2), Vec3(1, 2.98, 2)}, 4);
+  const Solution solution = solved();
+  double on_backs = 0;
+  for (const RunQuanta quanta : solution.audit.bands[0].absorbed_on_backs)
+    on_backs += static_cast<double>(quanta);
+  EXPECT_GT(on_backs, 0);
+  EXPECT_THAT(solution.light_warnings, IsEmpty());
+}
+
 TEST_F(LostLight, LightThatStartsOutsideIsNamed) {
   box(true);
   const MaterialId both = room_.material("both", 0.5, 2, true);

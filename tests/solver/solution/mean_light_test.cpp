@@ -202,6 +202,31 @@ TEST(MeanLight, OneBatchSaysNothingAboutItsErrorAndNoneIsExactDarkness) {
   EXPECT_EQ(none.sides.front().light.illuminance.stderr_of_mean, 0);
 }
 
+// What no packet met is not known to be dark: one packet might have come.
+TEST(MeanLight, TheVarianceIsThatOfOneMorePacketThanCame) {
+  Solution solution = LitBox().run(1, unequal_batches());
+  const RoomLight spread = mean_light(solution);  // of batches alone: it knows of no packets
+  solution.record.packets = 1000;
+  solution.record.rays = 5000;
+  double power = 0;
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    power += solution.mesh.zone_area(ZoneId(z)) * solution.irradiance(ZoneId(z), 1).mean;
+  const RoomLight light = mean_light(solution);
+  for (std::size_t s = 0; s < light.sides.size(); ++s) {
+    const Estimate& of_batches = spread.sides[s].light.irradiance[1];
+    const Estimate& e = light.sides[s].light.irradiance[1];
+    const double of_one = power / 5000 / light.sides[s].light.area;
+    EXPECT_EQ(e.mean, of_batches.mean);
+    EXPECT_NEAR(e.stderr_of_mean, std::hypot(of_batches.stderr_of_mean, of_one), 1e-12 * e.stderr_of_mean);
+  }
+  // What was gathered has errors of its own.
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z) solution.gathered.zones.emplace_back(z);
+  const RoomLight gathered = mean_light(solution);
+  for (std::size_t s = 0; s < gathered.sides.size(); ++s)
+    EXPECT_EQ(gathered.sides[s].light.illuminance.stderr_of_mean,
+              spread.sides[s].light.illuminance.stderr_of_mean);
+}
+
 TEST(MeanLight, DarkSidesCountOnlyWhereNothingIsLit) {
   const RoomLight light = mean_light(LitBox().run(1, {1, 1}));
   const std::span last_two = std::span(light.sides).last(2);
