@@ -101,7 +101,8 @@ void ZoneMesh::add_cells() {
 void ZoneMesh::add_split_cells(SideId side, std::size_t& next_cut) {
   const std::uint32_t n = sides_[side.index()].divisions;
   const std::size_t first = nodes_.size();
-  // Every cell has a cut at least: sides of a damaged file must not make us allocate cells that are not there.
+  // Every cell has a cut at least: sides of a damaged file must not make us allocate cells that are not
+  // there.
   if (std::size_t{n} * n > splits_.cuts.size() - next_cut)
     throw std::invalid_argument("splits that end too early");
   sides_[side.index()].nodes = static_cast<std::uint32_t>(first);

@@ -39,11 +39,11 @@ struct BatchTask {
 
 /// One batch of absorb-and-re-emit shooting: an independent estimate of the whole solution ([GI98] Monte
 /// Carlo notes, section 3; all zones at once in the manner of stochastic Jacobi iterations). Zones re-emit
-/// from points where the sweep before met them, or uniformly over their area (SolverSettings::reemission). What
-/// sweeps leave (SolverSettings::stop_share) is followed to its end by a few walks.
-/// False if it was cut off: the books balance all the same, with what was on its way, or had not set out, as
-/// unshot. A batch of more than 200,000 sweeps ends there, whole, with the rest unshot. Must run inside the
-/// task arena of the caller.
+/// from points where the sweep before met them, or uniformly over their area (SolverSettings::reemission).
+/// What sweeps leave (SolverSettings::stop_share) is followed to its end by a few walks. False if it was cut
+/// off: the books balance all the same, with what was on its way, or had not set out, as unshot. A batch of
+/// more than 200,000 sweeps ends there, whole, with the rest unshot. Must run inside the task arena of the
+/// caller.
 bool shoot_batch(const BatchTask& task, BatchBooks& books);
 
 /// The same up to where packets of luminaires first meet a surface that scatters them: the reflected rest is

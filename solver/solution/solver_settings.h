@@ -29,7 +29,7 @@ struct SolverSettings {
   std::uint64_t packets = 0;
   std::uint64_t batch_packets = 0;  ///< Packets of one batch; 0 = from the number of zones.
   int smallest_batch_count = 16;    ///< Batches before an error is believed [2, 65536].
-  double stop_share = 1e-5;         ///< Shooting: walks take over when unshot/emitted falls below this (0, 0.1].
+  double stop_share = 1e-5;  ///< Shooting: walks take over when unshot/emitted falls below this (0, 0.1].
   /// Zones too small to meet enough packets get their light by gathering when the packets are done.
   bool gather_small_zones = true;
   std::uint64_t seed = 1;
