@@ -332,8 +332,8 @@ void add_file_options(CLI::App& solve, SolveOptions& options) {
       .add_option("--resume", options.resume,
                   "Go on with a solution that is finished, was interrupted or was killed after a\n"
                   "checkpoint, by the stopping rules given now or else by its own (--time given\n"
-                  "now counts from what stands, else for all sittings). The result is that of one run "
-                  "without a break")
+                  "now counts from what stands, else for all sittings). The result is that of one run\n"
+                  "without a break; batches keep the size that --packets of the first sitting gave them")
       ->type_name("SOLUTION");
   add_parsed_option(solve, "--checkpoint", options.checkpoint_s, parse_checkpoint, "TIME",
                     "Save what stands at these intervals, for --resume: 30s, 10min; 0 = never")

@@ -262,6 +262,11 @@ void state_conversions(const GltfUnits& units, Scene& scene) {
                                  [](const Material& material) { return material.emits(); });
   if (emits) scene.notes.push_back("emissive meshes: values are taken " + units.emissive_assumption);
   if (!scene.lights.empty()) scene.notes.push_back("lamps: strengths are taken " + units.lamp_assumption);
+  if (units.by_blender && !emits && scene.lights.empty())
+    scene.warnings.push_back(
+        "no lamp is in the file: Blender exports points, spots and suns (tick Punctual Lights), but no area "
+        "lamps; a "
+        "plane with an emissive material stands for one");
   std::string options;
   if (emits && units.emission_open) options += " --emissive-units W/sr/m2";
   if (!scene.lights.empty() && units.lamps_open) options += " --gltf-light-efficacy 683";

@@ -53,6 +53,7 @@ GltfUnits gltf_units(const std::string& generator, const ReadOptions& options) {
   const auto blender = blender_version(generator);
   const std::string by_blender = fmt::format("the file was written by Blender (\"{}\")", generator);
   GltfUnits units;
+  units.by_blender = blender.has_value();
   units.rewritten_by = rewriter(generator);
   units.lamps_open = !units.rewritten_by.empty() && !options.gltf_light_efficacy;
   units.emission_open =

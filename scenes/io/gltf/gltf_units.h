@@ -12,6 +12,7 @@ struct GltfUnits {
   double light_efficacy = 0;     ///< Of lamps [lm/W]: W/sr = cd / this, W/m2 = lx / this. Above 0.
   bool lamps_in_watts = false;   ///< Points and spots hold W of a full sphere, the sun W/m2; no efficacy.
   double emissive_efficacy = 0;  ///< Of emissive meshes [lm/W]; 0: their values are W/(sr m2).
+  bool by_blender = false;       ///< Its exporter wrote the file.
   std::string lamp_assumption;   ///< In words, for the notes of the room.
   std::string emissive_assumption;
   /// The program that rewrote the file and took the name of the exporter out, if that leaves units open.

@@ -90,6 +90,15 @@ TEST(GltfUnits, RewrittenFilesSayThatTheirUnitsAreOpen) {
   EXPECT_THAT(read_gltf(exported("THREE.GLTFExporter", 100, 5, 7)).warnings, testing::Not(warned));
 }
 
+TEST(GltfUnits, RoomsOfBlenderWithoutLampsSayWhichAreExported) {
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.json["asset"]["generator"] = "Khronos glTF Blender I/O v3.4.50";
+  EXPECT_THAT(read_gltf(gltf).warnings, Contains(HasSubstr("no area lamps")));
+  EXPECT_THAT(read_gltf(exported("Khronos glTF Blender I/O v3.4.50", 100, 5, 7)).warnings,
+              testing::Not(Contains(HasSubstr("no area lamps"))));
+}
+
 TEST(GltfUnits, OptionsGoFirst) {
   ReadOptions options;
   options.gltf_light_efficacy = 100;
