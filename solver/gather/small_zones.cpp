@@ -41,8 +41,9 @@ constexpr double kCheap = 0.25;
 /// rays miss a bright spot, and leave no trace of that in the error.
 constexpr double kLeastPoints = 8;
 /// So many points, half a second's work, may be had by zones that packets do not meet, whatever the limit:
-/// sensors in a large room.
+/// sensors in a large room. In a very short run, which knows nothing well, so many times its work.
 constexpr double kMostPointsAtAnyCost = 32768;
+constexpr double kMostTimesTheRun = 8;
 /// Gather rays per shadow ray.
 constexpr int kGathersPerPoint = 2;
 constexpr std::uint64_t kRaysPerPoint = kReplicates * (1 + kGathersPerPoint);
@@ -312,7 +313,9 @@ class SmallZoneRun {
 
   /// True if the clock had a say in what was gathered.
   bool run(std::vector<ZoneId> zones) {
-    affordable_ = std::max(affordable_, std::min(kMostPointsAtAnyCost, points_of_hopeless(zones)));
+    const double of_run = packet_rays_ / cost_per_point(gatherer_.luminaires_weighed());
+    affordable_ = std::max(
+        affordable_, std::min({kMostPointsAtAnyCost, kMostTimesTheRun * of_run, points_of_hopeless(zones)}));
     // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
     zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable_ / 3)));
     std::vector<GatheredLight> pilots(zones.size());

@@ -33,10 +33,10 @@ struct SmallZoneLimits {
 /// beat its packets. Zones whose gather turns out to have more noise than packets, or to differ from them by
 /// more than chance, as where few rays meet a bright spot, keep what packets brought; light that is missed by
 /// less than packets can tell stays missed (docs/estimators.md). `limits` bound the work, but for zones
-/// that packets are not to be expected to meet even once, for which half a second is spent in any case. Adds
-/// to record.rays and sets record.gathered_zones. Returns true if the clock had a say in what was gathered,
-/// by the limit or by `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When `stop` is
-/// requested the zones not yet done keep what packets found.
+/// that packets are not to be expected to meet even once, for which up to half a second is spent in any case.
+/// Adds to record.rays and sets record.gathered_zones. Returns true if the clock had a say in what was
+/// gathered, by the limit or by `stop`. Does nothing with fewer than ZoneSums::kGroups batches. When `stop`
+/// is requested the zones not yet done keep what packets found.
 bool gather_small_zones(const Room& room, const SmallZoneLimits& limits, Solution& solution,
                         const StopToken& stop);
 
