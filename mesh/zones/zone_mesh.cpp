@@ -101,8 +101,7 @@ void ZoneMesh::add_cells() {
 void ZoneMesh::add_split_cells(SideId side, std::size_t& next_cut) {
   const std::uint32_t n = sides_[side.index()].divisions;
   const std::size_t first = nodes_.size();
-  // Every cell has a cut at least: sides of a damaged file must not make us allocate cells that are not
-  // there.
+  // Every cell has a cut at least: a damaged file must not make us allocate cells that are not there.
   if (std::size_t{n} * n > splits_.cuts.size() - next_cut)
     throw std::invalid_argument("splits that end too early");
   sides_[side.index()].nodes = static_cast<std::uint32_t>(first);
@@ -191,6 +190,10 @@ SideCell ZoneMesh::member_cell(ZoneId group, float& u) const {
   constexpr float kBelowOne = 1 - 0x1p-24F;
   u = std::min(static_cast<float>(share), kBelowOne);
   return {triangle_of(members_[place]), is_front(members_[place]), {}};
+}
+
+double ZoneMesh::group_area(ZoneId group) const {
+  return members_area_[first_member(group) + member_count(group) - 1];
 }
 
 double ZoneMesh::zone_area(ZoneId z) const {

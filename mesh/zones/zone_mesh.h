@@ -165,10 +165,7 @@ class ZoneMesh {
 
   const Side& side(TriangleId t, bool front) const { return sides_[side_of(t, front).index()]; }
   std::size_t first_member(ZoneId group) const { return first_member_[group.index() - cell_zone_count()]; }
-  /// With the holes of cut-outs [m2].
-  double group_area(ZoneId group) const {
-    return members_area_[first_member(group) + member_count(group) - 1];
-  }
+  double group_area(ZoneId group) const;  // with the holes of cut-outs [m2]
   SideCell member_cell(ZoneId group, float& u) const;
   /// Of a side with cells that are cut further.
   ZoneId zone_in_parts(const Side& side, float u, float v) const;

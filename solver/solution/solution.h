@@ -157,12 +157,10 @@ struct Solution {
   std::vector<std::string> light_warnings;  ///< Of light that is lost where it should not be (lost_light.h).
   std::optional<FormFactorReport> form_factors;  ///< Of the matrix method; not kept in the file.
 
-  // Batch means and their standard errors, as ZoneSums has them. One batch alone
-  // says nothing about its error: the standard error is then +infinity, never 0. It is 0 with no batch at
-  // all, which only a room without luminaire ends with, and for a zone that met no packet in n >= 2 batches,
-  // of which batches say nothing (mean_light counts one packet more than came). They are of all light groups
-  // together; how the errors of groups go together the sums do not tell, so that of several is the sum of
-  // theirs, the most that it can be.
+  // Batch means and their standard errors, as ZoneSums has them. One batch alone says nothing about its
+  // error: that is then +infinity, never 0. It is 0 without batches (no luminaire) and where no packet of n
+  // >= 2 batches came (mean_light counts one more). They are of all light groups; how their errors go
+  // together the sums do not tell: they are added, the most there is.
   Estimate direct_irradiance(ZoneId z, std::size_t band) const;    ///< [W/m2]
   Estimate indirect_irradiance(ZoneId z, std::size_t band) const;  ///< [W/m2]
   /// From luminaires over mirrors, glass and gloss [W/m2]; exactly 0 in rooms that bend no light.

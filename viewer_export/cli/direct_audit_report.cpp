@@ -56,8 +56,7 @@ std::string direct_audit_text(const DirectAudit& audit, const Solution& solution
   if (std::any_of(solution.zone_exitances.begin(), solution.zone_exitances.end(), emits))
     text +=
         "packets leave a zone of a luminous image evenly, shadow rays as the image is: what is close to one "
-        "may "
-        "differ; smaller zones lessen it\n";
+        "may differ; smaller zones lessen it\n";
   return text;
 }
 
