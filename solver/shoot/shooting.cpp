@@ -76,6 +76,8 @@ class SweepTracer {
       const std::size_t from = static_cast<std::size_t>(lane) * values;
       for (std::size_t c = 0; c < values; ++c) book(accounts[account + c], power[from + c], shared);
     });
+    if (!incident_.packets.empty())
+      for_lanes(arrived.in_zones, [&](int lane) { book(incident_.packets[arrived.zones[lane]], 1, shared); });
     if (arrivals_ != nullptr) for_lanes(arrived.in_zones, [&](int lane) { arrivals_->add(points_, lane); });
     WaitingPackets& carried = packets_.carried();
     const std::size_t carried_before = carried.count();
@@ -189,6 +191,20 @@ void trace_held(const BatchTask& batch, LightPart part, WaitingPackets& held, Ar
   books.rays += rays;
 }
 
+/// Notes what has reached a zone, before it is moved.
+void note_arrivals(SweepAccounts& sweep, std::size_t zone) {
+  const auto sum_of = [&](const std::vector<std::int64_t>& accounts) {
+    const auto first = accounts.begin() + static_cast<std::ptrdiff_t>(zone * sweep.values);
+    return std::accumulate(first, first + static_cast<std::ptrdiff_t>(sweep.values), std::int64_t{0});
+  };
+  SweepAccounts::Arrived& arrived = sweep.arrived[zone];
+  if (sum_of(sweep.unshot) == 0) arrived = {};
+  for (SweepAccounts::Incident& copy : sweep.incident) {
+    arrived.packets += std::exchange(copy.packets[zone], 0);
+    arrived.power += sum_of(copy.quanta);
+  }
+}
+
 /// Moves what a sweep brought in into `part` of the books; the reflected share becomes unshot power.
 void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std::int64_t>& part,
              BatchBooks& books) {
@@ -219,6 +235,7 @@ void reflect(const PacketRoom& transport, SweepAccounts& sweep, std::vector<std:
         }
         const double* rho = transport.surface_model().reflectance(ZoneId(z), mesh.zone_triangle(ZoneId(z)),
                                                                   mesh.zone_is_front(ZoneId(z)));
+        if (!sweep.arrived.empty()) note_arrivals(sweep, z);
         channels.for_each([&](std::size_t c, std::size_t band) {
           const std::size_t i = z * values + c;
           std::int64_t in = 0;
@@ -242,7 +259,9 @@ bool shoot(const BatchTask& task, BatchEnd end, BatchBooks& books) {
   const PacketRoom& transport = task.transport;
   const Channels channels = transport.channels();
   const CounterRng offsets(task.settings.seed, RngPurpose::kAllocation);
-  SweepAccounts accounts(transport.zones(), channels);
+  // Sources that share packets otherwise than by power have packets of their own size. What they light is to
+  // be carried on by as many, as walks do it: a lamp in a dark room would else be lost beside the sun.
+  SweepAccounts accounts(transport.zones(), channels, !task.emission.packet_share.empty());
 
   Flight flight = plan_first_flight(task.emission, std::max(1U, task.packets / task.first_together),
                                     offsets.uniform4(0, task.batch, 0)[0]);
@@ -277,14 +296,14 @@ bool shoot(const BatchTask& task, BatchEnd end, BatchBooks& books) {
       trace_held(task, LightPart::kIndirect, held, points, accounts, books);
       reflect(transport, accounts, books.indirect, books);
     }
-    const auto left = static_cast<double>(allocation.measure(accounts));
+    const double left = allocation.measure(accounts, sweep == 0 ? quantum * task.first_together : quantum);
     if (!whole || left == 0 || end == BatchEnd::kFirstFlight || sweep + 1 == kMostSweeps) break;
     whole = task.stop == nullptr || !task.stop->requested();
     if (!whole) break;
     // From here on the power is in the flight, which must be traced before the batch may end.
     const bool walks = left <= task.settings.stop_share * emitted;
-    const double wanted =
-        walks ? std::min(kWalkingShare * packets, left / kLeastQuantaOfWalk) : left / quantum;
+    const double wanted = walks ? std::min(kWalkingShare * packets, left / kLeastQuantaOfWalk)
+                                : std::min(left / quantum, static_cast<double>(packets));
     const double sent = std::max(1.0, std::round(wanted));
     allocation.plan(accounts, left / sent, offsets.uniform4(0, task.batch, sweep + 1)[0], flight, books);
     if (!walks) continue;

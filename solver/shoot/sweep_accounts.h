@@ -16,19 +16,23 @@ namespace reemit {
 struct SweepAccounts {
   static constexpr std::size_t kBlockZones = 64;
 
-  SweepAccounts(std::size_t zone_count, Channels channels)
+  /// `counts_packets`: what zones send on is to be carried by as many packets as brought it.
+  SweepAccounts(std::size_t zone_count, Channels channels, bool counts_packets = false)
       : zones(zone_count),
         values(channels.count()),
-        incident(account_copies(zones * values),
-                 Incident(zones * values, (zones + kBlockZones - 1) / kBlockZones)),
+        incident(account_copies(zones * values), Incident(zones * values, counts_packets ? zones : 0,
+                                                          (zones + kBlockZones - 1) / kBlockZones)),
         unshot(zones * values),
+        arrived(counts_packets ? zones : 0),
         live((zones + kBlockZones - 1) / kBlockZones) {}
 
   /// Incident power booked by one thread, or by all of them if there is one copy only.
   struct Incident {
-    Incident(std::size_t accounts, std::size_t blocks) : quanta(accounts), live(blocks) {}
+    Incident(std::size_t accounts, std::size_t counted_zones, std::size_t blocks)
+        : quanta(accounts), packets(counted_zones), live(blocks) {}
     std::vector<std::int64_t> quanta;
-    std::vector<std::uint8_t> live;  // by block: 0 only if all its quanta are 0
+    std::vector<std::int64_t> packets;  // by zone, how many came; empty unless they are counted
+    std::vector<std::uint8_t> live;     // by block: 0 only if all its quanta are 0
 
     /// Notes that a zone's account is no longer 0. Looks before it writes, so that threads do not fight for
     /// the line.
@@ -48,6 +52,12 @@ struct SweepAccounts {
   std::size_t values;  ///< Of each zone.
   std::vector<Incident> incident;
   std::vector<std::int64_t> unshot;
+  /// What brought the unshot power of a zone.
+  struct Arrived {
+    std::int64_t packets = 0;
+    std::int64_t power = 0;  ///< Of them, all channels together.
+  };
+  std::vector<Arrived> arrived;    ///< By zone; empty unless packets are counted.
   std::vector<std::uint8_t> live;  ///< By block: 0 only if all its unshot power is 0.
 };
 

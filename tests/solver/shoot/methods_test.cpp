@@ -19,6 +19,7 @@
 #include "solver/shoot/packet_batch.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/mean_test.h"
+#include "tests/support/skies.h"
 #include "tests/support/test_rooms.h"
 #include "tests/support/zone_irradiances.h"
 
@@ -122,6 +123,48 @@ TEST(Methods, LightOfASmallShareOfThePowerIsFollowedToItsEnd) {
       EXPECT_TRUE(mean.agrees_with(1 / (1 - kRho))) << to_string(method) << ", " << share;
       EXPECT_TRUE(mean.would_notice(0.2, 1 / (1 - kRho))) << mean.standard_error();
     }
+  }
+}
+
+/// Ground under an overcast sky with a shed on it, and a closed furnace of M = 1 W/m2 that no daylight
+/// reaches, a hundred-thousandth of all power.
+RoomBuilder furnace_under_the_sky(double rho) {
+  RoomBuilder room = furnace(rho, 2);
+  const MaterialId ground = room.material("ground", 0.5, 0, true);
+  room.quad(ground, {Vec3(-40, -40, -1), Vec3(40, -40, -1), Vec3(40, 40, -1), Vec3(-40, 40, -1)}, 16);
+  room.box({-6, -6, -0.9}, {6, 6, 4}, {MaterialId(), ground, ground, ground, ground, ground}, 4);
+  room.scene().sky = test::sky_over_z(SkyKind::kOvercast, 200);
+  return room;
+}
+
+// What sees little of the sky sends more packets than its power says, but must not take over with them what
+// others have: the lamps of a closed room on a large site came out twice too bright, and fifty times as noisy
+// as here.
+TEST(Methods, LampsInTheDarkAreNotGivenDaylight) {
+  constexpr double kRho = 0.5;
+  const RoomBuilder room = furnace_under_the_sky(kRho);
+  const ZoneMesh mesh = room.mesh().mesh;
+  const Room walls(room.scene(), mesh);
+  const PacketRoom transport(walls);
+  const PacketSources emission = collect_packet_sources(transport);
+  for (const SolveMethod method : kMethods) {
+    SolverSettings settings;
+    BatchBooks books = transport.new_books();
+    test::MeanTest mean;
+    tbb::task_arena arena(2);
+    for (std::uint32_t batch = 0; batch < 128; ++batch) {
+      books.clear();
+      const BatchTask task{transport, emission, settings, batch, 16'384};
+      arena.execute(
+          [&] { method == SolveMethod::kShooting ? shoot_batch(task, books) : walk_batch(task, books); });
+      double quanta = 0;
+      for (std::size_t z = 0; z < mesh.zone_count(); ++z)
+        if (mesh.zone_surface(ZoneId(z)).index() < 6)
+          quanta += static_cast<double>(books.direct[z]) + static_cast<double>(books.indirect[z]);
+      mean.add(quanta * emission.watts_per_quantum[0] / 22);
+    }
+    EXPECT_TRUE(mean.agrees_with(1 / (1 - kRho))) << to_string(method);
+    EXPECT_TRUE(mean.would_notice(0.02, 1 / (1 - kRho))) << mean.standard_error();
   }
 }
 
