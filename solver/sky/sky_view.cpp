@@ -16,6 +16,9 @@ using std::numbers::pi;
 /// direction in which light comes that none of them met would be drawn too seldom and count too much.
 constexpr float kToNeighbours = 0.12F;
 constexpr int kViewRounds = 2;
+/// Points are looked up so far in front of their surface [normalised]: rays start a little before it, and a
+/// ceiling may lie where two cells meet. No round number, for rooms have those.
+constexpr float kBefore = 0.0041F;
 
 /// One round of it; at the poles nothing is lost.
 void share_with_neighbours(const std::vector<float>& from, std::vector<float>& to) {
@@ -40,7 +43,7 @@ double SkyView::solid_angle() {
 std::size_t SkyView::key_of(const Vec3f& x, const Vec3f& normal) {
   std::size_t key = 0;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const float scaled = 0.5F * (x[k] + 1) * static_cast<float>(kCells);
+    const float scaled = 0.5F * (x[k] + kBefore * normal[k] + 1) * static_cast<float>(kCells);
     key = key * kCells + static_cast<std::size_t>(std::clamp(scaled, 0.0F, static_cast<float>(kCells) - 1));
   }
   Eigen::Index axis = 0;
@@ -71,7 +74,21 @@ void SkyView::add_escape(std::uint32_t place, const Vec3& local, float brightnes
   until_[place * (kDirections + 1) + 1 + direction_of(local)] += brightness;
 }
 
+void SkyView::take_over_from_neighbours() {
+  const std::vector<std::uint32_t> known = places_;
+  for (std::size_t key = 0; key < places_.size(); ++key) {
+    if (known[key] != kUnknown) continue;
+    std::size_t stride = 6;
+    for (int k = 0; k < 3; ++k, stride *= kCells) {
+      const std::size_t at = key / stride % kCells;
+      if (at > 0 && known[key - stride] != kUnknown) places_[key] = known[key - stride];
+      if (at + 1 < kCells && known[key + stride] != kUnknown) places_[key] = known[key + stride];
+    }
+  }
+}
+
 void SkyView::finish() {
+  take_over_from_neighbours();
   std::vector<float> learnt(kDirections);
   std::vector<float> shared(kDirections);
   for (std::size_t place = 0; place < rays_.size(); ++place) {

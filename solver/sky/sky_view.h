@@ -45,6 +45,8 @@ class SkyView {
  private:
   static std::size_t key_of(const Vec3f& x, const Vec3f& normal);
   static std::size_t direction_of(const Vec3& local);
+  /// Cells that no ray was sent from see what those beside them see: corners of faces lie where cells meet.
+  void take_over_from_neighbours();
 
   std::vector<std::uint32_t> places_;
   std::vector<std::uint32_t> rays_, escaped_;  // by place
