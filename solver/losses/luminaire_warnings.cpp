@@ -19,7 +19,13 @@ std::string name_of(const PunctualLight& light, std::size_t index) {
 std::string warning_of(const OpeningLoss& loss, const Scene& scene) {
   const PunctualLight& light = scene.lights[loss.light];
   const std::string name = name_of(light, loss.light);
+  if (loss.meets_nothing)
+    return fmt::format(
+        "{}: its light meets nothing; is it outside of the room, or its position in other units?", name);
   const std::string surface = quoted_name(scene, loss.surface);
+  if (loss.is_shut_in)
+    return fmt::format("{}: none of its light gets out of {}, which is closed around it; move it", name,
+                       surface);
   if (loss.touching > 0)
     return fmt::format(
         "{} lies in {}: {} of its light is lost and {} falls on the very point it stands on; move it off",

@@ -20,6 +20,10 @@ constexpr std::uint32_t kPacketsPerLight = 4096;
 constexpr std::uint32_t kLeastPacketsPerLight = 64;
 constexpr std::uint32_t kMostOpeningPackets = 1U << 19;
 constexpr double kLeastLoss = 1e-3;
+/// A luminaire that lights only a closed space less than this thin is in a piece of furniture, a plenum or
+/// its own housing.
+constexpr float kThinMetres = 0.5F;
+constexpr float kThinShare = 0.25F;  // of the least extent of the room
 
 /// The surface between two points, if there is one.
 std::optional<SurfaceId> between(const PacketRoom& transport, const Vec3f& from, const Vec3f& to) {
@@ -65,7 +69,8 @@ std::optional<Contact> contact_of(const PacketRoom& transport, const PunctualLig
 /// before them and the room behind them.
 class SideLooks {
  public:
-  explicit SideLooks(const RayTracer& rays) : rays_(rays), numbers_(0) {}
+  SideLooks(const RayTracer& rays, const SurfaceModel& surfaces)
+      : rays_(rays), surfaces_(surfaces), numbers_(0) {}
 
   void look(const Hit& hit) {
     constexpr std::uint32_t kMostLooks = 256;
@@ -79,14 +84,34 @@ class SideLooks {
     };
     if (is_open(hit.front)) ++open_before_;
     if (is_open(!hit.front)) ++open_behind_;
+    const Frame frame(hit.front ? front : Vec3f(-front));
+    note_lit(hit);
+    Hit next;
+    if (rays_.closest(rays_.ray_origin(hit.triangle, hit.u, hit.v, hit.front), frame.to_world(local), next))
+      note_lit(next);
   }
 
   bool outside_of_a_room() const {
     return looks_ > 0 && 2 * open_before_ >= looks_ && 20 * open_behind_ <= looks_;
   }
+  /// The light and what follows it from where it is reflected stay in a space thinner than this
+  /// [normalised].
+  bool within_thin_space(float thickness) const {
+    return looks_ > 0 && open_before_ == 0 && !lets_light_through_ && lit_.sizes().minCoeff() < thickness;
+  }
 
  private:
+  void note_lit(const Hit& hit) {
+    lit_.extend(rays_.point(hit.triangle, hit.u, hit.v));
+    if (surfaces_.any_specular() && surfaces_.is_specular(hit.triangle, hit.front) &&
+        surfaces_.specular(hit.triangle).lets_light_through())
+      lets_light_through_ = true;
+  }
+
   const RayTracer& rays_;
+  const SurfaceModel& surfaces_;
+  Eigen::AlignedBox3f lit_;
+  bool lets_light_through_ = false;
   SobolSequence numbers_;
   std::uint32_t looks_ = 0, open_before_ = 0, open_behind_ = 0;
 };
@@ -94,11 +119,13 @@ class SideLooks {
 /// Books where the packets of one light end.
 class OpeningBooks {
  public:
-  OpeningBooks(const PacketRoom& transport, const PunctualLight& light, const Vec3f& mouth)
+  /// `thin` [normalised]: of spaces that a luminaire should not be shut in.
+  OpeningBooks(const PacketRoom& transport, const PunctualLight& light, const Vec3f& mouth, float thin)
       : transport_(transport),
         mouth_(mouth),
+        thin_(thin),
         contact_(contact_of(transport, light, mouth)),
-        looks_(transport.rays()) {}
+        looks_(transport.rays(), transport.surface_model()) {}
 
   void add(const ProbeRay& probe) {
     ++packets_;
@@ -130,8 +157,17 @@ class OpeningBooks {
     const auto share = [&](std::uint32_t count) { return static_cast<double>(count) / packets_; };
     OpeningLoss loss{
         light, share(on_backs_ + beyond_), share(beyond_), share(touching_), share(seen_), most_of(takers_)};
-    if (contact_) {
+    const std::uint32_t met = on_backs_ + beyond_ + touching_ + seen_;
+    if (met <= kLeastLoss * packets_) {
+      loss.meets_nothing = true;
+      loss.lost = 1;
+      loss.surface = SurfaceId();
+    } else if (contact_) {
       loss.surface = contact_->surface;
+    } else if (met == packets_ && on_backs_ == 0 && looks_.within_thin_space(thin_)) {
+      loss.is_shut_in = true;
+      loss.lost = 1;
+      loss.surface = most_of(seers_);
     } else if (looks_.outside_of_a_room()) {
       loss.lost = 1;
       loss.seen = 0;
@@ -150,6 +186,7 @@ class OpeningBooks {
 
   const PacketRoom& transport_;
   Vec3f mouth_;
+  float thin_;
   std::optional<Contact> contact_;
   SideLooks looks_;
   Counts takers_, seers_;
@@ -157,9 +194,9 @@ class OpeningBooks {
 };
 
 OpeningLoss loss_of(const PacketRoom& transport, std::uint32_t light, const PunctualEmitter& emitter,
-                    const Vec3f& mouth, std::uint32_t packets) {
+                    const Vec3f& mouth, float thin, std::uint32_t packets) {
   const PunctualLight& source = transport.scene().lights[light];
-  OpeningBooks books(transport, source, mouth);
+  OpeningBooks books(transport, source, mouth, thin);
   const SobolSequence numbers(light);
   Ray16 rays;
   for (std::uint32_t first = 0; first < packets; first += 16) {
@@ -184,13 +221,16 @@ std::vector<OpeningLoss> opening_losses(const PacketRoom& transport, const StopT
   if (lights.empty()) return losses;
   const auto packets = std::clamp(static_cast<std::uint32_t>(kMostOpeningPackets / lights.size()),
                                   kLeastPacketsPerLight, kPacketsPerLight);
+  const auto metres = static_cast<float>(transport.rays().metres_per_unit());
+  const auto least_extent = static_cast<float>(bounds(transport.scene()).size().minCoeff()) / metres;
+  const float thin = std::min(kThinMetres / metres, kThinShare * least_extent);
   for (std::size_t l = 0; l < lights.size(); ++l) {
     end_if_requested(stop);
     // Where it is meant to be, not where its rays start.
     const PunctualEmitter emitter = make_punctual_emitter(lights[l], transport.rays());
     if (is_at_infinity(emitter)) continue;
     const OpeningLoss loss =
-        loss_of(transport, static_cast<std::uint32_t>(l), emitter, mouth_of_light(emitter), packets);
+        loss_of(transport, static_cast<std::uint32_t>(l), emitter, mouth_of_light(emitter), thin, packets);
     if (loss.lost > kLeastLoss || loss.touching > 0) losses.push_back(loss);
   }
   return losses;

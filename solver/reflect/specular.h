@@ -71,6 +71,7 @@ class SpecularSurface {
 
   bool exists() const { return reflects_ || transmits_ || diffuses_; }
   bool transmits() const { return transmits_; }
+  bool lets_light_through() const { return transmits_ || diffuses_; }
   /// Light is let through into all directions.
   bool diffuses() const { return diffuses_; }
   /// Light crosses it straight on.

@@ -57,8 +57,7 @@ class PointsOfRoom {
 
 bool lets_light_through(const SurfaceModel& surfaces, const Hit& hit) {
   if (!surfaces.any_specular() || !surfaces.is_specular(hit.triangle, hit.front)) return false;
-  const SpecularSurface& surface = surfaces.specular(hit.triangle);
-  return surface.transmits() || surface.diffuses();
+  return surfaces.specular(hit.triangle).lets_light_through();
 }
 
 bool leaves(const RayTracer& rays, const SurfaceModel& surfaces, Vec3f from, const Vec3f& direction) {

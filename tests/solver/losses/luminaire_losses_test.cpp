@@ -94,6 +94,40 @@ TEST_P(LuminaireLosses, MountedBelowTheCeilingNothingIsLost) {
   EXPECT_THAT(warnings(), IsEmpty());
 }
 
+TEST_P(LuminaireLosses, LampsThatLightNothingAreFarOutside) {
+  walls(GetParam());
+  light(SpotLight{"in millimetres", Vec3(2000, 2900, 2000), Vec3(0, -1, 0), room_.flat(1), 0.1, 0.3});
+  light(PointLight{"bulb", Vec3(2, 2, 2), room_.flat(1)});
+  const std::vector<OpeningLoss> found = losses();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].meets_nothing);
+  EXPECT_EQ(found[0].lost, 1);
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'in millimetres'"), HasSubstr("meets nothing"))));
+}
+
+// A table top with two like sides is lit from within as any room is.
+TEST_P(LuminaireLosses, LampsInsideOfFurnitureAreShutIn) {
+  walls(GetParam());
+  const MaterialId wood = room_.material("wood", 0.5, 0, true);
+  room_.solid({1, 0.7, 1}, {2, 0.74, 2}, wood, 1);
+  light(PointLight{"in the table", Vec3(1.5, 0.72, 1.5), room_.flat(1)});
+  light(SpotLight{"washer", Vec3(2, 2, 0.05), Vec3(0, 0, -1), room_.flat(1), 0.1, 0.3});
+  light(PointLight{"bulb", Vec3(2, 2, 2), room_.flat(1)});
+  const std::vector<OpeningLoss> found = losses();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].is_shut_in);
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'in the table'"), HasSubstr("gets out of 'quad"))));
+}
+
+TEST_P(LuminaireLosses, LampsInOpalBodiesAreNot) {
+  walls(GetParam());
+  const MaterialId opal = room_.material("opal", 0.3, 0, true);
+  room_.scene().materials[opal.index()].non_diffuse.diffuse_transmittance = room_.flat(0.5);
+  room_.solid({1.4, 1.9, 1.4}, {1.6, 2.1, 1.6}, opal, 1);
+  light(PointLight{"pendant", Vec3(1.5, 2, 1.5), room_.flat(1)});
+  EXPECT_THAT(losses(), IsEmpty());
+}
+
 INSTANTIATE_TEST_SUITE_P(Sides, LuminaireLosses, testing::Bool());
 
 TEST_F(LuminaireLosses, LampsBehindASurfaceLoseWhatMeetsItsBack) {
