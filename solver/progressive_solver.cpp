@@ -204,6 +204,8 @@ class ProgressiveSolver::Run {
       record().seconds = seconds_since(begin_);
     });
     if (examination == Examination::kWhole) look_for_lost_light(room_, interrupt_, solution_);
+    // What follows the last batch may have been cut off: a run that goes on does it again.
+    if (interrupt_) record().stopped = StopReason::kInterrupted;
   }
 
   Solution hand_over() { return std::move(solution_); }

@@ -93,6 +93,26 @@ TEST_F(Resume, AnyNumberOfBreaksLeavesNoTrace) {
     }
 }
 
+// After the last batch small zones are gathered and the zones looked at: a solution that lacks it is not done.
+TEST_F(Resume, AnInterruptAfterTheLastBatchLeavesNoTrace) {
+  const VariableFurnace furnace = furnace_with_small_zones();
+  const RoomBuilder& room = furnace.room();
+  const SolverSettings settings = twenty_batches();
+  const Solution whole = solve(room.scene(), mesh_of(room), settings, {}, test::kNever);
+  for (const bool before_small_zones : {false, true}) {
+    std::atomic<bool> interrupt = false;
+    ProgressiveSolver solver(room.scene(), new_solution(room.scene(), mesh_of(room), settings), interrupt);
+    while (solver.step()) {
+    }
+    interrupt = before_small_zones;
+    const Solution cut = through_file(solver.finish([&](const SolveProgress&) { interrupt = true; }));
+    EXPECT_EQ(cut.record.stopped, StopReason::kInterrupted);
+    EXPECT_EQ(cut.record.gathered_zones > 0, !before_small_zones);
+    EXPECT_FALSE(cut.record.discretisation);
+    expect_same_result(whole, solve(room.scene(), through_file(cut), {}, test::kNever));
+  }
+}
+
 TEST_F(Resume, AFinishedSolutionGoesOnToALowerError) {
   const VariableFurnace furnace = furnace_with_small_zones();
   const RoomBuilder& room = furnace.room();
