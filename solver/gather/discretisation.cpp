@@ -27,7 +27,7 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
                                            std::size_t probe_count) {
   if (stop.requested()) return std::nullopt;
   const RadianceField field(room, solution, kFieldHalves);
-  if (field.parts() != kFieldHalves) return std::nullopt;
+  if (field.parts() != kFieldHalves || field.has_light_that_rays_miss()) return std::nullopt;
   const std::size_t bands = room.band_count();
   const std::uint64_t seed = solution.settings.seed;
   const DirectLight direct(room);

@@ -14,7 +14,8 @@ namespace reemit {
 /// independent halves of the batches give two differences, whose product has no noise on the mean. Where
 /// noise leaves it uncertain by more than a factor of two, it is what the difference stays below if that is
 /// at most 3 %, else nothing. Takes about 160 rays for each probe. Nothing either with fewer than two
-/// batches, without light, or when `stop` is requested before the end.
+/// batches, without light, with light that gathers miss (RadianceField::has_light_that_rays_miss), or when
+/// `stop` is requested before the end.
 std::optional<double> discretisation_error(const Room& room, const Solution& solution, const StopToken& stop,
                                            std::size_t probe_count = 1024);
 

@@ -40,6 +40,29 @@ float RadianceField::mean_reflected(ZoneId zone, std::size_t band) const {
   return static_cast<float>(sum / static_cast<double>(parts_));
 }
 
+bool RadianceField::has_light_that_rays_miss() const {
+  constexpr double kMostMissed = 0.005;
+  const Scene& scene = room_->scene();
+  const bool has_small_lights = !scene.lights.empty() || (scene.sky && scene.sky->sun_shines());
+  return has_small_lights && caustic_share() >= kMostMissed;
+}
+
+double RadianceField::caustic_share() const {
+  double worst = 0;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    double caustic = 0;
+    double all = 0;
+    for (std::size_t i = 0; i < room_->mesh().zone_count(); ++i) {
+      const ZoneId zone(i);
+      const double area = room_->mesh().zone_area(zone);
+      caustic += area * static_cast<double>(reflected_caustic(zone)[b]);
+      all += area * static_cast<double>(mean_reflected(zone, b));
+    }
+    if (all > 0) worst = std::max(worst, caustic / all);
+  }
+  return worst;
+}
+
 float RadianceField::zone_size(ZoneId z) const {
   const ZoneMesh& mesh = room_->mesh();
   const double area = mesh.is_group(z) ? mesh.zone_area(z) : cell_area(mesh, mesh.zone_cell(z));

@@ -36,10 +36,15 @@ class RadianceField {
     return zone.valid() && !reflected_caustic_.empty() ? &reflected_caustic_[zone.index() * bands_]
                                                        : zero_.data();
   }
+  /// Whether zones have light, one part in 200 or more, that no ray from a surface finds: that of lights
+  /// without area, and all but that of the sun, over mirrors, gloss and glass.
+  bool has_light_that_rays_miss() const;
   /// Edge length of the square that two zones such as this make up [normalised units].
   float zone_size(ZoneId z) const;
 
  private:
+  /// Of all that zones reflect, the share that caustics brought, of the worst band [0,1].
+  double caustic_share() const;
   void read_zones(const Solution& solution);
   /// Of a zone in a part, whose batches weigh `weight` together [W/m2].
   float irradiance(const ZoneSums& sums, std::size_t part, double weight, std::size_t zone,

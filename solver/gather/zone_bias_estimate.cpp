@@ -51,9 +51,11 @@ ZoneBiasEffort ZoneBiasEffort::of(double rays) {
   return {static_cast<std::uint32_t>(of_point) / kBiasReplicates * kBiasReplicates};
 }
 
-ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& path,
-                            std::span<const SurfacePoint> points, std::span<const double> scale,
-                            const ZoneBiasEffort& effort, std::uint64_t seed, const StopToken* stop) {
+std::optional<ZoneBias> estimate_zone_bias(const HemisphereGather& gather, const PathTracer& path,
+                                           std::span<const SurfacePoint> points,
+                                           std::span<const double> scale, const ZoneBiasEffort& effort,
+                                           std::uint64_t seed, const StopToken* stop) {
+  if (gather.field().has_light_that_rays_miss()) return std::nullopt;
   const std::size_t bands = gather.band_count();
   const std::size_t parts = gather.field().parts();
   const std::uint32_t rays = effort.rays / kBiasReplicates;
@@ -122,7 +124,7 @@ std::optional<ZoneBias> estimate_zone_bias(const RadianceField& field, const Sol
     points.push_back(point_in_zone(room, probes[i].zone, {u[0], u[1]}));
     for (const double p : power) scale.push_back(p > 0 ? ZoneBiasEffort::kPoints * probes[i].area / p : 0);
   }
-  const ZoneBias bias = estimate_zone_bias(gather, path, points, scale, effort, seed, &stop);
+  const std::optional<ZoneBias> bias = estimate_zone_bias(gather, path, points, scale, effort, seed, &stop);
   if (stop.requested()) return std::nullopt;
   return bias;
 }

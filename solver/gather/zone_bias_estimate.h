@@ -29,12 +29,13 @@ struct ZoneBiasEffort {
 /// times scale[i * bands + b], averaged over each group, and of that the rms over the groups, of the worst
 /// band. With scale = 1/L that is a relative error. Replicates that read parts of the zone solution of their
 /// own give the noise of the estimate, whose square is taken out: noise of rays and zones has no share in it
-/// on the mean. Runs in parallel; the same for any number of threads. When `stop` (may be null) is requested
-/// it returns early, and what it returns means nothing.
-ZoneBias estimate_zone_bias(const HemisphereGather& gather, const PathTracer& path,
-                            std::span<const SurfacePoint> points, std::span<const double> scale,
-                            const ZoneBiasEffort& effort, std::uint64_t seed,
-                            const StopToken* stop = nullptr);
+/// on the mean. Nothing where paths do not find all light (RadianceField::has_light_that_rays_miss). Runs in
+/// parallel; the same for any number of threads. When `stop` (may be null) is requested it returns early, and
+/// what it returns means nothing.
+std::optional<ZoneBias> estimate_zone_bias(const HemisphereGather& gather, const PathTracer& path,
+                                           std::span<const SurfacePoint> points,
+                                           std::span<const double> scale, const ZoneBiasEffort& effort,
+                                           std::uint64_t seed, const StopToken* stop = nullptr);
 
 /// The same for light gathered all over the surfaces of the room, over its mean reflected radiance there.
 /// `field`: of the solution, in as many parts as there are. Nothing without light, or when `stop` is

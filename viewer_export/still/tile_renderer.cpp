@@ -408,7 +408,7 @@ std::optional<ZoneBias> TileRenderer::zone_bias(const Film& film) const {
       scale.push_back(seen && radiance > 0 ? 1 / radiance : 0);
     }
   }
-  const ZoneBias bias =
+  const std::optional<ZoneBias> bias =
       estimate_zone_bias(light_.gather(), light_.path(), points, scale,
                          ZoneBiasEffort::of(camera_rays * (2 + settings_->gathers)), settings_->seed, stop_);
   if (stop_->requested()) return std::nullopt;

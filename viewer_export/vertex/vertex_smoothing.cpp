@@ -22,7 +22,7 @@
 namespace reemit {
 namespace {
 
-/// Vertices that have the errors of their means looked at together.
+/// Vertices that have the errors of their means looked at together, at most.
 constexpr std::size_t kGroup = 64;
 
 /// Fits over surroundings of so many edges to each side, from none on.
@@ -223,25 +223,55 @@ class Smoothing {
   std::vector<LayerFits> fits_;  // by layer
 };
 
-/// Errors are taken relative to what is reflected, in the dark to this share of the mean.
+/// Vertices of one side of a surface, first to last - 1. They follow each other on it, so they are close.
+struct VertexGroup {
+  std::size_t first, last;
+};
+
+std::vector<VertexGroup> groups_of(const ZoneMesh& mesh, const VertexRings& rings) {
+  std::vector<VertexGroup> groups;
+  SurfaceId surface;
+  bool front = true;
+  for (std::size_t v = 0; v < rings.size(); ++v) {
+    const SurfacePoint x = rings.point(v);
+    const SurfaceId of_vertex = mesh.surface(x.triangle, x.front);
+    if (groups.empty() || v - groups.back().first == kGroup || of_vertex != surface || x.front != front)
+      groups.push_back({v, v});
+    groups.back().last = v + 1;
+    surface = of_vertex;
+    front = x.front;
+  }
+  return groups;
+}
+
+/// Errors are taken relative to what is reflected, in the dark to this share of the mean of the group, for a
+/// closed room beside a bright one has darkness of its own.
 constexpr double kDark = 0.1;
 
 std::vector<double> relative_scales(const VertexGatherer& gatherer, const VertexRings& rings,
-                                    const SmoothedValues& radiance, std::size_t bands, std::size_t band) {
+                                    const std::vector<VertexGroup>& groups, const SmoothedValues& radiance,
+                                    std::size_t bands, std::size_t band) {
   SurfaceModel::PointValues here;
   const auto reflected = [&](std::size_t v) {
     return static_cast<double>(radiance.value[v * bands + band]) -
            static_cast<double>(gatherer.emitted(v, here)[band]);
   };
-  double power = 0;
-  double area = 0;
-  for (std::size_t v = 0; v < rings.size(); ++v) {
-    power += rings.area(v) * reflected(v);
-    area += rings.area(v);
-  }
   std::vector<double> scales(rings.size(), 0.0);
-  for (std::size_t v = 0; v < scales.size(); ++v)
-    if (const double seen = reflected(v) + kDark * power / area; seen > 0) scales[v] = 1 / seen;
+  for (const VertexGroup& group : groups) {
+    double power = 0;
+    double area = 0;
+    double variance = 0;
+    for (std::size_t v = group.first; v < group.last; ++v) {
+      power += rings.area(v) * reflected(v);
+      area += rings.area(v);
+      variance += static_cast<double>(radiance.variance[v * bands + band]);
+    }
+    if (!(area > 0)) continue;
+    // Where there is nothing but noise it is no more than all of what is seen.
+    const double noise = std::sqrt(variance / static_cast<double>(group.last - group.first));
+    for (std::size_t v = group.first; v < group.last; ++v)
+      if (const double seen = reflected(v) + kDark * power / area + noise; seen > 0) scales[v] = 1 / seen;
+  }
   return scales;
 }
 
@@ -254,15 +284,15 @@ void smooth_vertices(const VertexGatherer& gatherer, const VertexRings& rings, c
   SmoothVertices smooth(data);
   smoothing.store(smooth);
   const std::size_t bands = data.bands.count();
+  const std::vector<VertexGroup> groups = groups_of(gatherer.field().room().mesh(), rings);
   for (std::size_t b = 0; b < bands; ++b) {
-    const std::vector<double> scales = relative_scales(gatherer, rings, smooth.radiance, bands, b);
+    const std::vector<double> scales = relative_scales(gatherer, rings, groups, smooth.radiance, bands, b);
     SmoothingErrors errors(smooth.radiance, data.radiance, data.radiance_stderr, bands, b, scales);
-    std::vector<std::size_t> group;
-    for (std::size_t v = 0; v < rings.size(); ++v) {
-      group.push_back(v);
-      if (group.size() < kGroup && v + 1 < rings.size()) continue;
-      errors.complete(group);
-      group.clear();
+    std::vector<std::size_t> vertices;
+    for (const VertexGroup& group : groups) {
+      vertices.resize(group.last - group.first);
+      std::iota(vertices.begin(), vertices.end(), group.first);
+      errors.complete(vertices);
     }
   }
   for (std::size_t k = 0; k < data.radiance.size(); ++k)

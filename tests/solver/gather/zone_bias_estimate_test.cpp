@@ -35,7 +35,7 @@ ZoneBias estimate_of(double factor) {
         surface_point(walls.rays(), TriangleId(i % walls.rays().mesh().triangle_count()), 0.3F, 0.3F, true));
   // Over the radiance rho^2 E/pi that is there after at least two reflections.
   const std::vector<double> scale(points.size(), std::numbers::pi / (kRho * kRho * kIrradiance));
-  return estimate_zone_bias(gather, path, points, scale, {256}, 1);
+  return estimate_zone_bias(gather, path, points, scale, {256}, 1).value();
 }
 
 TEST(ZoneBiasEstimate, finds_a_planted_bias_and_nothing_without) {
@@ -73,6 +73,27 @@ TEST(ZoneBiasEstimate, solve_states_that_zones_are_too_large_beside_a_lamp) {
   const Solution solution = room.solved(4'000'000, 1);
   ASSERT_TRUE(solution.record.gather_bias.has_value());
   EXPECT_LT(solution.record.gather_bias->rms, zonal.record.gather_bias->rms / 2);
+}
+
+// No path that leaves a surface meets a point: what a mirror throws of its light would look like a bias.
+TEST(ZoneBiasEstimate, says_nothing_where_mirrors_throw_light_that_paths_do_not_find) {
+  for (const bool has_lamp_without_area : {false, true}) {
+    test::RoomBuilder room;
+    const MaterialId wall = room.material("wall", 0.5);
+    const MaterialId mirror = room.material("mirror", 0);
+    const MaterialId lamp = room.material("lamp", 0, 100);
+    room.scene().materials[mirror.index()].non_diffuse.specular_reflectance = room.flat(0.9);
+    room.box({0, 0, 0}, {1, 1, 1}, {mirror, wall, wall, wall, wall, wall}, 6);
+    room.quad(lamp, {Vec3(.4, .4, .99), Vec3(.4, .6, .99), Vec3(.6, .6, .99), Vec3(.6, .4, .99)}, 1);
+    if (has_lamp_without_area)
+      room.scene().lights.push_back(
+          SpotLight{"spot", {0.8, 0.5, 0.5}, Vec3(-1, 0, 0), room.flat(10), 0.2, 0.3});
+    SolverSettings settings;
+    settings.packets = 200'000;
+    const Solution solution = solve(room.scene(), room.mesh(), settings, {}, test::kNever);
+    EXPECT_EQ(solution.record.gather_bias.has_value(), !has_lamp_without_area);
+    if (has_lamp_without_area) EXPECT_FALSE(solution.record.discretisation);
+  }
 }
 
 }  // namespace

@@ -106,6 +106,35 @@ TEST(VertexSmoothing, LeavesLessThanHalfOfTheNoiseOfIndirectLightAndSaysSo) {
   EXPECT_LT(stated, 2 * error);
 }
 
+// A closed room with a ten-thousandth of the light of the one beside it has errors of its own.
+TEST(VertexSmoothing, ErrorsOfADarkRoomAreNotThoseOfABrightOne) {
+  RoomBuilder room;
+  const MaterialId grey = room.material("wall", 0.5);
+  for (const double exitance : {1e4, 1.0}) {
+    const double x = exitance > 1 ? 0 : 2;
+    const MaterialId lamp = room.material("lamp", 0, exitance);
+    room.box({x, 0, 0}, {x + 1, 1, 1}, {grey, grey, grey, grey, grey, grey}, 8);
+    room.quad(lamp, {Vec3(x + .4, .4, .9), Vec3(x + .4, .6, .9), Vec3(x + .6, .6, .9), Vec3(x + .6, .4, .9)},
+              1);
+  }
+  SolverSettings settings;
+  settings.packets = 1U << 18;
+  settings.method = SolveMethod::kWalk;
+  const Solution solution = solve(room.scene(), room.mesh(), settings, {}, kNever);
+  const VertexData data = vertices_of(room, solution, few_rays(true));
+  double light[2] = {0, 0};
+  double error[2] = {0, 0};
+  for (std::size_t v = 0; v < data.vertex_count(); ++v) {
+    const bool is_dark = data.positions[v].x() > 1.5;
+    light[is_dark ? 1 : 0] += std::pow(static_cast<double>(data.radiance[v]), 2);
+    error[is_dark ? 1 : 0] += std::pow(static_cast<double>(data.radiance_stderr[v]), 2);
+  }
+  EXPECT_LT(light[1], 1e-7 * light[0]);
+  // Few packets have come to the dark room, so its zones are noisier, but known.
+  EXPECT_LT(std::sqrt(error[0] / light[0]), 0.3);
+  EXPECT_LT(std::sqrt(error[1] / light[1]), 1);
+}
+
 TEST(VertexSmoothing, KeepsTheMean) {
   const RoomBuilder room = shaded_floor();
   const Solution solution = solved(room);
