@@ -26,7 +26,9 @@ constexpr std::uint32_t kSecondThoughts = 28;
 /// Of sides that have met each other so many send one in a round of these, in turn: a ray that gets out from
 /// any of them opens all.
 constexpr std::size_t kSpeakers = 32;
-constexpr std::uint32_t kRaysPerLight = 4096;
+constexpr std::uint32_t kMostRaysPerLight = 4096;
+constexpr std::uint32_t kLeastRaysPerLight = 64;
+constexpr std::uint32_t kRaysOfLights = 1U << 22;  // of all, but for the least
 /// Points keep this share of a triangle's size away from its edges, where rounding decides what a ray meets.
 constexpr float kSealMargin = 0.02F;
 
@@ -47,7 +49,7 @@ class Reach {
       if (room.surfaces().emits(t, is_front(SideId(s)))) sets_.join(s, light_);
       // Light comes through glass and opal sheets to what lies behind.
       if (is_front(SideId(s)) && has_zones(s) && room.surfaces().any_specular() &&
-          (room.surfaces().specular(t).transmits() || room.surfaces().specular(t).diffuses()))
+          room.surfaces().specular(t).lets_light_through())
         sets_.join(s, side_of(t, false).index());
     }
     join_lights(room.scene());
@@ -85,11 +87,14 @@ class Reach {
   bool is_lit(std::uint32_t s) { return sets_.find(s) == sets_.find(light_); }
 
   void join_lights(const Scene& scene) {
-    for (const PunctualLight& light : lights_before_faces(scene, rays_)) {
+    const std::vector<PunctualLight> lights = lights_before_faces(scene, rays_);
+    const auto rays_per_light = static_cast<std::uint32_t>(std::clamp<std::size_t>(
+        kRaysOfLights / std::max<std::size_t>(1, lights.size()), kLeastRaysPerLight, kMostRaysPerLight));
+    for (const PunctualLight& light : lights) {
       const PunctualEmitter emitter = make_punctual_emitter(light, rays_);
       if (is_at_infinity(emitter)) is_outside_lit_ = true;
       std::uint32_t met[16];
-      for (std::uint32_t first = 0; first < kRaysPerLight; first += 16) {
+      for (std::uint32_t first = 0; first < rays_per_light; first += 16) {
         Ray16 rays;
         for (std::uint32_t k = 0; k < 16; ++k) {
           const std::array<float, 4> u = rng_.uniform4(first + k, kNothing, 0);

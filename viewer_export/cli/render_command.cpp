@@ -200,6 +200,10 @@ Source load_source(const RenderOptions& options) {
     Scene scene = load_room_of(solution, file, options.room, options.style);
     return {std::move(scene), std::move(solution)};
   }
+  if (const auto solution = std::find_if(options.files.begin(), options.files.end(), is_meant_as_solution);
+      solution != options.files.end())
+    throw InputError(solution->string(), "it is a solution, and it is not the only file",
+                     "Stills are made of one solution at a time.");
   if (options.still.integrator != Integrator::kPath)
     throw InputError(file.string(),
                      "is a room, and only --integrator path makes stills of one that is not solved",

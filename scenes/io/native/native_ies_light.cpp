@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/io/common/up_direction.h"
 #include "scenes/io/native/native_materials.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
@@ -14,12 +15,13 @@
 namespace reemit {
 namespace {
 
-Vec3 nadir_of(const JsonCursor& at, const Vec3& position, double unit) {
+/// `down`: where the nadir points if the file does not say.
+Vec3 nadir_of(const JsonCursor& at, const Vec3& position, double unit, const Vec3& down) {
   const auto direction = at.find("direction");
   const auto look_at = at.find("look_at");
   if (look_at && direction) look_at->fail("the direction is given already", "Keep one of the two.");
   const Vec3 aim =
-      look_at ? Vec3(look_at->place() * unit - position) : (direction ? direction->vec3() : Vec3(0, -1, 0));
+      look_at ? Vec3(look_at->place() * unit - position) : (direction ? direction->vec3() : down);
   const double length = aim.stableNorm();
   if (!(length > 0) || !std::isfinite(length))
     (look_at ? *look_at : *direction).fail("the direction has no length", "Choose another point or vector.");
@@ -39,8 +41,8 @@ Vec3 plane_zero_of(const JsonCursor& at, const Vec3& nadir) {
   return across.normalized();
 }
 
-Eigen::Matrix3d orientation_of(const JsonCursor& at, const Vec3& position, double unit) {
-  const Vec3 nadir = nadir_of(at, position, unit);
+Eigen::Matrix3d orientation_of(const JsonCursor& at, const Vec3& position, double unit, const Vec3& down) {
+  const Vec3 nadir = nadir_of(at, position, unit, down);
   const Vec3 up = -nadir;
   Vec3 zero = plane_zero_of(at, nadir);
   if (const auto turn = at.find("rotate_deg"))
@@ -88,7 +90,7 @@ PhotometricLight NativeIesLights::read(const JsonCursor& at, const std::string& 
   PhotometricLight light;
   light.name = name;
   light.position = at.at("position").place() * unit_;
-  light.orientation = orientation_of(at, light.position, unit_);
+  light.orientation = orientation_of(at, light.position, unit_, -up_direction(scene_));
   light.table = file->table;
   const auto opening = at.find("opening");
   if (!opening || opening->choice({"file", "point"}) == "file") light.opening = file->opening;

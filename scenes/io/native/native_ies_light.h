@@ -9,7 +9,8 @@
 namespace reemit {
 
 /// Reads lights of type "ies" (docs/room_format.md). One object per room, so that luminaires of one file
-/// share their intensities.
+/// share their intensities. Where a file does not aim one it shines down, as cameras and sky that are read
+/// already say (up_direction).
 class NativeIesLights {
  public:
   /// `folder` of the room file; `unit`: metres per unit of length.

@@ -62,9 +62,10 @@ void read_room(const JsonCursor& room, const std::filesystem::path& folder, cons
     NativeObjects(folder, options, unit, room.find("groups"), materials, scene).read(*objects);
   }
   materials.share_total_powers(scene);
-  if (const auto lights = room.find("lights")) read_lights(*lights, unit, folder, scene);
   if (const auto sky = room.find("sky")) read_sky(*sky, folder, scene);
   if (const auto cameras = room.find("cameras")) read_cameras(*cameras, unit, scene);
+  // After what says which way is up.
+  if (const auto lights = room.find("lights")) read_lights(*lights, unit, folder, scene);
 }
 
 }  // namespace

@@ -217,6 +217,23 @@ TEST(NativeLights, MeasuredLuminairesHangDownUnlessAimed) {
             LuminousOpening::Shape::kPoint);
 }
 
+TEST(NativeLights, DownIsWhatCamerasAndSkySay) {
+  const TempFolder folder;
+  folder.write("lamp.ies", kLamp);
+  const auto up_of_lamp = [&](const std::string& more) {
+    const Scene scene = read_native_scene(folder.write("room.json", room(R"("materials": {}, "lights": [
+                     {"type": "ies", "file": "lamp.ies", "position": [0, 0, 0]}], )" +
+                                                                         more)),
+                                          {});
+    return Vec3(std::get<PhotometricLight>(scene.lights.at(0)).orientation.col(2));
+  };
+  const std::string camera = R"("cameras": [{"name": "c", "eye": [1, 1, 1], "look_at": [0, 1, 1], "up": )";
+  EXPECT_TRUE(up_of_lamp(camera + "[0, 0, 1]}]").isApprox(Vec3::UnitZ()));
+  EXPECT_TRUE(up_of_lamp(camera + "[0, 1, 0]}]").isApprox(Vec3::UnitY()));
+  EXPECT_TRUE(up_of_lamp(R"("sky": {"type": "overcast", "illuminance_lx": 1, "up": "z", "north": [0, 1, 0]})")
+                  .isApprox(Vec3::UnitZ()));
+}
+
 TEST(NativeLights, MeasuredLuminairesAreTurnedAndDimmed) {
   const PhotometricLight aimed = measured(R"("position": [0, 2, 0], "look_at": [3, 2, 0], "c0": [1, 5, 0])");
   EXPECT_TRUE((-aimed.orientation.col(2)).isApprox(Vec3(1, 0, 0)));
