@@ -124,6 +124,14 @@ void check_memory_for(const Scene& room) {
                kLeastBytesPerFace * static_cast<double>(faces), available_memory());
 }
 
+/// The same for what was asked of the number of zones.
+void check_memory_for_zones(const Scene& room, double zones) {
+  // Of the mesh, and of what a solve adds up in each band; measured in large rooms it is a tenth more.
+  const double least_bytes_per_zone = 250 + 130 * static_cast<double>(room.bands.count());
+  check_memory(fmt::format("{}: {:.3g} zones", room.source.empty() ? "room" : room.source, zones),
+               least_bytes_per_zone * zones, available_memory());
+}
+
 }  // namespace
 
 MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const WorkWatch& watch) {
@@ -150,7 +158,9 @@ MeshResult build_mesh(const Scene& room, const MeshSettings& settings, const Wor
   if (!(total_area > 0))
     throw InputError(scene.source.empty() ? "room" : scene.source, "there is no face with an area",
                      "check that the file holds polygons, and its unit of length");
-  const double zone_area = wanted_zone_area(settings, zoned_area(scene, pieces, shapes));
+  const double area_of_zones = zoned_area(scene, pieces, shapes);
+  const double zone_area = wanted_zone_area(settings, area_of_zones);
+  check_memory_for_zones(scene, area_of_zones / zone_area);
   const double zone_edge = std::sqrt(zone_area);
 
   std::optional<NearPieces> near(std::in_place, vertices, pieces);

@@ -199,6 +199,11 @@ void report(const Scene& scene, const Solution& solution, const SolveOptions& op
           fmt::format("interrupted; the solution so far is in {}; go on with: reemit solve --resume {}",
                       options.output.string(), options.output.string()));
     print_warnings(solve_warnings(solution));
+    const std::uint64_t asked = solution.settings.packets;
+    if (asked > 0 && solution.record.packets > asked + asked / 2)
+      print_note(fmt::format(
+          "{} packets were sent, not {}: every zone or cell that emits sends one at least in each batch",
+          solution.record.packets, asked));
     const std::string missed =
         missed_by_zones("gathered light", solution.settings.error_target, solution.record.gather_bias);
     if (!missed.empty()) print_note(missed);
@@ -349,7 +354,8 @@ void add_stopping_rules(CLI::App& solve, SolverSettings& settings) {
                     "Stop after this wall time: 60, 60s, 2min, 1h");
   add_parsed_option(
       solve, "--packets", settings.packets, parse_count, "N",
-      "Stop after this many packets, equal parts of the power of all luminaires: 250000 or 1e6");
+      "Stop after this many packets, equal parts of the power of all luminaires: 250000 or 1e6;\n"
+      "more where every zone that emits sends its one in each of 16 batches");
 }
 
 void add_method_options(CLI::App& solve, SolverSettings& settings) {
