@@ -124,11 +124,13 @@ void check_memory_for(const Scene& room) {
                kLeastBytesPerFace * static_cast<double>(faces), available_memory());
 }
 
-/// The same for what was asked of the number of zones.
+/// The same for what was asked of the number of zones; what cannot even be counted is refused elsewhere.
 void check_memory_for_zones(const Scene& room, double zones) {
+  if (zones > 1e9) return;
   // Of the mesh, and of what a solve adds up in each band; measured in large rooms it is a tenth more.
   const double least_bytes_per_zone = 250 + 130 * static_cast<double>(room.bands.count());
-  check_memory(fmt::format("{}: {:.3g} zones", room.source.empty() ? "room" : room.source, zones),
+  check_memory(fmt::format("{}: {:.3g} zones (--zones, --zone-area)",
+                           room.source.empty() ? "room" : room.source, zones),
                least_bytes_per_zone * zones, available_memory());
 }
 

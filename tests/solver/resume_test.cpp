@@ -93,7 +93,8 @@ TEST_F(Resume, AnyNumberOfBreaksLeavesNoTrace) {
     }
 }
 
-// After the last batch small zones are gathered and the zones looked at: a solution that lacks it is not done.
+// After the last batch small zones are gathered and the zones looked at: a solution that lacks it is not
+// done.
 TEST_F(Resume, AnInterruptAfterTheLastBatchLeavesNoTrace) {
   const VariableFurnace furnace = furnace_with_small_zones();
   const RoomBuilder& room = furnace.room();

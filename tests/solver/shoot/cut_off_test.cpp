@@ -136,7 +136,7 @@ TEST(CutOff, InterruptAfterTheLastBatchCutsTheExaminationShort) {
   };
   const Solution s = solve(room.scene(), room.mesh(), settings, stop_then, interrupt);
   EXPECT_TRUE(examines);
-  EXPECT_EQ(s.record.stopped, StopReason::kPacketCount);
+  EXPECT_EQ(s.record.stopped, StopReason::kInterrupted) << "it would pass for finished";
   EXPECT_GT(s.sums.batches, 1);
   EXPECT_LT(s.record.error_bound, 1);
   EXPECT_FALSE(s.record.discretisation.has_value());
