@@ -123,6 +123,8 @@ std::vector<bool> find_pierced(const Scene& room, const RoomShapes& shapes, cons
   std::vector<IndexedBox> boxes;
   boxes.reserve(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) boxes.push_back(box_of(vertices, pieces[i], i, 0));
+  // Holes are looked up by triangle and place, which patches of shapes have not.
+  for (std::size_t s = 0; s < pierced.size(); ++s) pierced[s] = shapes.is_cut_out(room, s);
   for_each_box_pair(boxes_of(shapes.exact, 0), boxes, [&](std::uint32_t s, std::uint32_t piece) {
     if (pierced[s] || shapes.emits(room, s)) return;
     // Not within the contact distance: what sticks out by less than that is a leak all the same.
@@ -245,7 +247,8 @@ void append_patches(const Scene& scene, const RoomShapes& shapes, BaseMesh& mesh
         facets.fewest_sides == facets.most_sides
             ? fmt::format("{}", facets.most_sides)
             : fmt::format("{} to {}", facets.fewest_sides, facets.most_sides),
-        facets.all ? "because this method needs flat zones" : "because other faces pass through them",
+        facets.all ? "because this method needs flat zones"
+                   : "because other faces pass through them or they are cut-outs",
         100 * (1 - facets.flat_area / facets.round_area), facets.all ? " and, as luminaires, power" : ""));
 }
 

@@ -31,16 +31,20 @@ struct RoomShapes {
   bool emits(const Scene& scene, std::size_t i) const {
     return scene.material_of(scene.surfaces[surface[i].index()]).emits();
   }
+  bool is_cut_out(const Scene& scene, std::size_t i) const {
+    return scene.material_of(scene.surfaces[surface[i].index()]).textures.is_cut_out();
+  }
   bool is_two_sided(const Scene& scene, std::size_t i) const {
     return scene.material_of(scene.surfaces[surface[i].index()]).two_sided;
   }
 };
 
 /// Decides which shapes stay exact: all that no flat face passes through, unless they end in a circle
-/// together with one that is not exact, and all luminaires. The zones of a pierced shape must end at the cut,
-/// or they would carry light from one side to the other; faces can be cut. How many sides such a shape gets
-/// follows its size beside that of the zones that the settings ask for. Without settings.exact_shapes all
-/// become faces, with as many sides as any. Throws InputError when the settings are out of range.
+/// together with one that is not exact, and all luminaires; but no cut-outs. The zones of a pierced shape
+/// must end at the cut, or they would carry light from one side to the other; faces can be cut. How many
+/// sides such a shape gets follows its size beside that of the zones that the settings ask for. Without
+/// settings.exact_shapes all become faces, with as many sides as any. Throws InputError when the settings are
+/// out of range.
 RoomShapes separate_shapes(const Scene& room, const MeshSettings& settings, const MeshTolerances& tolerances);
 
 /// Area of all sides that have zones [m2]: of pieces of faces, and of the exact shapes.

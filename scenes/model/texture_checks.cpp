@@ -98,13 +98,6 @@ void check_textures(Scene& scene) {
     if (has_image && !surface.shapes.empty() && first.empty())
       first = fmt::format("{}: surface '{}'", file_of(scene, surface), surface.name);
     if (has_image) shapes += surface.shapes.size();
-    if (textures.is_cut_out() && !surface.shapes.empty()) {
-      scene.not_modelled["round_cut_outs"] += surface.shapes.size();
-      scene.warnings.push_back(fmt::format(
-          "{}: surface '{}': round shapes are opaque; give it \"segments\" to make a cut-out of it, or a "
-          "\"transmittance\"",
-          file_of(scene, surface), surface.name));
-    }
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
       if (!surface.faces[f].texture_points.empty()) {
         check_coordinates(scene, surface, f);

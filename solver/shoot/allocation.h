@@ -21,6 +21,11 @@ class Allocation {
   /// power of two; empty: all alike.
   Allocation(std::size_t zones, Channels channels, const std::vector<std::uint8_t>& needs = {});
 
+  /// Of zones that need packets of another size; 1: all are alike.
+  std::size_t used_classes(const SweepAccounts& accounts) const {
+    return needs_.empty() && accounts.arrived.empty() ? 1 : kClasses;
+  }
+
   /// Sum of the unshot power, each class as often as it needs packets; to be called before each plan().
   /// `packet_power` [quanta]: of a packet of the sweep that brought it, where all are alike.
   double measure(const SweepAccounts& accounts, double packet_power);
@@ -61,10 +66,6 @@ class Allocation {
 
   /// As the place of a zone wants it, and so that no fewer packets carry its power than brought it.
   std::size_t class_of(const SweepAccounts& accounts, std::size_t zone) const;
-  std::size_t used_classes(const SweepAccounts& accounts) const {
-    return needs_.empty() && accounts.arrived.empty() ? 1 : kClasses;
-  }
-
   std::size_t values_;  // of each zone
   std::vector<std::uint8_t> needs_;
   std::vector<Chunk> chunks_;

@@ -25,6 +25,9 @@ constexpr std::uint32_t kPacketsPerTask = 4096;
 constexpr std::uint32_t kMostSweeps = 200'000;
 /// Of the packets of a batch, those that walk with what sweeps have left.
 constexpr double kWalkingShare = 1.0 / 64;
+/// Where zones differ in what packets they need so many are left to walks in any case: every class sends one
+/// packet at least, so power dwindles and packets do not.
+constexpr double kFewPackets = 64;
 /// Of each of them at least, so that no share of it is rounded by much.
 constexpr double kLeastQuantaOfWalk = 1e4;
 
@@ -274,6 +277,7 @@ bool shoot(const BatchTask& task, BatchEnd end, BatchBooks& books) {
   const double quantum = emitted / packets;
 
   Allocation allocation(transport.zones(), channels, transport.needs());
+  const double few = allocation.used_classes(accounts) > 1 ? kFewPackets * quantum : 0;
   std::optional<ArrivalPoints> arrivals;
   if (task.settings.reemission == Reemission::kFromHits) arrivals.emplace(transport.mesh(), flight.packets());
   bool whole = true;
@@ -301,7 +305,7 @@ bool shoot(const BatchTask& task, BatchEnd end, BatchBooks& books) {
     whole = task.stop == nullptr || !task.stop->requested();
     if (!whole) break;
     // From here on the power is in the flight, which must be traced before the batch may end.
-    const bool walks = left <= task.settings.stop_share * emitted;
+    const bool walks = left <= std::max(task.settings.stop_share * emitted, few);
     const double wanted = walks ? std::min(kWalkingShare * packets, left / kLeastQuantaOfWalk)
                                 : std::min(left / quantum, static_cast<double>(packets));
     const double sent = std::max(1.0, std::round(wanted));

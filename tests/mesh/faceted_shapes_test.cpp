@@ -55,6 +55,21 @@ TEST(FacetedShapes, SidesFollowTheSizeBesideThatOfZones) {
   EXPECT_EQ(before, 32U);
 }
 
+// A veil over a lamp: light passes through what is not there of a face, and patches know nothing of that.
+TEST(FacetedShapes, CutOutsAreMadeOfFaces) {
+  test::TestRoom room;
+  const MaterialId veil = room.material();
+  room.scene().materials[veil.index()].textures.opacity_factor = 0.3;
+  const SurfaceId sphere = room.surface("veil", veil);
+  room.scene().surfaces[sphere.index()].shapes.push_back(Sphere{{2, 2, 2}, 1});
+  const MaterialId solid = room.material();
+  room.box("walls", solid, {0, 0, 0}, {4, 4, 4}, true);
+  const RoomShapes shapes = separate_shapes(room.scene(), {}, MeshTolerances::of(bounds(room.scene())));
+  EXPECT_THAT(shapes.exact, testing::IsEmpty());
+  ASSERT_TRUE(shapes.faceted);
+  EXPECT_GT(shapes.faceted->surfaces[sphere.index()].faces.size(), 100U);
+}
+
 TEST(FacetedShapes, ThoseThatEndInOneCircleHaveItsCornersInCommon) {
   // The mantle is pierced; the cap follows it, and both get the number of the larger of them.
   const SunkCylinder rod(0.05, true);

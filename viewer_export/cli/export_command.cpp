@@ -37,6 +37,7 @@ struct ExportOptions {
   std::vector<std::filesystem::path> room;
   std::vector<std::filesystem::path> outputs;  ///< At least one; all hold the same values.
   VertexSettings vertex;
+  std::vector<std::string> surfaces;  ///< Names of those that are exported; empty: all.
   bool form_factors = false;
   bool photometric = false;                ///< Write lx and cd/m2 instead of W/m2 and W/(m2 sr).
   std::optional<bool> smooth;              ///< Unset: gathered vertices without an error target.
@@ -115,6 +116,17 @@ void check_outputs(const ExportOptions& options) {
   }
 }
 
+/// Surfaces of this name, or parts of what has it: "desk" is also "desk/top".
+void add_surfaces_named(const std::string& name, const std::vector<std::string>& names,
+                        std::vector<SurfaceId>& found) {
+  const std::size_t before = found.size();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name || names[i].starts_with(name + '/')) found.push_back(SurfaceId(i));
+  if (found.size() == before)
+    throw InputError("--surface " + name, "no surface of the room has this name",
+                     "reemit info SOLUTION lists them; the name of an object stands for all its sides");
+}
+
 ExitCode run_export(const ExportOptions& options) {
   const ThreadLimit limit(options.vertex.threads);
   if (options.form_factors) {
@@ -130,6 +142,9 @@ ExitCode run_export(const ExportOptions& options) {
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs) check_keeps_room(output, scene);
   note_textures(options, scene);
+  VertexSettings settings = options.vertex;
+  for (const std::string& name : options.surfaces)
+    add_surfaces_named(name, solution.surface_names, settings.only);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
 
@@ -138,8 +153,7 @@ ExitCode run_export(const ExportOptions& options) {
   Progress progress("gathering", progress_style(options.style.quiet, options.style.verbose));
   if (!options.vertex.average_zones) progress.begin_step(0, "looking at the zones");
   VertexData data = gather_vertices(
-      room, solution, options.vertex, [&progress](double done) { progress.update(done); },
-      interrupt.requested());
+      room, solution, settings, [&progress](double done) { progress.update(done); }, interrupt.requested());
   progress.finish();
   if (shows_colours(options))
     data.tone_map =
@@ -206,6 +220,13 @@ void add_value_options(CLI::App& command, ExportOptions& options) {
       "Take noise out: every vertex becomes a fit to those around it that agree within\n"
       "their noise; auto: gathered vertices without --error"));
   form_factors->excludes(
+      command
+          .add_option("--surface", options.surfaces,
+                      "Vertices of this surface alone, or of all sides of this object; may be given\n"
+                      "again")
+          ->allow_extra_args(false)
+          ->type_name("NAME"));
+  form_factors->excludes(
       command.add_flag("--all-zones", options.vertex.all_zones,
                        "Keep the backs of surfaces that no light reached and that do not emit"));
   add_seed_and_threads(command, options.vertex.seed, options.vertex.threads);
@@ -227,7 +248,7 @@ void add_export_command(CLI::App& program, Action& action) {
       "  reemit export room.h5 -o room.ply\n"
       "  reemit export room.h5 -o room.glb -o room.csv --error 1%\n"
       "  reemit export room.h5 -o room.csv --samples 1024\n"
-      "  reemit export room.h5 -o lux.csv --units lx\n"
+      "  reemit export room.h5 -o lux.csv --units lx --surface desk\n"
       "  reemit export room.h5 -o quick.glb --values zones\n"
       "  reemit export room.h5 -o factors.csv --form-factors\n"
       "What is in each file: docs/export_formats.md");

@@ -29,7 +29,7 @@ struct StillImage {
   /// First reflection of luminaires over mirrors, glass and gloss [W/(m2 sr)]; in rooms that have them.
   std::vector<float> caustic;
   std::vector<float> radiance_stderr;  ///< Standard error of `radiance` [W/(m2 sr)].
-  std::vector<float> albedo;           ///< Reflectance of what is seen [0,1].
+  std::vector<float> albedo;           ///< Reflectance of what is seen, over smooth mirrors and panes too.
 
   std::vector<float> samples;  ///< One per pixel: camera rays.
   std::vector<float> depth;    ///< One per pixel: distance from the eye [m]; +inf where nothing is seen.

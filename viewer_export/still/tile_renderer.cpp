@@ -15,6 +15,9 @@ namespace reemit {
 /// What a camera ray stands for, in pixels: textures are averaged over as much of what it sees. Below 1 since
 /// a pixel has several rays, which do the rest.
 constexpr double kSpot = 0.5;
+/// Both ways on from glass are seen for so many steps where the eye looks at it; further on one of them is
+/// chosen, and what is faint ends by roulette.
+constexpr std::uint32_t kSplitSteps = 2;
 
 /// One replicate of one pixel while a block is rendered.
 struct TileRenderer::PixelSums {
@@ -242,15 +245,19 @@ std::optional<TileRenderer::Look> TileRenderer::follow(const Look& from, const S
     for (float& share : outside) share *= inside;
     add_seen(next.x, outside.data(), found, sample, sums, batch);
   }
+  // Patterns behind a pane or in a mirror are part of what is seen.
+  if (next.pdf_per_sr == 0 && next.steps <= kSplitSteps) {
+    SurfaceModel::PointValues at_point;
+    const float* reflectance = surfaces.reflectance(next.x, at_point);
+    for (std::size_t b = 0; b < next.through.size(); ++b)
+      sums.albedo[b] += sums.share * next.through[b] * reflectance[b];
+  }
   if (!surfaces.is_specular(hit.triangle, hit.front)) return {};
   return next;
 }
 
 void TileRenderer::add_over_mirrors(SurfacePoint x, float way, int sample, PixelSums& sums,
                                     GatherBatch& batch) const {
-  // Both ways on from glass are seen where the eye looks at it; further on one of them is chosen, and what is
-  // faint ends by roulette.
-  constexpr std::uint32_t kSplitSteps = 2;
   constexpr std::uint32_t kCertainSteps = 5;
   const RayTracer& rays = room_->rays();
   const SurfaceModel& surfaces = room_->surfaces();

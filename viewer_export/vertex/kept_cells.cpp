@@ -80,17 +80,27 @@ std::vector<bool> lit_backs(const Solution& solution, const ZoneCells& cells,
   return lit;
 }
 
-}  // namespace
-
-std::vector<bool> kept_cells(const SurfaceModel& surfaces, const Solution& solution, const ZoneCells& cells,
-                             bool all_zones) {
-  if (all_zones) return std::vector<bool>(cells.size(), true);
+std::vector<bool> lit_cells(const SurfaceModel& surfaces, const Solution& solution, const ZoneCells& cells) {
   const std::vector<std::size_t> sheet = sheets(solution.mesh.base());
   const std::vector<bool> lit = lit_backs(solution, cells, sheet);
   std::vector<bool> kept(cells.size());
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const SideCell cell = cells.cell(i);
     kept[i] = cell.front || lit[sheet[cell.triangle.index()]] || surfaces.emits(cell.triangle, false);
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<bool> kept_cells(const SurfaceModel& surfaces, const Solution& solution, const ZoneCells& cells,
+                             bool all_zones, const std::vector<SurfaceId>& only) {
+  std::vector<bool> kept =
+      all_zones ? std::vector<bool>(cells.size(), true) : lit_cells(surfaces, solution, cells);
+  if (only.empty()) return kept;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const SurfaceId surface = solution.mesh.zone_surface(cells.zone(i));
+    kept[i] = kept[i] && std::find(only.begin(), only.end(), surface) != only.end();
   }
   return kept;
 }

@@ -168,8 +168,8 @@ VertexData gather_vertices(const Room& room, const Solution& solution, const Ver
   check(settings);
   const Scene& scene = room.scene();
   tbb::task_arena arena(thread_count(settings.threads));
-  const VertexRings rings =
-      arena.execute([&] { return VertexRings(room.surfaces(), solution, settings.all_zones); });
+  const VertexRings rings = arena.execute(
+      [&] { return VertexRings(room.surfaces(), solution, settings.all_zones, settings.only); });
   VertexData data = make_vertices(scene, solution, rings);
   arena.execute([&] {
     const VertexGatherer gatherer(room, solution, rings, settings, VertexRefinement::most_points(settings),

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "solver/room/room.h"
 #include "solver/solution/solution.h"
@@ -18,8 +19,9 @@ struct VertexSettings {
   bool smooth = false;
   /// Keep the backs of surfaces that no light reached and that do not emit.
   bool all_zones = false;
-  int gather_rays = 512;    ///< Per vertex, rounded up [1, 1048576].
-  int light_samples = 128;  ///< Shadow rays per vertex, rounded up [1, 65536].
+  std::vector<SurfaceId> only;  ///< Vertices of these surfaces alone; empty: of all.
+  int gather_rays = 512;        ///< Per vertex, rounded up [1, 1048576].
+  int light_samples = 128;      ///< Shadow rays per vertex, rounded up [1, 65536].
   /// Relative error to reach as a fraction [0, 1): sqrt(sum A s^2 / sum A L^2) over vertices, worst band,
   /// with s the standard error of reflected radiance L. 0 = take the samples above; else only their ratio
   /// counts.

@@ -111,11 +111,12 @@ std::vector<std::array<std::uint32_t, 3>> cut_into_triangles(const std::vector<V
   return triangles;
 }
 
-VertexRings::VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones) {
+VertexRings::VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones,
+                         const std::vector<SurfaceId>& only) {
   const ZoneMesh& mesh = solution.mesh;
   const ZoneTopology topology = make_zone_topology(mesh, solution.mesh_settings.crease_angle_deg);
   const ZoneCells cells(mesh);
-  const std::vector<bool> kept = kept_cells(surfaces, solution, cells, all_zones);
+  const std::vector<bool> kept = kept_cells(surfaces, solution, cells, all_zones, only);
   const std::vector<double> irradiance = irradiance_of_zones(solution);
   const double watts = watts_per_packet(solution, irradiance);
   std::vector<RingBlock> blocks((topology.n_vertices() + kVerticesPerBlock - 1) / kVerticesPerBlock);

@@ -22,8 +22,10 @@ struct RingCell {
 /// standing there covers.
 class VertexRings {
  public:
-  /// Leaves out the backs of surfaces that no light reached and that do not emit, unless `all_zones`.
-  VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones);
+  /// Leaves out the backs of surfaces that no light reached and that do not emit, unless `all_zones`, and all
+  /// surfaces but `only`, unless it is empty.
+  VertexRings(const SurfaceModel& surfaces, const Solution& solution, bool all_zones,
+              const std::vector<SurfaceId>& only = {});
 
   std::size_t size() const { return first_.size() - 1; }
   const RingCell* begin(std::size_t vertex) const { return &rings_[first_[vertex]]; }

@@ -53,12 +53,13 @@ TEST(SpecularStills, FurnaceIsEvenlyBright) {
   }
 }
 
-/// A lamp of radiance 1 above the eye, and what the eye looks down at: `below`, then a black floor; or, if
-/// the lamp is `under`, the lamp in place of the floor.
-StillImage look_down(const NonDiffusePart& below, Integrator integrator, bool under = false, int spp = 16) {
+/// A lamp of radiance 1 above the eye, and what the eye looks down at: `below`, then a floor that reflects so
+/// much; or, if the lamp is `under`, the lamp in place of the floor.
+StillImage look_down(const NonDiffusePart& below, Integrator integrator, bool under = false, int spp = 16,
+                     double of_floor = 0) {
   RoomBuilder room;
   const MaterialId lamp = room.material("lamp", 0, std::numbers::pi);
-  const MaterialId black = room.material("black", 0);
+  const MaterialId black = room.material("floor", of_floor);
   const MaterialId seen = room.material("seen", 0, 0, true);
   room.scene().materials[seen.index()].non_diffuse = below;
   const auto level = [&](MaterialId m, double z, bool down) {
@@ -81,6 +82,14 @@ StillImage look_down(const NonDiffusePart& below, Integrator integrator, bool un
   settings.spp = spp;
   const std::atomic<bool> interrupt{false};
   return render_still(walls, solution, camera, settings, {}, interrupt);
+}
+
+// Smoothing divides by it: patterns behind a pane would be taken for noise.
+TEST(SpecularStills, ReflectanceOfWhatIsSeenIsThatBehindPanes) {
+  NonDiffusePart sheet;
+  sheet.specular_transmittance = Spectrum::Constant(1, 0.8);
+  const StillImage through = look_down(sheet, Integrator::kGather, false, 16, 0.5);
+  for (const float albedo : through.albedo) EXPECT_NEAR(albedo, 0.8 * 0.5, 1e-5);
 }
 
 TEST(SpecularStills, LightOverMirrorsIsALayerOfItsOwn) {

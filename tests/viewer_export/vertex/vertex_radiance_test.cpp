@@ -1,5 +1,6 @@
 #include "viewer_export/vertex/vertex_radiance.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -151,6 +152,35 @@ TEST(GatherVertices, unlit_backs_are_left_out_unless_wanted) {
   settings.all_zones = false;
   solution.sums.indirect.back() = 1;  // a packet met one zone of the back
   EXPECT_EQ(gather(room, solution, settings).vertex_count(), 18U);
+}
+
+TEST(GatherVertices, surfaces_that_are_asked_for_have_the_values_that_they_have_among_all) {
+  RoomBuilder room;
+  const MaterialId grey = room.material("grey", 0.5);
+  const MaterialId lamp = room.material("lamp", 0, 10);
+  room.quad(grey, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, 4);
+  room.quad(lamp, {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(1, 1, 1), Vec3(1, 0, 1)}, 2);
+  const Solution solution = test::dark_solution(room);
+  VertexSettings settings;
+  settings.only = {SurfaceId(0)};
+  const VertexData floor = gather(room, solution, settings);
+  EXPECT_EQ(floor.vertex_count(), 25U);
+  EXPECT_EQ(floor.triangles.size(), 32U);
+  EXPECT_TRUE(std::all_of(floor.surfaces.begin(), floor.surfaces.end(),
+                          [](SurfaceId s) { return s == SurfaceId(0); }));
+  settings.only = {};
+  const VertexData all = gather(room, solution, settings);
+  EXPECT_GT(all.vertex_count(), floor.vertex_count());
+  int found = 0;
+  for (std::size_t v = 0; v < floor.vertex_count(); ++v)
+    for (std::size_t w = 0; w < all.vertex_count(); ++w) {
+      if (all.surfaces[w] != SurfaceId(0) || all.positions[w] != floor.positions[v]) continue;
+      ++found;
+      // Other rays; five standard errors of 25 values: once in ten thousand seeds.
+      EXPECT_NEAR(floor.radiance[v], all.radiance[w],
+                  5 * std::hypot(floor.radiance_stderr[v], all.radiance_stderr[w]));
+    }
+  EXPECT_EQ(found, 25);
 }
 
 /// One surface: a closed block and, apart from it, a table top whose underside is lit. The inside of the
