@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
+#include "solver/zoning/build_zones.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/never.h"
 #include "viewer_export/cli/camera_choice.h"
@@ -86,7 +86,7 @@ TEST(RoomExposure, WithoutCamerasIsThatOfTheFirstAutomaticOne) {
 /// Of rooms as they are: an export and the still that is made without asking for a camera.
 void expect_an_export_as_bright_as_the_still(const std::filesystem::path& file) {
   const Scene scene = read_scene(file);
-  const MeshResult mesh = build_mesh(scene);
+  const MeshResult mesh = build_zones(scene, {.default_zone_count = 2'000});
   SolverSettings settings;
   settings.packets = 400'000;
   const Solution solution = solve_zones(scene, mesh, settings, {}, kNever);
