@@ -15,6 +15,7 @@
 #include "viewer_export/still/allocate_planes.h"
 #include "viewer_export/still/basic_estimate.h"
 #include "viewer_export/still/coarse_smoothing.h"
+#include "viewer_export/still/layer_totals.h"
 #include "viewer_export/still/similar_pixels.h"
 #include "viewer_export/still/still_planes.h"
 
@@ -120,6 +121,7 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
   if (image.radiance_stderr.empty()) return;
   try {
     StillPlanes planes(image, halves);
+    const LayerTotals sampled(planes);
     SmoothedLayers smoothed(planes);
     {
       const BasicEstimate basic(planes, stop);
@@ -134,6 +136,7 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
     planes.caustic = std::move(smoothed.caustic);
     if (!planes.caustic.empty()) smooth_coarsely(planes, stop);
     if (stop.requested()) return;
+    sampled.give_back_to(planes);
     put_radiance(planes, smoothed.radiance);
     std::vector<double> errors(image.bands.count());  // by band
     tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t b) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -222,6 +223,40 @@ TEST(Smoothing, keeps_the_light_of_the_picture) {
   smooth(noisy);
   EXPECT_LT(std::abs(deviation_of_total(noisy.image, 1)), 4);
   EXPECT_GT(std::abs(deviation_of_total(noisy.image, 1.02)), 4);
+}
+
+/// A still half of whose light comes over mirrors, with the noise of a density that few photons tell: bright
+/// pixels are rarer than dark ones, and further off.
+Noisy skewed_picture() {
+  Film film(BandSet::grey(), kWidth, kHeight, Film::kReplicates, 1, true);
+  std::mt19937 random(11);
+  std::gamma_distribution<double> skewed(1, 1);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (std::size_t r = 0; r < Film::kReplicates; ++r) {
+        const Seen seen = checkered(x, y);
+        const double half = seen.albedo * seen.light / 2;
+        add(film, x, y, r, seen,
+            {.direct = static_cast<float>(half / 4),
+             .indirect = static_cast<float>(3 * half / 4),
+             .caustic = static_cast<float>(half * skewed(random))});
+      }
+  return finished(film);
+}
+
+TEST(Smoothing, gives_back_what_means_lose_of_skewed_noise) {
+  Noisy noisy = skewed_picture();
+  const StillImage sampled = noisy.image;
+  smooth(noisy);
+  const auto kept = [](const std::vector<float>& after, const std::vector<float>& before) {
+    return std::accumulate(after.begin(), after.end(), 0.0) /
+           std::accumulate(before.begin(), before.end(), 0.0);
+  };
+  // By means alone the light over mirrors would lose 0.24 % and the rest gain 0.07 %.
+  EXPECT_NEAR(kept(noisy.image.caustic, sampled.caustic), 1, 1e-5);
+  EXPECT_NEAR(kept(noisy.image.direct, sampled.direct), 1, 1e-5);
+  EXPECT_NEAR(kept(noisy.image.indirect, sampled.indirect), 1, 1e-5);
+  EXPECT_NEAR(kept(noisy.image.radiance, sampled.radiance), 1, 1e-5);
 }
 
 TEST(Smoothing, averages_along_slopes) {
