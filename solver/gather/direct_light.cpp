@@ -41,15 +41,23 @@ DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& o
 DirectLight::Arrival DirectLight::estimate(const SurfacePoint& x, const Vec3f& origin,
                                            const LuminaireChoice& choice,
                                            const std::array<float, kDimensions>& u) const {
+  const auto is_above = [&](const Vec3f& towards) { return towards.dot(side_normal(*rays_, x)) > 0; };
+  return estimate(origin, x.normal, is_above, choice, u);
+}
+
+template <class IsAbove>
+DirectLight::Arrival DirectLight::estimate(const Vec3f& origin, const Vec3f& normal, const IsAbove& is_above,
+                                           const LuminaireChoice& choice,
+                                           const std::array<float, kDimensions>& u) const {
   // u[0] chooses and is then used again.
   float u_choice = u[0];
   float inverse_probability = 0;
   std::size_t entry = 0;
   if (!choice.pick(u_choice, entry, inverse_probability)) return {};
   LuminaireSample sample;
-  if (!table_.sample(entry, origin, x.normal, u_choice, u[1], sample)) return {};
+  if (!table_.sample(entry, origin, normal, u_choice, u[1], sample)) return {};
   const Vec3f towards = sample.towards(origin);
-  if (!(towards.dot(side_normal(*rays_, x)) > 0)) return {};
+  if (!is_above(towards)) return {};
   Arrival light{table_.strength(entry), sample.factor * inverse_probability, entry, towards, {}, {}};
   if (!passes(origin, sample, light.panes)) return {};
   if (sky_ != nullptr && table_.is_sky(entry) && sky_->is_coloured()) {
@@ -102,6 +110,14 @@ void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDim
                              const float* weight, float* sum) const {
   if (empty()) return;
   add(estimate(x, ray_origin(*rays_, x), u), weight, sum);
+}
+
+void DirectLight::add_sample(const MeasuringPoint& x, const std::array<float, kDimensions>& u,
+                             const float* weight, float* sum) const {
+  if (empty()) return;
+  const LuminaireChoice choice(table_, selection_, x.place, x.normal, u[2]);
+  const auto is_above = [&](const Vec3f& towards) { return towards.dot(x.normal) > 0; };
+  add(estimate(x.place, x.normal, is_above, choice, u), weight, sum);
 }
 
 void DirectLight::weigh(const SurfacePoint& x, float* weights) const {

@@ -10,6 +10,7 @@
 #include "solver/emit/luminaire_choice.h"
 #include "solver/emit/luminaire_table.h"
 #include "solver/gather/caustic_map.h"
+#include "solver/gather/measuring_point.h"
 #include "solver/room/room.h"
 #include "solver/sampling/sobol.h"
 #include "solver/trace/surface_point.h"
@@ -47,6 +48,10 @@ class DirectLight {
   /// One sample: adds weight[b] E_b to sum[b], E_b an unbiased estimate of the irradiance [W/m2]. Exactly
   /// nothing is added where no luminaire is visible.
   void add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
+                  float* sum) const;
+
+  /// The same at a point in the air.
+  void add_sample(const MeasuringPoint& x, const std::array<float, kDimensions>& u, const float* weight,
                   float* sum) const;
 
   /// `count` samples at one point, `numbers(i)` those of each: the same sums as by add_sample, but what they
@@ -127,6 +132,10 @@ class DirectLight {
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const std::array<float, kDimensions>& u) const;
   Arrival estimate(const SurfacePoint& x, const Vec3f& origin, const LuminaireChoice& choice,
                    const std::array<float, kDimensions>& u) const;
+  /// Irradiance goes by `normal`; `is_above` tells whether a direction leads away from the surface there.
+  template <class IsAbove>
+  Arrival estimate(const Vec3f& origin, const Vec3f& normal, const IsAbove& is_above,
+                   const LuminaireChoice& choice, const std::array<float, kDimensions>& u) const;
   /// Calls back with the number and the estimate of each of `count` samples at one point.
   template <class Numbers, class CallBack>
   void estimate_all(const SurfacePoint& x, int count, const Numbers& numbers,

@@ -149,6 +149,20 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return;
   gather_->add_photons(x, u0, u1, key, weight, caustic);
   leave_from(x);
+  queue(u0, u1, key, weight, sum, caustic);
+}
+
+void GatherBatch::add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight,
+                      float* sum, float* caustic) {
+  from_ = {};  // on no surface, so that no point is taken for it
+  origin_ = x.place;
+  above_ = x.normal;
+  frame_ = Frame(x.normal);
+  queue(u0, u1, key, weight, sum, caustic == nullptr ? sum : caustic);
+}
+
+void GatherBatch::queue(float u0, float u1, const PathKey& key, const float* weight, float* sum,
+                        float* caustic) {
   const Vec3f direction = frame_.to_world(sample_cosine_hemisphere(u0, u1));
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(above_) > 0)) return;

@@ -113,6 +113,10 @@ class GatherBatch {
   /// over mirrors, glass and gloss unless it is null.
   void add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
            float* caustic = nullptr);
+  /// The same from a point in the air, where photons tell nothing: of rooms with these (CausticMap) it gets
+  /// no light over mirrors and glass.
+  void add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
+           float* caustic = nullptr);
   /// Traces what is queued. Call it before the sums are read.
   void flush();
 
@@ -121,6 +125,7 @@ class GatherBatch {
 
   /// Finds how rays leave x, unless the last one left it as well.
   void leave_from(const SurfacePoint& x);
+  void queue(float u0, float u1, const PathKey& key, const float* weight, float* sum, float* caustic);
   void trace();
   void keep_for_second_look(std::size_t lane, const Hit16& hits);
 

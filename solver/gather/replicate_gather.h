@@ -27,7 +27,8 @@ struct ReplicateEffort {
   int first = 0;    ///< Places that this replicate had before; best a multiple of points, a power of two.
 };
 
-/// One replicate of the light around a place. `place(u)` gives the SurfacePoint for two uniform numbers. Adds
+/// One replicate of the light around a place. `place(u)` gives the SurfacePoint or MeasuringPoint for two
+/// uniform numbers. Adds
 /// the mean direct irradiance [W/m2] to direct[b] and the mean reflected radiance over cosine-distributed
 /// rays [W/(m2 sr)] to indirect[b] (pi times it is the indirect irradiance; complete after batch.flush()), of
 /// it that of luminaires over mirrors, glass and gloss to caustic[b] unless that is null.
@@ -41,7 +42,7 @@ void add_replicate(const DirectLight& light, const PointSampler& sampler, const 
                                       1.0F / static_cast<float>(effort.points * effort.gathers));
   const std::uint32_t first_path = key.path;
   for (int i = effort.first; i < effort.first + effort.points; ++i) {
-    const SurfacePoint x = place(sampler.place(i));
+    const auto x = place(sampler.place(i));
     light.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), direct);
     for (int j = 0; j < effort.gathers; ++j) {
       const std::array<float, 2> u = sampler.hemisphere(i, j, effort.gathers);

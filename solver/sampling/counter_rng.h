@@ -37,6 +37,7 @@ enum class RngPurpose : std::uint32_t {
   kSampledDirect,
   kPixelGroup,
   kVertexGroup,
+  kMeasuringPoint,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

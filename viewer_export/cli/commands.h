@@ -18,6 +18,7 @@ using Action = std::function<ExitCode()>;
 void add_solve_command(CLI::App& program, Action& action);
 void add_render_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
+void add_measure_command(CLI::App& program, Action& action);
 void add_audit_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 

@@ -21,8 +21,9 @@ constexpr const char* kFooter =
     "  reemit export room.h5 -o room.ply\n"
     "  reemit audit room.h5\n"
     "'reemit COMMAND --help' explains a command.\n"
-    "Lux: 'reemit info room.h5' for every surface, 'reemit export room.h5 -o lux.csv --units lx' for\n"
-    "every vertex. Noise: a lower --error, of solve first, then of render or export; more\n"
+    "Lux: 'reemit info room.h5' for every surface, 'reemit measure room.h5 --grid ...' on a working\n"
+    "plane, 'reemit export room.h5 -o lux.csv --units lx' for every vertex.\n"
+    "Noise: a lower --error, of solve first, then of render, export or measure; more\n"
     "--zones where the last line of a command says that zones are what is off.\n"
     "Documentation in docs/: examples.md, room_format.md, command_line.md, export_formats.md,\n"
     "solution_file.md.\n"
@@ -40,6 +41,7 @@ std::unique_ptr<CLI::App> make_program(Action& action) {
   add_solve_command(*program, action);
   add_render_command(*program, action);
   add_export_command(*program, action);
+  add_measure_command(*program, action);
   add_audit_command(*program, action);
   add_info_command(*program, action);
   return program;

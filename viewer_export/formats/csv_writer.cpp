@@ -4,18 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "viewer_export/formats/csv_text.h"
+
 namespace reemit {
 namespace {
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n#") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
 
 /// The lines above the rows; `values` are the columns behind those that every table has.
 void write_header(const VertexData& data, const std::string& units, const std::string& values,
@@ -30,8 +22,8 @@ template <class Append>
 void write_rows(const VertexData& data, OutputFile& file, Append&& append_values) {
   std::vector<std::string> surfaces;
   std::vector<std::string> materials;
-  for (const std::string& name : data.surface_names) surfaces.push_back(quoted(one_line(name)));
-  for (const std::string& name : data.material_names) materials.push_back(quoted(one_line(name)));
+  for (const std::string& name : data.surface_names) surfaces.push_back(csv_cell(one_line(name)));
+  for (const std::string& name : data.material_names) materials.push_back(csv_cell(one_line(name)));
 
   fmt::memory_buffer row;
   for (std::size_t v = 0; v < data.vertex_count(); ++v) {

@@ -140,7 +140,7 @@ TEST_F(Manual, BashOffersEveryOptionOfEveryCommand) {
 }
 
 TEST_F(Manual, BashOffersCommands) {
-  EXPECT_THAT(offers({""}), UnorderedElementsAre("solve", "render", "export", "audit", "info"));
+  EXPECT_THAT(offers({""}), UnorderedElementsAre("solve", "render", "export", "measure", "audit", "info"));
   EXPECT_THAT(offers({"rend"}), ElementsAre("render"));
 }
 

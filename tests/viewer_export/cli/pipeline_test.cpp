@@ -238,6 +238,49 @@ TEST_F(Pipeline, OneExportTwiceIsRefused) {
   EXPECT_THAT(factors.err, HasSubstr("--form-factors"));
 }
 
+TEST_F(Pipeline, MeasuresGridsAndFilesOfPoints) {
+  solve_small_room(folder_, "room.h5");
+  folder_.write("sensors.txt", "0.5 0.5 0.5 0 0 1\n0.5 0.5 0.25 0 0 -1\n");
+  const std::vector<std::string> points{"--grid", "0.1,0.1,0.5", "0.8,0,0",          "0,0.8,0",
+                                        "4x3",    "--points",    path("sensors.txt")};
+  std::vector<std::string> command{"measure", path("room.h5"), "--samples", "64", "--light-samples", "16"};
+  command.insert(command.end(), points.begin(), points.end());
+  EXPECT_THAT(output_of(command), HasSubstr("sensors"));
+  command.insert(command.end(), {"-o", path("points.csv"), "--json"});
+  const json report = json::parse(output_of(command));
+  const std::vector<CsvRow> rows = csv_rows(folder_ / "points.csv");
+  ASSERT_EQ(rows.size(), 14U);
+  double mean = 0;
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_EQ(rows[i].at("set"), "grid");
+    mean += std::stod(rows[i].at("illuminance")) / 12;
+    const double photometric = 179 * (0.2126 * std::stod(rows[i].at("irradiance_r")) +
+                                      0.7152 * std::stod(rows[i].at("irradiance_g")) +
+                                      0.0722 * std::stod(rows[i].at("irradiance_b")));
+    EXPECT_NEAR(std::stod(rows[i].at("illuminance")), photometric, 1e-4 * photometric);
+  }
+  EXPECT_NEAR(report["sets"][0]["mean_illuminance"], mean, 1e-4 * mean);
+  EXPECT_EQ(rows[12].at("set"), "sensors");
+  EXPECT_EQ(report["sets"][1]["points"], 2);
+}
+
+TEST_F(Pipeline, MeasuringRefusesWhatItCannotDo) {
+  solve_small_room(folder_, "room.h5");
+  const auto refusal = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"measure", path("room.h5")});
+    const ProgramRun run = run_reemit(options);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    return run.err;
+  };
+  EXPECT_THAT(refusal({}), HasSubstr("no points"));
+  EXPECT_THAT(refusal({"--grid", "0,0,0", "1,0,0", "0,1,0", "4"}), HasSubstr("--grid"));
+  EXPECT_THAT(refusal({"--grid", "0,0,0", "1,0,0", "2,0,0", "4x4"}), HasSubstr("span no area"));
+  EXPECT_THAT(refusal({"--grid", "0,0,0", "1,0,0", "0,1,0"}), HasSubstr("--grid"));
+  EXPECT_THAT(refusal({"--points", path("nothing.txt")}), HasSubstr("nothing.txt"));
+  EXPECT_THAT(refusal({"--grid", "0,0,0", "1,0,0", "0,1,0", "4x4", "-o", path("points.ply")}),
+              HasSubstr(".csv"));
+}
+
 TEST_F(Pipeline, AnEyeOutsideOfTheRoomIsToldButRendered) {
   solve_small_room(folder_, "room.h5");
   const ProgramRun run = run_reemit({"render", path("room.h5"), "--eye", "0.5,0.5,5", "--look-at",

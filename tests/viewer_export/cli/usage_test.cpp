@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 TEST(Usage, HelpOfEveryCommandShowsExamples) {
-  for (const char* command : {"", "solve", "render", "export", "audit", "info"}) {
+  for (const char* command : {"", "solve", "render", "export", "measure", "audit", "info"}) {
     std::vector<std::string> arguments{"--help"};
     if (*command != '\0') arguments.insert(arguments.begin(), command);
     const ProgramRun run = run_reemit(arguments);

@@ -1,0 +1,185 @@
+#include "viewer_export/points/measured_light.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "scenes/model/error.h"
+#include "scenes/model/interrupted.h"
+#include "solver/progressive_solver.h"
+#include "tests/support/hand_made_solution.h"
+#include "tests/support/never.h"
+#include "tests/support/variable_furnace.h"
+
+namespace reemit {
+namespace {
+
+using test::kNever;
+using test::RoomBuilder;
+using test::VariableFurnace;
+
+/// Form factor from a point to a rectangle of a x b in a plane parallel to its own at height h that begins
+/// above it (Howell's catalogue, B-4).
+double of_corner(double a, double b, double h) {
+  const double x = a / h;
+  const double y = b / h;
+  return (x / std::hypot(1, x) * std::atan(y / std::hypot(1, x)) +
+          y / std::hypot(1, y) * std::atan(x / std::hypot(1, y))) /
+         (2 * std::numbers::pi);
+}
+
+/// The same of the rectangle from (x0,y0) to (x1,y1), seen from the origin.
+double of_rectangle(double x0, double x1, double y0, double y1, double h) {
+  return of_corner(x1, y1, h) - of_corner(x0, y1, h) - of_corner(x1, y0, h) + of_corner(x0, y0, h);
+}
+
+constexpr double kExitance = 5;
+
+/// A black room of 4 x 3 x 2 m with a lamp of 1 x 0.5 m under its ceiling.
+RoomBuilder black_room() {
+  RoomBuilder room;
+  const MaterialId black = room.material("black", 0);
+  room.box(Vec3::Zero(), Vec3(4, 3, 2), {black, black, black, black, black, black}, 2);
+  room.quad(room.material("lamp", 0, kExitance),
+            {Vec3(1, 1, 1.9), Vec3(1, 1.5, 1.9), Vec3(2, 1.5, 1.9), Vec3(2, 1, 1.9)}, 1);
+  return room;
+}
+
+double lamp_at(const Vec3& place) {
+  return kExitance *
+         of_rectangle(1 - place.x(), 2 - place.x(), 1 - place.y(), 1.5 - place.y(), 1.9 - place.z());
+}
+
+MeasuredLight measure(const RoomBuilder& room, const Solution& solution, PointSet points,
+                      const MeasureSettings& settings = {}) {
+  const Room walls(room.scene(), solution.mesh);
+  return measure_light(walls, solution, {std::move(points)}, settings, {}, kNever);
+}
+
+/// Over the room, 1.2 m below the lamp.
+PointSet plane_of_black_room() {
+  return grid_points("plane", {Vec3(0, 0, 0.7), Vec3(4, 0, 0), Vec3(0, 3, 0), 12, 9}, Vec3(0, 0, 1));
+}
+
+/// Rms over points of their difference from the truth, in stated standard errors.
+template <class Truth>
+double spread(const MeasuredLight& light, double factor, const Truth& truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < light.irradiance.size(); ++i) {
+    const Irradiance& found = light.irradiance[i];
+    sum += std::pow((factor * static_cast<double>(found.all) - truth(light.sets[0].places[i])) /
+                        static_cast<double>(found.standard_error),
+                    2);
+  }
+  return std::sqrt(sum / static_cast<double>(light.irradiance.size()));
+}
+
+TEST(MeasuredLight, OfALampIsItsFormFactor) {
+  const RoomBuilder room = black_room();
+  const MeasuredLight light = measure(room, test::dark_solution(room), plane_of_black_room());
+  for (std::size_t i = 0; i < light.irradiance.size(); ++i) {
+    const double truth = lamp_at(light.sets[0].places[i]);
+    // The lamp is sampled by its solid angle, so that what is left of noise is below 1 %.
+    EXPECT_NEAR(light.irradiance[i].all, truth, 0.01 * truth) << i;
+    EXPECT_EQ(light.irradiance[i].all, light.irradiance[i].direct);
+    EXPECT_NEAR(light.illuminance[i].all, 179 * light.irradiance[i].all, 1e-3 * light.illuminance[i].all);
+  }
+}
+
+TEST(MeasuredLight, FacesOneWay) {
+  const RoomBuilder room = black_room();
+  PointSet points{"pair", {Vec3(1.5, 1.2, 1), Vec3(1.5, 1.2, 1)}, {Vec3(0, 0, 1), Vec3(0, 0, -1)}};
+  const MeasuredLight light = measure(room, test::dark_solution(room), points);
+  EXPECT_GT(light.irradiance[0].all, 0);
+  EXPECT_EQ(light.irradiance[1].all, 0);
+}
+
+TEST(MeasuredLight, PointsOnASurfaceLieBeforeIt) {
+  const RoomBuilder room = black_room();
+  const PointSet floor =
+      grid_points("floor", {Vec3::Zero(), Vec3(4, 0, 0), Vec3(0, 3, 0), 7, 5}, Vec3(0, 0, 1));
+  const MeasuredLight light = measure(room, test::dark_solution(room), floor);
+  for (std::size_t i = 0; i < floor.size(); ++i)
+    EXPECT_NEAR(light.irradiance[i].all, lamp_at(floor.places[i]), 0.01 * lamp_at(floor.places[i])) << i;
+}
+
+/// Points all over the furnace, facing all ways.
+PointSet all_over_the_furnace() {
+  PointSet points{"all over", {}, {}};
+  for (int i = 0; i < 200; ++i) {
+    points.places.emplace_back(0.05 + 1.9 * std::fmod(0.755 * i, 1), 0.05 + 1.4 * std::fmod(0.569 * i, 1),
+                               0.05 + 0.9 * std::fmod(0.382 * i, 1));
+    points.normals.push_back(Vec3(std::sin(2.0 * i), std::cos(3.0 * i), std::sin(5.0 * i + 1)).normalized());
+  }
+  return points;
+}
+
+Solution solved_furnace(const VariableFurnace& furnace) {
+  SolverSettings settings;
+  settings.packets = 400'000;
+  return solve_zones(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
+}
+
+// Irradiance is the same everywhere, whichever way a point faces. Points share the noise of zones, so that
+// the spread of 200 is known to some 15 %: allowed is a third either way. A bias of 2 % must show.
+TEST(MeasuredLight, IsThatOfTheFurnaceWithinItsErrors) {
+  const VariableFurnace furnace(8);
+  const Solution solution = solved_furnace(furnace);
+  MeasureSettings settings;
+  settings.gather_rays = 1024;
+  settings.light_samples = 256;
+  const MeasuredLight light = measure(furnace.room(), solution, all_over_the_furnace(), settings);
+  const auto truth = [](const Vec3&) { return VariableFurnace::kRadiosity; };
+  RecordProperty("spread", std::to_string(spread(light, 1, truth)));
+  EXPECT_GT(spread(light, 1, truth), 0.67);
+  EXPECT_LT(spread(light, 1, truth), 1.33);
+  EXPECT_GT(spread(light, 1.02, truth), 1.33);
+  const SetSummary& all = light.summaries.front();
+  // 4 standard errors with 15 degrees of freedom: a false alarm once in 800 seeds.
+  EXPECT_NEAR(all.mean, 179 * VariableFurnace::kRadiosity, 4 * all.standard_error);
+  EXPECT_LT(all.standard_error, 0.005 * all.mean);
+  EXPECT_LE(all.least, all.mean);
+  EXPECT_GE(all.most, all.mean);
+}
+
+TEST(MeasuredLight, ComesToTheErrorAskedFor) {
+  const VariableFurnace furnace(4);
+  const Solution solution = solved_furnace(furnace);
+  MeasureSettings settings;
+  settings.error_target = 0.02;
+  const MeasuredLight light = measure(furnace.room(), solution, all_over_the_furnace(), settings);
+  EXPECT_LT(light.info.error, 0.02);
+  EXPECT_GT(light.info.error, 0.005);
+  EXPECT_FALSE(light.limited_by_zones);
+}
+
+TEST(MeasuredLight, SameBitsOnAnyNumberOfThreads) {
+  const VariableFurnace furnace(4);
+  const Solution solution = solved_furnace(furnace);
+  MeasureSettings settings;
+  settings.gather_rays = 64;
+  settings.light_samples = 32;
+  settings.threads = 1;
+  const MeasuredLight one = measure(furnace.room(), solution, all_over_the_furnace(), settings);
+  settings.threads = 2;
+  const MeasuredLight two = measure(furnace.room(), solution, all_over_the_furnace(), settings);
+  for (std::size_t i = 0; i < one.irradiance.size(); ++i) {
+    EXPECT_EQ(one.irradiance[i].all, two.irradiance[i].all);
+    EXPECT_EQ(one.irradiance[i].standard_error, two.irradiance[i].standard_error);
+  }
+}
+
+TEST(MeasuredLight, EndsWhenInterruptedAndRefusesNothingToDo) {
+  const RoomBuilder room = black_room();
+  const Solution solution = test::dark_solution(room);
+  const Room walls(room.scene(), solution.mesh);
+  const std::atomic<bool> now = true;
+  EXPECT_THROW(measure_light(walls, solution, {plane_of_black_room()}, {}, {}, now), Interrupted);
+  EXPECT_THROW(measure_light(walls, solution, {}, {}, {}, kNever), InputError);
+}
+
+}  // namespace
+}  // namespace reemit

@@ -1,0 +1,276 @@
+#include "viewer_export/points/measured_light.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "scenes/model/error.h"
+#include "scenes/model/interrupted.h"
+#include "solver/gather/replicate_gather.h"
+#include "solver/solution/thread_count.h"
+#include "solver/tally/replicates.h"
+#include "viewer_export/output/refinement.h"
+
+namespace reemit {
+namespace {
+
+/// Independent estimates of each point, each from its own part of the zone solution.
+constexpr std::size_t kReplicates = ZoneSums::kGroups;
+constexpr std::size_t kChunk = 16;  ///< Points of one task; fixed, so that packets of rays are the same.
+constexpr int kMostPlaces = 1 << 14;
+
+void check(const MeasureSettings& s, std::size_t points) {
+  const auto require = [](bool good, const char* problem, const char* advice) {
+    if (!good) throw InputError("measure", problem, advice);
+  };
+  require(points > 0, "no points", "Give a grid or a file of points.");
+  require(s.gather_rays >= 1 && s.gather_rays <= 1 << 20, "number of gather rays is out of range",
+          "Choose 1 to 1048576.");
+  require(s.light_samples >= 1 && s.light_samples <= 1 << 16, "number of light samples is out of range",
+          "Choose 1 to 65536.");
+  require(s.error_target >= 0 && s.error_target < 1, "error is out of range",
+          "Choose a share below 1, such as 1%.");
+  require(s.threads >= 0, "number of threads is out of range", "Choose 0 (all cores) or more.");
+}
+
+/// Gathers at points and keeps what each replicate of each has brought.
+class Measurer {
+ public:
+  Measurer(const Room& room, const Solution& solution, const MeasureSettings& settings, const StopToken& stop)
+      : room_(room),
+        settings_(settings),
+        stop_(stop),
+        field_(room, solution, kReplicates),
+        direct_(room),
+        gather_(field_, direct_, GatherSettings{.seed = settings.seed, .plan = &solution.gather_plan},
+                &stop_),
+        bands_(room.band_count()) {}
+
+  void gather_all(const std::vector<PointSet>& sets, const MeasureProgress& progress);
+  MeasuredLight result(std::vector<PointSet> sets) const;
+
+ private:
+  /// Direct irradiance, and mean radiance over the hemisphere, of a replicate of a point.
+  struct Part {
+    const float* direct;
+    const float* indirect;
+  };
+  Part part(std::size_t point, std::size_t replicate) const {
+    const float* values = &means_[(point * kReplicates + replicate) * 2 * bands_];
+    return {values, values + bands_};
+  }
+  double irradiance(std::size_t point, std::size_t replicate, std::size_t band) const {
+    const Part values = part(point, replicate);
+    return static_cast<double>(values.direct[band]) +
+           std::numbers::pi * static_cast<double>(values.indirect[band]);
+  }
+  template <class Value>
+  ReplicateMean mean(Value&& value) const {
+    return mean_of_replicates(kReplicates, field_.parts(), value);
+  }
+  /// Mean and error of a number made of the bands of one point.
+  template <class OfBands>
+  Irradiance combined(std::size_t point, OfBands&& of_bands) const;
+  SetSummary summary(std::size_t first, std::size_t last, const std::vector<Irradiance>& illuminance) const;
+  int places() const;
+  int rays_per_place() const;
+  int most_places() const;
+  void gather(std::size_t first, std::size_t last, int first_place, int places);
+  double error() const;
+
+  const Room& room_;
+  const MeasureSettings& settings_;
+  StopToken stop_;
+  RadianceField field_;
+  DirectLight direct_;
+  HemisphereGather gather_;
+  std::size_t bands_;
+  std::vector<MeasuringPoint> points_;
+  std::vector<float> means_;  // by point, replicate, direct and indirect, band
+  bool limited_by_zones_ = false;
+};
+
+int Measurer::places() const {
+  constexpr auto kParts = static_cast<int>(kReplicates);
+  return static_cast<int>(
+      std::bit_ceil(static_cast<unsigned>((settings_.light_samples + kParts - 1) / kParts)));
+}
+
+int Measurer::rays_per_place() const {
+  const int of_point = places() * static_cast<int>(kReplicates);
+  return (settings_.gather_rays + of_point - 1) / of_point;
+}
+
+int Measurer::most_places() const {
+  if (settings_.error_target == 0) return places();
+  const auto of_numbers = std::bit_floor(PathKey::kMostPaths / static_cast<unsigned>(rays_per_place()));
+  return std::max(1, std::min(kMostPlaces, static_cast<int>(of_numbers)));
+}
+
+void Measurer::gather(std::size_t first, std::size_t last, int first_place, int places) {
+  const std::size_t values = 2 * bands_;
+  std::vector<float> found((last - first) * kReplicates * values, 0.0F);
+  GatherBatch batch(gather_);
+  const ReplicateEffort effort{places, rays_per_place(), first_place};
+  const int log2_places = std::countr_zero(static_cast<unsigned>(most_places()));
+  float* next = found.data();
+  for (std::size_t i = first; i < last; ++i)
+    for (std::size_t r = 0; r < kReplicates; ++r, next += values) {
+      if (stop_.requested()) return;
+      const PointSampler sampler(settings_.seed, RngPurpose::kMeasuringPoint, i, static_cast<int>(r),
+                                 log2_places);
+      const PathKey key{i, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % field_.parts())};
+      add_replicate(
+          direct_, sampler, effort, key, [&](const std::array<float, 2>&) { return points_[i]; }, batch, next,
+          next + bands_);
+    }
+  batch.flush();
+  const float share = static_cast<float>(places) / static_cast<float>(first_place + places);
+  float* means = &means_[first * kReplicates * values];
+  for (std::size_t k = 0; k < found.size(); ++k) means[k] += share * (found[k] - means[k]);
+}
+
+void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgress& progress) {
+  for (const PointSet& set : sets)
+    for (std::size_t i = 0; i < set.size(); ++i)
+      points_.push_back(measuring_point(room_.rays(), set.places[i], set.normals[i]));
+  means_.assign(points_.size() * kReplicates * 2 * bands_, 0.0F);
+  const std::size_t chunks = (points_.size() + kChunk - 1) / kChunk;
+  const bool has_target = settings_.error_target > 0;
+  double share_done = 0;
+  std::mutex progress_mutex;
+  RefinedPart all;  // of which there is one: every point gets the same samples
+  for (int done = 0; all.is_active() && done < most_places();) {
+    const int more = has_target ? std::max(1, done) : places();
+    std::size_t chunks_done = 0;
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
+      gather(c * kChunk, std::min((c + 1) * kChunk, points_.size()), done, more);
+      const std::lock_guard lock(progress_mutex);
+      ++chunks_done;
+      if (progress)
+        progress(has_target ? share_done : static_cast<double>(chunks_done) / static_cast<double>(chunks));
+    });
+    if (stop_.requested()) throw Interrupted("measuring was interrupted; nothing was written");
+    done += more;
+    if (!has_target) return;
+    const double excess = std::pow(error() / RefinedPart::aim(settings_.error_target), 2);
+    share_done = std::min(1.0, 1 / excess);
+    all.look(excess, excess, true);
+  }
+  limited_by_zones_ = all.is_stalled();
+}
+
+double Measurer::error() const {
+  double worst = 0;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    double errors = 0;
+    double values = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const ReplicateMean light = mean([&](std::size_t r) { return irradiance(i, r, b); });
+      errors += light.squared_error;
+      values += light.mean * light.mean;
+    }
+    if (values > 0) worst = std::max(worst, std::sqrt(errors / values));
+  }
+  return worst;
+}
+
+template <class OfBands>
+Irradiance Measurer::combined(std::size_t point, OfBands&& of_bands) const {
+  const auto all =
+      mean([&](std::size_t r) { return of_bands([&](std::size_t b) { return irradiance(point, r, b); }); });
+  const auto direct = mean([&](std::size_t r) {
+    return of_bands([&](std::size_t b) { return static_cast<double>(part(point, r).direct[b]); });
+  });
+  return {static_cast<float>(all.mean), static_cast<float>(std::sqrt(all.squared_error)),
+          static_cast<float>(direct.mean)};
+}
+
+SetSummary Measurer::summary(std::size_t first, std::size_t last,
+                             const std::vector<Irradiance>& illuminance) const {
+  const Spectrum& efficacy = room_.scene().bands.efficacy_lm_per_w();
+  const auto [mean_of_set, squared_error] = mean([&](std::size_t r) {
+    double sum = 0;
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t b = 0; b < bands_; ++b)
+        sum += efficacy[static_cast<Eigen::Index>(b)] * irradiance(i, r, b);
+    return sum / static_cast<double>(last - first);
+  });
+  const auto [least, most] =
+      std::minmax_element(illuminance.begin() + static_cast<std::ptrdiff_t>(first),
+                          illuminance.begin() + static_cast<std::ptrdiff_t>(last),
+                          [](const Irradiance& a, const Irradiance& b) { return a.all < b.all; });
+  return {mean_of_set, std::sqrt(squared_error), least->all, most->all};
+}
+
+MeasuredLight Measurer::result(std::vector<PointSet> sets) const {
+  const Spectrum& efficacy = room_.scene().bands.efficacy_lm_per_w();
+  MeasuredLight light;
+  light.bands = room_.scene().bands;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    for (std::size_t b = 0; b < bands_; ++b)
+      light.irradiance.push_back(combined(i, [b](auto&& value) { return value(b); }));
+    light.illuminance.push_back(combined(i, [&](auto&& value) {
+      double sum = 0;
+      for (std::size_t b = 0; b < bands_; ++b) sum += efficacy[static_cast<Eigen::Index>(b)] * value(b);
+      return sum;
+    }));
+  }
+  std::size_t first = 0;
+  for (const PointSet& set : sets) {
+    light.summaries.push_back(summary(first, first + set.size(), light.illuminance));
+    first += set.size();
+  }
+  light.sets = std::move(sets);
+  light.limited_by_zones = limited_by_zones_;
+  light.misses_light_over_mirrors = field_.has_light_that_rays_miss();
+  light.info.error = error();
+  return light;
+}
+
+void describe(const Scene& scene, const Solution& solution, const MeasureSettings& settings,
+              MeasuredLight& light) {
+  ExportInfo& info = light.info;
+  info.program_version = solution.program_version;
+  info.room = scene.source.empty() ? scene.name : scene.source;
+  info.room_hash = solution.room_hash;
+  info.seed = solution.settings.seed;
+  if (!light.misses_light_over_mirrors) info.zones = solution.record.gather_bias;
+  if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
+  if (settings.error_target == 0) {
+    info.settings.emplace_back("gather rays", static_cast<std::uint64_t>(settings.gather_rays));
+    info.settings.emplace_back("light samples", static_cast<std::uint64_t>(settings.light_samples));
+  }
+  info.settings.emplace_back("gather seed", settings.seed);
+  if (scene.sky && scene.sky->kind != SkyKind::kNone)
+    light.outside =
+        (scene.bands.efficacy_lm_per_w() * horizontal_sky_irradiance(*scene.sky, scene.bands)).sum();
+}
+
+}  // namespace
+
+MeasuredLight measure_light(const Room& room, const Solution& solution, std::vector<PointSet> sets,
+                            const MeasureSettings& settings, const MeasureProgress& progress,
+                            const std::atomic<bool>& interrupt) {
+  std::size_t points = 0;
+  for (const PointSet& set : sets) points += set.size();
+  check(settings, points);
+  MeasuredLight light;
+  tbb::task_arena arena(thread_count(settings.threads));
+  arena.execute([&] {
+    Measurer measurer(room, solution, settings, StopToken(interrupt));
+    measurer.gather_all(sets, progress);
+    light = measurer.result(std::move(sets));
+  });
+  describe(room.scene(), solution, settings, light);
+  return light;
+}
+
+}  // namespace reemit
