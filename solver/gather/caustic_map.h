@@ -84,9 +84,10 @@ class CausticMap {
 struct CausticShare {
   const CausticMap* photons = nullptr;  ///< Null: all of it.
   bool none = false;                    ///< With photons: nothing, they are asked for all of it.
+  bool all = false;                     ///< With photons: all of it, they tell nothing there.
 
   float of(SurfaceId luminaire) const {
-    if (photons == nullptr || !photons->exists()) return 1;
+    if (photons == nullptr || !photons->exists() || all) return 1;
     return none ? 0 : photons->left_to_rays(luminaire);
   }
 };

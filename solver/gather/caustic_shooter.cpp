@@ -29,6 +29,15 @@ std::uint32_t marks_of16(const CausticShooter::Marks& marks, std::uint32_t first
   return bits;
 }
 
+/// Whether anybody may ask for the light that comes to a point: all but smooth mirrors and glass scatter
+/// some, and what is black may be there to be measured on.
+bool takes_light(const SurfaceModel& surfaces, const Hit& hit) {
+  if (!surfaces.is_specular(hit.triangle, hit.front)) return true;
+  const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
+  return surfaces.specular(hit.triangle).diffuses() ||
+         std::any_of(reflectance, reflectance + surfaces.band_count(), [](float rho) { return rho > 0; });
+}
+
 }  // namespace
 
 CausticShooter::CausticShooter(const Room& room, std::uint64_t seed)
@@ -217,8 +226,7 @@ void CausticShooter::follow(const Vec3f& origin, const Vec3f& direction, std::ui
     if (!transport_.mesh().has_zones(hit.triangle, hit.front)) return;
     surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, power.data());
     const SurfacePoint x = surface_point(rays, hit, along);
-    const float* reflectance = surfaces.reflectance(hit.triangle, hit.front);
-    if (bent && std::any_of(reflectance, reflectance + bands, [](float rho) { return rho > 0; })) {
+    if (bent && takes_light(surfaces, hit)) {
       result.places.push_back(from + hit.distance * along);
       result.normals.push_back(x.normal);
       result.triangles.push_back(hit.triangle);

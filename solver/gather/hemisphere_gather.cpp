@@ -53,15 +53,15 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
       rng_(settings.seed, RngPurpose::kHemisphere),
       specular_(settings.seed, RngPurpose::kSpecular, RngPurpose::kSpread) {}
 
-void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight,
-                                     float* sum, float* caustic) const {
+void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool from_air,
+                                     float* weight, float* sum, float* caustic) const {
   const RayTracer& rays = room().rays();
   const SurfaceModel& surfaces = room().surfaces();
   const std::size_t bands = band_count();
   Hit hit = y;
   Vec3f along = direction;
   float way = 0;  // from the last surface that scattered the light
-  SpecularPath path(room(), specular_, key, &caustics_);
+  SpecularPath path(room(), specular_, key, {&caustics_, false, from_air});
   for (int bounce = 0;;) {
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
@@ -89,6 +89,7 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
         direct_->add_lobe_sample(point, {u[0], u[1], u[2]}, path.counted(), diffuse, here,
                                  {over_mirrors, sum});
       }
+      if (diffuse == DiffuseWay::kFollowed) add_photons_beyond(point, bounce, key, here, sum);
       const SpecularPath::Next next = path.choose(point, diffuse, scattered, weight);
       if (next == SpecularPath::Next::kEnds) return;
       if (next == SpecularPath::Next::kGoesOn) {
@@ -135,6 +136,17 @@ void HemisphereGather::add_direct(const SurfacePoint& y, int bounce, const PathK
                           {reflectance, std::numbers::inv_pi_v<float> / kPhotonLooks}, weight, sum);
 }
 
+void HemisphereGather::add_photons_beyond(const SurfacePoint& y, int bounce, const PathKey& key,
+                                          const float* weight, float* sum) const {
+  const SpecularSurface& surface = room().surfaces().specular(y.triangle);
+  if (!surface.diffuses() || !caustics_.exists()) return;
+  const float u = numbers(bounce, key)[3];
+  if (!(u < kPhotonLooks)) return;
+  caustics_.add_reflected(
+      other_side(room().rays(), y), key.part, true, u / kPhotonLooks,
+      {surface.diffuse_transmittance().data(), std::numbers::inv_pi_v<float> / kPhotonLooks}, weight, sum);
+}
+
 std::array<float, 4> HemisphereGather::numbers(int bounce, const PathKey& key) const {
   return rng_.uniform4(key.index, key.batch, key.step(static_cast<std::uint32_t>(2 * bounce)));
 }
@@ -149,7 +161,7 @@ void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& 
   if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return;
   gather_->add_photons(x, u0, u1, key, weight, caustic);
   leave_from(x);
-  queue(u0, u1, key, weight, sum, caustic);
+  queue(u0, u1, key, false, weight, sum, caustic);
 }
 
 void GatherBatch::add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight,
@@ -158,17 +170,18 @@ void GatherBatch::add(const MeasuringPoint& x, float u0, float u1, const PathKey
   origin_ = x.place;
   above_ = x.normal;
   frame_ = Frame(x.normal);
-  queue(u0, u1, key, weight, sum, caustic == nullptr ? sum : caustic);
+  queue(u0, u1, key, true, weight, sum, caustic == nullptr ? sum : caustic);
 }
 
-void GatherBatch::queue(float u0, float u1, const PathKey& key, const float* weight, float* sum,
-                        float* caustic) {
+void GatherBatch::queue(float u0, float u1, const PathKey& key, bool from_air, const float* weight,
+                        float* sum, float* caustic) {
   const Vec3f direction = frame_.to_world(sample_cosine_hemisphere(u0, u1));
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(above_) > 0)) return;
   rays_.set(count_, origin_, direction);
   const auto lane = static_cast<std::size_t>(count_);
   second_look_[lane] = false;
+  from_air_[lane] = from_air;
   keys_[lane] = key;
   sums_[lane] = sum;
   caustics_[lane] = caustic;
@@ -200,6 +213,7 @@ void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
             rays.cut_out_key(rays_, ray));
   const auto to = static_cast<std::size_t>(count_++);
   second_look_[to] = true;
+  from_air_[to] = from_air_[lane];
   keys_[to] = keys_[lane];
   sums_[to] = sums_[lane];
   caustics_[to] = caustics_[lane];
@@ -230,8 +244,8 @@ void GatherBatch::trace() {
     const ZoneId zone(zones[i]);
     if (gather_->continues(zone, hits.distance[i]) || surfaces.is_specular(TriangleId(t), hits.front[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
-      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], weight, sums_[i],
-                             caustics_[i]);
+      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], from_air_[i], weight,
+                             sums_[i], caustics_[i]);
       continue;
     }
     const float* radiance = field.reflected(zone, keys_[i].part);

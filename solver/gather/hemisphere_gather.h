@@ -76,9 +76,10 @@ class HemisphereGather {
 
   /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
   /// on a mirror or glass, sends back along it to sum[b], of luminaires over mirrors, glass and gloss alone
-  /// to caustic[b], which may be the same. `weight` is used up.
-  void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, float* weight, float* sum,
-                     float* caustic) const;
+  /// to caustic[b], which may be the same. `weight` is used up. `from_air`: of a ray from a point where no
+  /// photons are asked for.
+  void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool from_air, float* weight,
+                     float* sum, float* caustic) const;
 
  private:
   /// A look at photons costs as much as several rays and has less noise: one of eight that might takes it.
@@ -87,6 +88,10 @@ class HemisphereGather {
   /// One sample of what y reflects of the luminaires along the path.
   void add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
                   float* sum) const;
+
+  /// One sample of what photons on the other side of y send through it diffusely.
+  void add_photons_beyond(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
+                          float* sum) const;
 
   /// Three for a shadow ray, one for a look at photons.
   std::array<float, 4> numbers(int bounce, const PathKey& key) const;
@@ -113,8 +118,8 @@ class GatherBatch {
   /// over mirrors, glass and gloss unless it is null.
   void add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
            float* caustic = nullptr);
-  /// The same from a point in the air, where photons tell nothing: of rooms with these (CausticMap) it gets
-  /// no light over mirrors and glass.
+  /// The same from a point in the air, where photons tell nothing: light over mirrors, gloss and glass is
+  /// what rays find there, which do not find lights without area.
   void add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
            float* caustic = nullptr);
   /// Traces what is queued. Call it before the sums are read.
@@ -125,7 +130,8 @@ class GatherBatch {
 
   /// Finds how rays leave x, unless the last one left it as well.
   void leave_from(const SurfacePoint& x);
-  void queue(float u0, float u1, const PathKey& key, const float* weight, float* sum, float* caustic);
+  void queue(float u0, float u1, const PathKey& key, bool from_air, const float* weight, float* sum,
+             float* caustic);
   void trace();
   void keep_for_second_look(std::size_t lane, const Hit16& hits);
 
@@ -138,6 +144,7 @@ class GatherBatch {
   Frame frame_{Vec3f(0, 0, 1)};  // of directions there
   Ray16 rays_{};
   std::array<bool, kWidth> second_look_{};
+  std::array<bool, kWidth> from_air_{};
   std::array<PathKey, kWidth> keys_{};
   std::array<float*, kWidth> sums_{};
   std::array<float*, kWidth> caustics_{};

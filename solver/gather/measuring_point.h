@@ -10,8 +10,8 @@ struct MeasuringPoint {
   Vec3f normal;  ///< Unit, towards the side that light is asked for on.
 };
 
-/// The point at `place` [m] that faces along `normal` (unit). Coordinates are rounded for rays, so it is moved
-/// by two lifts of theirs towards where it faces: a point on a surface is just before it, not behind.
+/// The point at `place` [m] that faces along `normal` (unit). Coordinates are rounded for rays, so it is
+/// moved by two lifts of theirs towards where it faces: a point on a surface is just before it, not behind.
 inline MeasuringPoint measuring_point(const RayTracer& rays, const Vec3& place, const Vec3& normal) {
   const Vec3 lifted = rays.normalised_double(place) + 2 * static_cast<double>(RayTracer::kLift) * normal;
   return {lifted.cast<float>(), normal.cast<float>()};

@@ -43,12 +43,12 @@ class SpecularPath {
 
   /// `pdf_per_sr`: density of the first ray, where it leaves a surface whose light of luminaires is divided
   /// between shadow rays and such rays (DirectLight::found_by_lobe); else 0.
-  /// `photons`: as CausticShare.
+  /// `caustic`: what it is to count until light is scattered.
   SpecularPath(const Room& room, const SpecularNumbers& numbers, const PathKey& key,
-               const CausticMap* photons = nullptr, float pdf_per_sr = 0)
+               const CausticShare& caustic = {}, float pdf_per_sr = 0)
       : room_(&room),
         numbers_(&numbers),
-        caustic_{photons, false},
+        caustic_(caustic),
         key_(key),
         step_(room.surfaces().any_specular() ? room.band_count() : 0),
         pdf_per_sr_(pdf_per_sr) {}
@@ -114,7 +114,12 @@ class SpecularPath {
       return Next::kEnds;
     for (std::size_t b = 0; b < room_->band_count(); ++b) weight[b] *= step_.share()[b] / step_.chance;
     is_wide_ = is_wide_ || step_.is_wide;
-    is_scattered_ = is_scattered_ || step_.way == SpecularWayOn::kDiffuse;
+    if (step_.way == SpecularWayOn::kDiffuse) {
+      // Photons on the other side have been asked for.
+      is_scattered_ = true;
+      is_wide_ = false;
+      leave_rest_to_photons();
+    }
     if (step_.pdf_per_sr > 0) {
       is_bent_ = false;
       pdf_per_sr_ = step_.pdf_per_sr;
@@ -132,13 +137,18 @@ class SpecularPath {
   void scatter() {
     is_bent_ = is_wide_ = false;
     pdf_per_sr_ = 0;
-    caustic_.none = true;
+    leave_rest_to_photons();
     is_scattered_ = true;
   }
   /// Whether light was scattered into all directions on the way: what it comes over next is no caustic.
   bool is_scattered() const { return is_scattered_; }
 
  private:
+  void leave_rest_to_photons() {
+    caustic_.none = true;
+    caustic_.all = false;
+  }
+
   const Room* room_;
   const SpecularNumbers* numbers_;
   CausticShare caustic_;

@@ -49,7 +49,8 @@ class Measurer {
         stop_(stop),
         field_(room, solution, kReplicates),
         direct_(room),
-        gather_(field_, direct_, GatherSettings{.seed = settings.seed, .plan = &solution.gather_plan},
+        gather_(field_, direct_,
+                GatherSettings{.caustics = true, .seed = settings.seed, .plan = &solution.gather_plan},
                 &stop_),
         bands_(room.band_count()) {}
 

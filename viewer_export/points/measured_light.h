@@ -55,10 +55,11 @@ struct MeasuredLight {
 using MeasureProgress = std::function<void(double)>;
 
 /// Irradiance at points that are no part of the room, by direct light and final gather there as at vertices
-/// (gather_vertices), but for photons, which only surfaces have: light over mirrors and glass is found where
-/// rays meet the luminaire behind them, so that of point lights is missed (misses_light_over_mirrors), as is
-/// that of the sun. `progress` may be empty. Throws InputError for settings out of range or no points at all
-/// and for a room that is not the one solved, Interrupted when `interrupt` becomes true.
+/// (gather_vertices), but for photons, which only surfaces have: what comes to a point straight from mirrors
+/// and glass is found where rays meet the luminaire behind them, so that of lights without area is missed
+/// (misses_light_over_mirrors), as is nearly always that of the sun. `progress` may be empty. Throws
+/// InputError for settings out of range or no points at all and for a room that is not the one solved,
+/// Interrupted when `interrupt` becomes true.
 MeasuredLight measure_light(const Room& room, const Solution& solution, std::vector<PointSet> sets,
                             const MeasureSettings& settings, const MeasureProgress& progress,
                             const std::atomic<bool>& interrupt);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -11,9 +12,12 @@
 #include "solver/room/room.h"
 #include "tests/support/hand_made_solution.h"
 #include "tests/support/mean_test.h"
+#include "tests/support/never.h"
 #include "tests/support/specular_furnace.h"
 #include "tests/support/variable_furnace.h"
+#include "viewer_export/points/measured_light.h"
 #include "viewer_export/still/render_still.h"
+#include "viewer_export/vertex/vertex_radiance.h"
 
 namespace reemit {
 namespace {
@@ -90,6 +94,74 @@ TEST(SpecularStills, ReflectanceOfWhatIsSeenIsThatBehindPanes) {
   sheet.specular_transmittance = Spectrum::Constant(1, 0.8);
   const StillImage through = look_down(sheet, Integrator::kGather, false, 16, 0.5);
   for (const float albedo : through.albedo) EXPECT_NEAR(albedo, 0.8 * 0.5, 1e-5);
+}
+
+/// A black room of 4 m with a spot that a mirror throws onto a square of 0.6 m, as if from 5.1 m away.
+class SpotOverMirror {
+ public:
+  static constexpr double kIntensity = 50;  // [W/sr]
+  static constexpr double kMirror = 0.9;
+  static constexpr double kDistance = 5.1;  // from the image of the spot
+
+  explicit SpotOverMirror(const std::function<MaterialId(RoomBuilder&)>& square_of) {
+    const MaterialId black = room.material("black", 0);
+    room.box(Vec3(0, -2, -2), Vec3(4, 2, 2), {black, black, black, black, black, black}, 1);
+    const MaterialId mirror = room.material("mirror", 0, 0, true);
+    room.scene().materials[mirror.index()].non_diffuse.specular_reflectance = Spectrum::Constant(1, kMirror);
+    room.quad(mirror, {Vec3(0.1, -1, -1), Vec3(0.1, 1, -1), Vec3(0.1, 1, 1), Vec3(0.1, -1, 1)}, 1);
+    room.quad(square_of(room),
+              {Vec3(3.8, -0.3, -0.3), Vec3(3.8, -0.3, 0.3), Vec3(3.8, 0.3, 0.3), Vec3(3.8, 0.3, -0.3)}, 1);
+    SpotLight spot{"spot", Vec3(1.5, 0, 0), Vec3(-1, 0, 0), Spectrum::Constant(1, kIntensity), 0.2, 0.25};
+    room.scene().lights.push_back(spot);
+    SolverSettings settings;
+    settings.packets = 1'000'000;
+    solution = solve_zones(room.scene(), room.mesh(), settings, {}, test::kNever);
+  }
+
+  /// Irradiance at a point of the square.
+  static double truth(double y, double z) {
+    const double d2 = kDistance * kDistance + y * y + z * z;
+    return kMirror * kIntensity * kDistance / (d2 * std::sqrt(d2));
+  }
+
+  RoomBuilder room;
+  Solution solution;
+};
+
+// Photons blur over some 5 cm and are few: 1 % of the mean, where all of it was missing.
+TEST(SpecularStills, BlackSurfacesMeasureLightOverMirrors) {
+  const SpotOverMirror spot([](RoomBuilder& room) { return room.material("sensor", 0); });
+  const Room walls(spot.room.scene(), spot.solution.mesh);
+  const VertexData data = gather_vertices(walls, spot.solution, {}, {}, test::kNever);
+  double found = 0;
+  double expected = 0;
+  for (std::size_t v = 0; v < data.vertex_count(); ++v) {
+    const Vec3& p = data.positions[v];
+    if (p.x() != 3.8) continue;
+    found += static_cast<double>(data.irradiance[v]);
+    expected += SpotOverMirror::truth(p.y(), p.z());
+  }
+  ASSERT_GT(expected, 0);
+  EXPECT_NEAR(found, expected, 0.04 * expected);
+}
+
+// A point 1 cm behind an opal square sees nothing else; its rays meet a zone that is far larger than that.
+TEST(SpecularStills, LightOverMirrorsComesThroughOpalSheets) {
+  constexpr double kOpal = 0.5;
+  for (const double reflectance : {0.0, 0.02}) {
+    const SpotOverMirror spot([&](RoomBuilder& room) {
+      const MaterialId opal = room.material("opal", reflectance, 0, true);
+      room.scene().materials[opal.index()].non_diffuse.diffuse_transmittance = Spectrum::Constant(1, kOpal);
+      return opal;
+    });
+    const Room walls(spot.room.scene(), spot.solution.mesh);
+    MeasureSettings settings;
+    settings.gather_rays = 65536;
+    const MeasuredLight light = measure_light(
+        walls, spot.solution, {{"behind", {Vec3(3.81, 0, 0)}, {Vec3(-1, 0, 0)}}}, settings, {}, test::kNever);
+    const double truth = kOpal * SpotOverMirror::truth(0, 0);
+    EXPECT_NEAR(light.irradiance[0].all, truth, 0.04 * truth) << reflectance;
+  }
 }
 
 TEST(SpecularStills, LightOverMirrorsIsALayerOfItsOwn) {
