@@ -158,6 +158,7 @@ void add_sky(Hasher& hash, const Sky& sky) {
   hash.add(sky.irradiance);
   const SkyGradation& g = sky.gradation;
   for (const double x : {g.a, g.b, g.c, g.d, g.e}) hash.add(x);
+  if (g.is_all_weather) hash.add(std::uint64_t{1});
   hash.add(sky.ground_reflectance);
   if (sky.image) {
     hash.add(std::uint64_t{sky.image->columns});

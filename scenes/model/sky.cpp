@@ -128,7 +128,7 @@ SkyGradation SkyGradation::of_weather(double direct_normal, double diffuse_horiz
     value[2] = std::exp(std::pow(brightness * (c[0] + c[1] * zenith), c[2])) - c[3];
     value[3] = -std::exp(brightness * (d[0] + d[1] * zenith)) + d[2] + brightness * d[3];
   }
-  return {value[0], value[1], value[2], value[3], value[4]};
+  return {value[0], value[1], value[2], value[3], value[4], true};
 }
 
 double SkyGradation::relative_luminance(double cos_zenith, double angle_to_sun) const {
@@ -136,7 +136,8 @@ double SkyGradation::relative_luminance(double cos_zenith, double angle_to_sun) 
   constexpr double kLeastCosine = 0.01;
   const double phi = 1 + a * std::exp(b / std::max(kLeastCosine, cos_zenith));
   const double cosine = std::cos(angle_to_sun);
-  const double f = 1 + c * (std::exp(d * angle_to_sun) - std::exp(d * pi / 2)) + e * cosine * cosine;
+  const double across = is_all_weather ? 0 : std::exp(d * pi / 2);
+  const double f = 1 + c * (std::exp(d * angle_to_sun) - across) + e * cosine * cosine;
   return std::max(0.0, phi) * std::max(0.0, f);
 }
 

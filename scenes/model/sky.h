@@ -29,14 +29,16 @@ enum class SkyKind {
   kNone,      ///< Black, for a sun alone.
   kUniform,   ///< The same radiance everywhere.
   kOvercast,  ///< (1 + 2 sin altitude) / 3 of the zenith [CIE110, Moon and Spencer].
-  kGeneral,   ///< The form of the CIE general sky [CIE11], which is that of [PER93] too.
+  kGeneral,   ///< A SkyGradation.
   kImage,
 };
 
 /// Relative luminance phi(Z) f(chi) of a general sky [CIE11, eq. 1-8]: phi = 1 + a exp(b / cos Z),
-/// f = 1 + c (exp(d chi) - exp(d pi/2)) + e cos^2 chi; Z from the zenith, chi from the sun.
+/// f = 1 + c (exp(d chi) - exp(d pi/2)) + e cos^2 chi; Z from the zenith, chi from the sun. The all-weather
+/// sky [PER93, eq. 1] has the same form but for the second exponential, which is 0.
 struct SkyGradation {
   double a = 0, b = -1, c = 0, d = -1, e = 0;
+  bool is_all_weather = false;
 
   /// One of the 15 standard skies [CIE11, table 1]. Pre: 1 <= type <= 15.
   static SkyGradation of_cie_type(int type);

@@ -1,5 +1,6 @@
 #include "solver/sky/sky_table.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -84,6 +85,32 @@ TEST(SkyTable, perez_skies_are_clear_or_overcast_by_their_irradiances) {
   EXPECT_GT(grey.relative_luminance(1, 0.87), 1.5 * grey.relative_luminance(0.1, 1.5));
   const SkyGradation clear = SkyGradation::of_weather(850, 90, 0.7);
   EXPECT_GT(clear.relative_luminance(std::sin(0.7), 0.05), 4 * clear.relative_luminance(1, 0.87));
+}
+
+// Computed from tables and equations of [PER93] by a program of its own.
+TEST(SkyTable, perez_skies_are_those_of_the_paper) {
+  struct Weather {
+    double direct_normal, diffuse_horizontal, sun_altitude_deg;  // [W/m2]
+    std::array<double, 3>
+        over_zenith;  // at altitude 30 degrees, opposite to the sun, beside and below or above it
+  };
+  constexpr double kDegree = std::numbers::pi / 180;
+  for (const Weather& weather :
+       {Weather{50, 250, 40, {0.78085, 1.01149, 4.95154}}, Weather{600, 120, 45, {1.00056, 1.18236, 6.25708}},
+        Weather{850, 90, 60, {0.59681, 0.75993, 1.76528}}}) {
+    const double sun = weather.sun_altitude_deg * kDegree;
+    const SkyGradation sky = SkyGradation::of_weather(weather.direct_normal, weather.diffuse_horizontal, sun);
+    const double zenith = sky.relative_luminance(1, std::numbers::pi / 2 - sun);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double altitude = 30 * kDegree;
+      const double azimuth = std::numbers::pi - static_cast<double>(i) * std::numbers::pi / 2;
+      const double to_sun = std::acos(std::sin(altitude) * std::sin(sun) +
+                                      std::cos(altitude) * std::cos(sun) * std::cos(azimuth));
+      EXPECT_NEAR(sky.relative_luminance(std::sin(altitude), to_sun) / zenith, weather.over_zenith[i],
+                  1e-4 * weather.over_zenith[i])
+          << weather.direct_normal << " W/m2, direction " << i;
+    }
+  }
 }
 
 TEST(SkyTable, directions_are_drawn_by_brightness) {
