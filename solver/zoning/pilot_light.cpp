@@ -19,7 +19,8 @@ constexpr std::uint64_t kPilotSeed = 1;  // nothing of a solution should depend 
 constexpr std::uint64_t kPackets = 1 << 18;
 /// Independent parts of the solution: a point is looked at once with each.
 constexpr int kPilotHalves = 2;
-/// Surfaces reflect and diffusely transmit no more than this in it, so that it ends soon whatever the room.
+/// Surfaces reflect, as mirrors too, and diffusely transmit no more than this in it, so that it ends soon
+/// whatever the room.
 constexpr double kMostReflectance = 0.9;
 
 Scene dimmed(Scene scene) {
@@ -27,6 +28,8 @@ Scene dimmed(Scene scene) {
     material.reflectance = material.reflectance.min(kMostReflectance);
     if (material.back_reflectance.size() > 0)
       material.back_reflectance = material.back_reflectance.min(kMostReflectance);
+    Spectrum& mirror = material.non_diffuse.specular_reflectance;  // of metals a tint
+    if (mirror.size() > 0) mirror = mirror.min(kMostReflectance);
     if (material.non_diffuse.transmits_diffusely())
       material.non_diffuse.diffuse_transmittance =
           material.non_diffuse.diffuse_transmittance.min(kMostReflectance - material.largest_reflectance());
