@@ -176,8 +176,11 @@ void add_products(const ZoneSums& sums, std::size_t i, double mean, double weigh
       part.products[g * groups + h] += weight * deviation[g] * deviation[h];
 }
 
+/// What errors are those of.
+enum class ErrorOf { kReflectedLight, kIrradiance };
+
 /// By channel. Partial sums of fixed chunks are added in order: the same bits on any number of threads.
-std::vector<ChannelError> channel_errors(const SurfaceModel& surfaces, const ZoneMesh& mesh,
+std::vector<ChannelError> channel_errors(ErrorOf what, const SurfaceModel& surfaces, const ZoneMesh& mesh,
                                          const ZoneSums& sums, bool with_groups) {
   const std::size_t channels = sums.channels.count();
   const std::size_t zones = mesh.zone_count();
@@ -193,7 +196,7 @@ std::vector<ChannelError> channel_errors(const SurfaceModel& surfaces, const Zon
         const std::size_t i = z * channels + c;
         const double mean = sums.total(i) / w;
         if (mean == 0) return;
-        const double r = reflectance[band];
+        const double r = what == ErrorOf::kReflectedLight ? reflectance[band] : 1;
         ChannelError& part = parts[chunk * channels + c];
         part.noise += area * r * r * variance_of_mean(sums, i);
         part.signal += area * r * r * mean * mean;
@@ -214,6 +217,17 @@ std::vector<ChannelError> channel_errors(const SurfaceModel& surfaces, const Zon
     for (std::size_t g = 0; g < groups; ++g)
       for (std::size_t h = 0; h < g; ++h) sum.products[g * groups + h] = sum.products[h * groups + g];
   return result;
+}
+
+/// Of reflected light, or where nothing reflects any, as in rooms that are black to be measured in, of
+/// irradiance.
+std::vector<ChannelError> channel_errors(const SurfaceModel& surfaces, const ZoneMesh& mesh,
+                                         const ZoneSums& sums, bool with_groups) {
+  std::vector<ChannelError> errors =
+      channel_errors(ErrorOf::kReflectedLight, surfaces, mesh, sums, with_groups);
+  const bool is_black =
+      std::all_of(errors.begin(), errors.end(), [](const ChannelError& sum) { return sum.signal == 0; });
+  return is_black ? channel_errors(ErrorOf::kIrradiance, surfaces, mesh, sums, with_groups) : errors;
 }
 
 double relative_rms(const ChannelError& sum) {

@@ -12,7 +12,8 @@
 namespace reemit {
 
 /// Error of a zone solution as a fraction of its radiosity. Radiosity here is the reflected part rho E: a
-/// bright lamp known without error would otherwise hide the noise of the room that it lights.
+/// bright lamp known without error would otherwise hide the noise of the room that it lights. In rooms that
+/// reflect nothing it is E itself.
 struct ZoneError {
   double rms = 0;  ///< sqrt(sum A s^2 / sum A (rho E)^2), s = standard error of rho E, worst band.
   /// What the true rms error of these very values stays below with odds of 99.9 %. rms is the mean of what it
