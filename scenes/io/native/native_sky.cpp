@@ -1,10 +1,15 @@
 #include "scenes/io/native/native_sky.h"
 
+#include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "scenes/io/common/sky_image.h"
 #include "scenes/io/native/native_materials.h"
@@ -44,7 +49,10 @@ CivilTime read_time(const JsonCursor& at) {
   expect_sign(at, 4, "-");
   time.month = digits(at, 5, 2, 1, 12);
   expect_sign(at, 7, "-");
-  time.day = digits(at, 8, 2, 1, 31);
+  const std::chrono::year_month_day_last month_end{
+      std::chrono::year(time.year),
+      std::chrono::month_day_last(std::chrono::month(static_cast<unsigned>(time.month)))};
+  time.day = digits(at, 8, 2, 1, static_cast<int>(static_cast<unsigned>(month_end.day())));
   expect_sign(at, 10, "T ");
   time.hours = digits(at, 11, 2, 0, 23);
   expect_sign(at, 13, ":");
@@ -92,7 +100,12 @@ Sun read_sun(const JsonCursor& at, const BandSet& bands) {
   Sun sun;
   const auto time = at.find("time");
   const auto altitude = at.find("altitude_deg");
-  if (time && altitude) altitude->fail("the time says where the sun stands", "Keep one of the two.");
+  for (const char* key : {"altitude_deg", "azimuth_deg"})
+    if (const auto other = at.find(key); time && other)
+      other->fail("the time says where the sun stands", "Keep one of the two.");
+  for (const char* key : {"latitude_deg", "longitude_deg"})
+    if (const auto other = at.find(key); !time && other)
+      other->fail("a place counts together with a time", "Add \"time\", or leave the place out.");
   if (!time && !altitude)
     at.fail(
         "it does not say where the sun stands",
@@ -147,6 +160,28 @@ void read_gradation(const JsonCursor& at, const std::string& type, Sky& sky) {
         "Add \"sun\": {\"altitude_deg\": ..., \"azimuth_deg\": ...}; without a strength it only says where.");
 }
 
+/// Refuses keys that say nothing of a sky of this type: whoever writes them means another.
+void refuse_idle_keys(const JsonCursor& at, const std::string& type) {
+  struct KeysOf {
+    std::vector<std::string_view> types;
+    std::vector<const char*> keys;
+  };
+  static const std::vector<KeysOf> all{
+      {{"cie"}, {"cie_type"}},
+      {{"perez"}, {"direct_normal_W_m2", "diffuse_horizontal_W_m2"}},
+      {{"image"}, {"file", "scale", "rotation_deg"}},
+      {{"uniform", "overcast", "clear", "cie", "perez"},
+       {"irradiance", "illuminance_lx", "radiance", "zenith_luminance_cd_m2", "color"}}};
+  for (const KeysOf& some : all) {
+    if (std::find(some.types.begin(), some.types.end(), type) != some.types.end()) continue;
+    for (const char* key : some.keys)
+      if (const auto idle = at.find(key))
+        idle->fail(fmt::format("it says nothing of a sky of type \"{}\", but of: {}", type,
+                               fmt::join(some.types, ", ")),
+                   "Leave it out, or choose another type.");
+  }
+}
+
 void read_strength(const JsonCursor& at, const BandSet& bands, Sky& sky) {
   const auto radiance = at.find("radiance");
   const auto luminance = at.find("zenith_luminance_cd_m2");
@@ -179,6 +214,7 @@ void read_sky(const JsonCursor& at, const std::filesystem::path& folder, Scene& 
   Sky sky;
   const std::string& type =
       at.at("type").choice({"uniform", "overcast", "clear", "cie", "perez", "image", "none"});
+  refuse_idle_keys(at, type);
   if (const auto sun = at.find("sun")) sky.sun = read_sun(*sun, scene.bands);
   if (const auto up = at.find("up")) sky.up = read_axis(*up);
   if (const auto north = at.find("north")) {

@@ -234,8 +234,8 @@ TEST(Sky, mistakes_are_named_with_their_place) {
       R"({"type": "clear", "illuminance_lx": 1e4, "sun": {"latitude_deg": 48, "longitude_deg": 16, "time":
                     "2024-06-21T01:00Z"}})",
       {"/sky/sun/time", "below the horizon then"});
-  for (const char* time :
-       {"2024-06-21", "2024-06-21T12:00", "2024-13-21T12:00Z", "yesterday", "2024-06-21T12:00Zebra", ""})
+  for (const char* time : {"2024-06-21", "2024-06-21T12:00", "2024-13-21T12:00Z", "yesterday",
+                           "2024-06-21T12:00Zebra", "", "2024-02-30T12:00Z", "2023-02-29T12:00Z"})
     expect_sky_refused(R"({"type": "none", "sun": {"latitude_deg": 48, "longitude_deg": 16, "time": ")" +
                            std::string(time) + R"("}})",
                        {"/sky/sun/time", "is not a time"});
@@ -243,6 +243,25 @@ TEST(Sky, mistakes_are_named_with_their_place) {
                      {"/sky/north", "along up"});
   expect_sky_refused(R"({"type": "overcast", "illuminance_lx": 1e4, "ground_reflectance": 1.5})",
                      {"/sky/ground_reflectance", "1.5"});
+}
+
+TEST(Sky, what_says_nothing_of_the_sky_is_refused) {
+  expect_sky_refused(R"({"type": "none", "illuminance_lx": 1e4})", {"/sky/illuminance_lx", "\"none\""});
+  expect_sky_refused(R"({"type": "image", "file": "a.hdr", "illuminance_lx": 1e4})", {"/sky/illuminance_lx"});
+  expect_sky_refused(R"({"type": "overcast", "illuminance_lx": 1e4, "cie_type": 3})",
+                     {"/sky/cie_type", "of: cie"});
+  expect_sky_refused(R"({"type": "overcast", "illuminance_lx": 1e4, "scale": 2})",
+                     {"/sky/scale", "of: image"});
+  expect_sky_refused(R"({"type": "clear", "illuminance_lx": 1e4, "direct_normal_W_m2": 500})",
+                     {"/sky/direct_normal_W_m2", "of: perez"});
+  const auto with_sun = [](const std::string& sun) {
+    return R"({"type": "none", "sun": {"illuminance_lx": 1e4, )" + sun + "}}";
+  };
+  expect_sky_refused(
+      with_sun(R"("latitude_deg": 48, "longitude_deg": 16, "time": "2024-06-21T12:00Z", "azimuth_deg": 90)"),
+      {"/sky/sun/azimuth_deg", "the time says"});
+  expect_sky_refused(with_sun(R"("altitude_deg": 30, "latitude_deg": 48)"),
+                     {"/sky/sun/latitude_deg", "time"});
 }
 
 TEST(Sky, mistakes_in_options_name_the_option) {
