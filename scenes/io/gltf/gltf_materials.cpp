@@ -144,18 +144,26 @@ class MaterialReader {
     return std::move(read.texture);
   }
 
-  /// Of textures that count with their means: 1 where there is none or it cannot be read; warns in both cases
-  /// where there is one.
-  Rgb mean(const tinygltf::TextureInfo& use, TextureEncoding encoding, const std::string& pointer,
-           const char* what, const std::string& name) {
+  /// Of textures that count with their means, colour and opacity: 1 where there is none or it cannot be read;
+  /// warns in both cases where there is one.
+  Eigen::Array4d mean(const tinygltf::TextureInfo& use, TextureEncoding encoding, const std::string& pointer,
+                      const char* what, const std::string& name) {
     const Texture read = texture(use, encoding, pointer, what, name);
-    if (!read) return Rgb::Ones();
-    const Rgb value = mean_of(read);
+    if (!read) return Eigen::Array4d::Ones();
+    const Texel& value = read.image->mean;
     ++scene_.not_modelled["textures"];
     scene_.warnings.push_back(
-        fmt::format("material \"{}\": its {} texture is replaced by its mean {:.3f} {:.3f} {:.3f}", name,
-                    what, value[0], value[1], value[2]));
-    return value;
+        fmt::format("material \"{}\": its {} texture is replaced by its mean {:.3f} {:.3f} {:.3f}{}", name,
+                    what, value[0], value[1], value[2],
+                    read.image->has_opacity ? fmt::format(" and {:.3f} of opacity", value[3]) : ""));
+    return {value[0], value[1], value[2], value[3]};
+  }
+
+  /// Of a texture of an extension.
+  Eigen::Array4d mean_in(const tinygltf::Material& source, const char* extension_name, const char* key,
+                         TextureEncoding encoding, const char* what, const std::string& name) {
+    return mean(texture_info(extension(source, extension_name), extension_name, key), encoding,
+                in_extension(extension_name, key), what, name);
   }
 
   /// A texture that an extension refers to.
@@ -191,23 +199,28 @@ class MaterialReader {
     const Rgb base = factor * mean_of(colour);  // of what does not vary
     // Green holds the roughness, blue the metallic share.
     const Rgb packed = mean(pbr.metallicRoughnessTexture, TextureEncoding::kLinear,
-                            within + "metallicRoughnessTexture", "metallic-roughness", material.name);
+                            within + "metallicRoughnessTexture", "metallic-roughness", material.name)
+                           .head<3>();
     const double metallic = checked(pbr.metallicFactor, 1, within + "metallicFactor") * packed[2];
     const double roughness = checked(pbr.roughnessFactor, 1, within + "roughnessFactor") * packed[1];
     material.non_diffuse.roughness = roughness * roughness;  // alpha, by the definition of the format
     double transmitted = number(source, "KHR_materials_transmission", "transmissionFactor", 0, 1);
     if (transmitted > 0)
-      transmitted *=
-          mean(texture_info(extension(source, "KHR_materials_transmission"), "KHR_materials_transmission",
-                            "transmissionTexture"),
-               TextureEncoding::kLinear, in_extension("KHR_materials_transmission", "transmissionTexture"),
-               "transmission", material.name)[0];
-    const double through = number(source, kDiffuseTransmission, "diffuseTransmissionFactor", 0, 1);
+      transmitted *= mean_in(source, "KHR_materials_transmission", "transmissionTexture",
+                             TextureEncoding::kLinear, "transmission", material.name)[0];
+    double through = number(source, kDiffuseTransmission, "diffuseTransmissionFactor", 0, 1);
+    if (through > 0)
+      through *= mean_in(source, kDiffuseTransmission, "diffuseTransmissionTexture", TextureEncoding::kLinear,
+                         "diffuse transmission", material.name)[3];
     const double diffuse = (1 - metallic) * (1 - transmitted);
     material.reflectance = factor * (diffuse * (1 - through));
     if (through > 0)
       material.non_diffuse.diffuse_transmittance =
-          triple(source, kDiffuseTransmission, "diffuseTransmissionColorFactor") * (diffuse * through);
+          triple(source, kDiffuseTransmission, "diffuseTransmissionColorFactor") *
+          mean_in(source, kDiffuseTransmission, "diffuseTransmissionColorTexture", TextureEncoding::kSrgb,
+                  "colour of diffuse transmission", material.name)
+              .head<3>() *
+          (diffuse * through);
     if (metallic > 0) {
       material.non_diffuse.specular_reflectance = base * metallic;
       material.non_diffuse.angle_law = AngleLaw::kSchlick;
@@ -241,12 +254,23 @@ class MaterialReader {
     if (extension(source, kSpecular).IsObject()) {
       constexpr double kMostColour = 1e6;
       gloss = triple(source, kSpecular, "specularColorFactor", kMostColour) *
+              mean_in(source, kSpecular, "specularColorTexture", TextureEncoding::kSrgb, "specular colour",
+                      material.name)
+                  .head<3>() *
               normal_reflectance(index_of_refraction(source));
-      gloss = gloss.min(1) * number(source, kSpecular, "specularFactor", 1, 1);
+      gloss = gloss.min(1) * (number(source, kSpecular, "specularFactor", 1, 1) *
+                              mean_in(source, kSpecular, "specularTexture", TextureEncoding::kLinear,
+                                      "specular", material.name)[3]);
       gloss *= (1 - metallic);
     }
-    if (const double coat = number(source, kClearCoat, "clearcoatFactor", 0, 1); coat > 0) {
-      const double roughness = number(source, kClearCoat, "clearcoatRoughnessFactor", 0, 1);
+    double coat = number(source, kClearCoat, "clearcoatFactor", 0, 1);
+    if (coat > 0)
+      coat *= mean_in(source, kClearCoat, "clearcoatTexture", TextureEncoding::kLinear, "clear coat",
+                      material.name)[0];
+    if (coat > 0) {
+      const double roughness = number(source, kClearCoat, "clearcoatRoughnessFactor", 0, 1) *
+                               mean_in(source, kClearCoat, "clearcoatRoughnessTexture",
+                                       TextureEncoding::kLinear, "clear coat roughness", material.name)[1];
       if (metallic > 0) {
         ++scene_.not_modelled["clear_coats"];
         scene_.warnings.push_back(
@@ -286,13 +310,15 @@ class MaterialReader {
         texture(texture_info(object, kSpecularGlossiness, "diffuseTexture"), TextureEncoding::kSrgb,
                 in_extension(kSpecularGlossiness, "diffuseTexture"), "diffuse", material.name);
     // Less what is reflected before it comes to the diffuse part, by the definition of the extension.
-    const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor");
+    const Eigen::Array4d gloss = mean_in(source, kSpecularGlossiness, "specularGlossinessTexture",
+                                         TextureEncoding::kSrgb, "specular-glossiness", material.name);
+    const Rgb specular = triple(source, kSpecularGlossiness, "specularFactor") * gloss.head<3>();
     material.reflectance = diffuse * (1 - specular.maxCoeff());
     if ((specular > 0).any()) {
       material.non_diffuse.specular_reflectance = specular;
       material.non_diffuse.angle_law = AngleLaw::kSchlick;
     }
-    const double roughness = 1 - number(source, kSpecularGlossiness, "glossinessFactor", 1, 1);
+    const double roughness = 1 - number(source, kSpecularGlossiness, "glossinessFactor", 1, 1) * gloss[3];
     material.non_diffuse.roughness = roughness * roughness;
     std::vector<double> factor{1, 1, 1, 1};
     if (object.Has("diffuseFactor") && object.Get("diffuseFactor").ArrayLen() > 3)

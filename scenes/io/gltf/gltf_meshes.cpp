@@ -72,9 +72,25 @@ void read_texture_points(const GltfModel& gltf, const GltfAccessors& accessors,
   primitive.has_colours = true;
 }
 
+/// Adds what the targets of a primitive add to one of its attributes, by weight.
+void add_targets(const GltfModel& gltf, const GltfAccessors& accessors, const tinygltf::Primitive& source,
+                 const char* name, const std::vector<double>& weights, const std::string& where,
+                 std::vector<Vec3>& values) {
+  for (std::size_t t = 0; t < std::min(source.targets.size(), weights.size()); ++t) {
+    const auto target = source.targets[t].find(name);
+    if (weights[t] == 0 || target == source.targets[t].end()) continue;
+    const std::string pointer = fmt::format("{}/targets/{}/{}", where, t, name);
+    const std::vector<Vec3> moves = accessors.vec3(target->second, pointer);
+    if (moves.size() != values.size())
+      throw InputError(gltf.at(pointer), fmt::format("{} moves for {} vertices", moves.size(), values.size()),
+                       "Export the file anew.");
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += weights[t] * moves[i];
+  }
+}
+
 GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accessors,
-                             const tinygltf::Primitive& source, const std::string& where,
-                             GltfOmissions& omissions) {
+                             const tinygltf::Primitive& source, const std::vector<double>& weights,
+                             const std::string& where, GltfOmissions& omissions) {
   GltfPrimitive primitive;
   const std::size_t materials = gltf.model.materials.size();
   const bool has_material = source.material >= 0;
@@ -88,12 +104,12 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
     return primitive;
   }
   if (!has_material) ++omissions.plain;
-  if (!source.targets.empty()) ++omissions.morphed;
   const int positions = attribute(source, "POSITION");
   if (positions < 0) {
     throw InputError(gltf.at(where), "the primitive has no positions", "Export the file anew.");
   }
   primitive.positions = accessors.vec3(positions, where + "/attributes/POSITION");
+  add_targets(gltf, accessors, source, "POSITION", weights, where, primitive.positions);
   if (const int normals = attribute(source, "NORMAL"); normals >= 0) {
     primitive.normals = accessors.vec3(normals, where + "/attributes/NORMAL");
     if (primitive.normals.size() != primitive.positions.size()) {
@@ -102,6 +118,7 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
           fmt::format("{} normals for {} positions", primitive.normals.size(), primitive.positions.size()),
           "Export the file anew.");
     }
+    add_targets(gltf, accessors, source, "NORMAL", weights, where, primitive.normals);
   }
   read_texture_points(gltf, accessors, source, where, primitive);
   std::vector<std::uint32_t> order;
@@ -128,12 +145,12 @@ GltfPrimitive read_primitive(const GltfModel& gltf, const GltfAccessors& accesso
 }  // namespace
 
 std::vector<GltfPrimitive> read_gltf_mesh(const GltfModel& gltf, const GltfAccessors& accessors, int mesh,
-                                          GltfOmissions& omissions) {
+                                          const std::vector<double>& weights, GltfOmissions& omissions) {
   const tinygltf::Mesh& source = gltf.model.meshes[static_cast<std::size_t>(mesh)];
   std::vector<GltfPrimitive> primitives;
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
     const std::string where = fmt::format("/meshes/{}/primitives/{}", mesh, i);
-    primitives.push_back(read_primitive(gltf, accessors, source.primitives[i], where, omissions));
+    primitives.push_back(read_primitive(gltf, accessors, source.primitives[i], weights, where, omissions));
   }
   return primitives;
 }

@@ -20,14 +20,14 @@ struct GltfPrimitive {
 /// What was left out, for one warning each.
 struct GltfOmissions {
   std::size_t other_modes = 0;  ///< Primitives made of points or lines.
-  std::size_t morphed = 0;      ///< Primitives with morph targets.
   std::size_t collapsed = 0;    ///< Triangles that name a vertex twice.
   std::size_t plain = 0;        ///< Primitives without a material.
 };
 
 /// The triangles of a mesh, one entry per primitive; empty for points and lines. The material with the number
-/// of glTF materials stands for "none". Throws InputError naming mesh and primitive.
+/// of glTF materials stands for "none". `weights`: of its morph targets, by which positions and normals are
+/// moved; missing ones are 0. Throws InputError naming mesh and primitive.
 std::vector<GltfPrimitive> read_gltf_mesh(const GltfModel& gltf, const GltfAccessors& accessors, int mesh,
-                                          GltfOmissions& omissions);
+                                          const std::vector<double>& weights, GltfOmissions& omissions);
 
 }  // namespace reemit

@@ -230,6 +230,39 @@ TEST(GltfReader, CamerasAndLights) {
   EXPECT_THAT(scene.notes, Contains(HasSubstr("179 lm/W")));
 }
 
+TEST(GltfReader, MorphTargetsMoveByTheWeightsOfMeshOrNode) {
+  GltfBuilder gltf;
+  gltf.square();
+  const int up = gltf.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int aside = gltf.floats({4, 0, 0, 4, 0, 0, 4, 0, 0, 4, 0, 0});
+  nlohmann::json& mesh = gltf.json["meshes"][0];
+  mesh["primitives"][0]["targets"] = {{{"POSITION", up}}, {{"POSITION", aside}}};
+  EXPECT_EQ(read_gltf(gltf).surfaces[0].positions[0], Vec3(0, 0, 0)) << "without weights";
+  mesh["weights"] = {0.5, 0};
+  gltf.node({{"mesh", 0}, {"weights", {0, 0.25}}});
+  const Scene scene = read_gltf(gltf);
+  EXPECT_EQ(scene.surfaces[0].positions[0], Vec3(0, 0, 0.5));
+  EXPECT_EQ(scene.surfaces[1].positions[0], Vec3(1, 0, 0));
+  mesh["primitives"][0]["targets"][0]["POSITION"] = gltf.floats({0, 0, 1});
+  expect_gltf_refused(gltf, {"/meshes/0/primitives/0/targets/0/POSITION", "1 moves for 4 vertices"});
+}
+
+TEST(GltfReader, SpotsOfOneAngleHaveASharpEdge) {
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "spot"}, {"intensity", 179}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}};
+  gltf.node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  const Scene scene = read_gltf(gltf);
+  ASSERT_EQ(scene.lights.size(), 1U);
+  const auto& spot = std::get<SpotLight>(scene.lights[0]);
+  EXPECT_EQ(spot.outer_angle, 0.5);
+  EXPECT_GT(spot.inner_angle, 0.499);
+  EXPECT_LT(spot.inner_angle, 0.5);
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"]["innerConeAngle"] = 0.6;
+  expect_gltf_refused(gltf, {"cone angles"});
+}
+
 TEST(GltfReader, HiddenCamerasAndLightsCostNoRoom) {
   GltfBuilder gltf;
   gltf.square();
