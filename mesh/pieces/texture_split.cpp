@@ -46,14 +46,21 @@ Values values_at(const Surface& surface, const Face& face, std::uint32_t corner)
   return values;
 }
 
-/// Whether a corner turns the way of the outline and no other corner lies in its triangle.
+/// Whether a corner turns the way of the outline and no other corner lies in its triangle or on its rim: cut
+/// off there, an outline that turns back at a point of the cut would be left with area that is not its own.
 bool is_ear(const Surface& surface, const Face& face, const Vec3& normal,
             const std::vector<std::uint32_t>& left, const Corners& t) {
-  if (!(twice_area(surface, face, t).dot(normal) > 0)) return false;
+  const double size = twice_area(surface, face, t).dot(normal);
+  if (!(size > 0)) return false;
+  constexpr double kRounding = 1e-9;
   return std::none_of(left.begin(), left.end(), [&](std::uint32_t other) {
-    if (other == t[0] || other == t[1] || other == t[2]) return false;
+    const auto is_at = [&](std::uint32_t corner) {
+      return place(surface, face, other) == place(surface, face, corner);  // holes are joined by such
+    };
+    if (std::any_of(t.begin(), t.end(), is_at)) return false;
     for (std::size_t k = 0; k < 3; ++k)
-      if (!(twice_area(surface, face, {t[k], t[(k + 1) % 3], other}).dot(normal) > 0)) return false;
+      if (!(twice_area(surface, face, {t[k], t[(k + 1) % 3], other}).dot(normal) >= -kRounding * size))
+        return false;
     return true;
   });
 }

@@ -96,6 +96,15 @@ TEST_F(Textures, ObjMapsOfEmissionAndOpacity) {
   EXPECT_FALSE(m.non_diffuse.transmits_specularly()) << "what d takes passes the cut-out, not a clear sheet";
 }
 
+TEST_F(Textures, ObjMapOfEmissionStandsForKeWhereThereIsNone) {
+  test::write_pixmap(folder_ / "t.ppm", 2, 1, {{255, 255, 255}, {0, 0, 0}});
+  const Scene scene = obj("newmtl a\nKd 1 1 1\nmap_Ke t.ppm\n");
+  EXPECT_NEAR(scene.materials[0].textures.emission_factor[1], 1, 1e-6);
+  EXPECT_NEAR(scene.materials[0].emitted_radiance[1], 0.5, 1e-6);
+  EXPECT_THAT(scene.notes, ::testing::Contains(::testing::HasSubstr("map_Ke without Ke")));
+  EXPECT_FALSE(obj("newmtl a\nKd 1 1 1\nKe 0 0 0\nmap_Ke t.ppm\n").materials[0].emits());
+}
+
 TEST_F(Textures, ImagesInTilesAreThoseInRows) {
   constexpr int kWidth = 45;  // neither side is a multiple of the tiles
   constexpr int kHeight = 37;
@@ -193,6 +202,34 @@ TEST_F(Textures, GltfSamplersTransformsAndSets) {
   EXPECT_TRUE(scene.surfaces[0].has_vertex_colours);
   EXPECT_EQ(scene.surfaces[0].texture_points[1].colour[0], 0.5F);
   EXPECT_EQ(scene.surfaces[0].texture_points[2].uv[1][1], 1);
+}
+
+TEST_F(Textures, GltfTexturesOfExtensionsCountWithTheirMeans) {
+  // Half black and half of 0.2 (linear), glossy by 0.2 and 0.6.
+  write_image_file(folder_ / "t.png", 2, 1, 4, {0, 0, 0, 51, 124, 124, 124, 153});
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.json["images"] = {{{"uri", "t.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  const auto with = [&](const char* extension, const nlohmann::json& values) {
+    gltf.json["materials"][0] = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                                 {"extensions", {{extension, values}}}};
+    return read_gltf_scene(folder_.write("room.gltf", gltf.text()), {});
+  };
+  const nlohmann::json image = {{"index", 0}};
+  const Scene scene = with("KHR_materials_pbrSpecularGlossiness",
+                           {{"diffuseFactor", {0.5, 0.5, 0.5, 1}}, {"specularGlossinessTexture", image}});
+  const Material& wall = scene.materials[0];
+  EXPECT_NEAR(wall.non_diffuse.specular_reflectance[1], 0.1, 2e-3);
+  EXPECT_NEAR(wall.reflectance[1], 0.5 * 0.9, 2e-3);
+  EXPECT_NEAR(wall.non_diffuse.roughness, 0.6 * 0.6, 2e-3);
+  EXPECT_EQ(scene.not_modelled.at("textures"), 1U);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("specular-glossiness texture is replaced by its mean")));
+  const Scene opal = with("KHR_materials_diffuse_transmission",
+                          {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionTexture", image}});
+  EXPECT_NEAR(opal.materials[0].non_diffuse.diffuse_transmittance[0], 0.5 * 0.4, 2e-3);
+  const Scene coated = with("KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", image}});
+  EXPECT_NEAR(coated.materials[0].non_diffuse.specular_reflectance[0], 0.5 * 124 / 255 * 0.04, 2e-4);
 }
 
 TEST_F(Textures, GltfCoordinatesOfAnotherNumberAreTold) {

@@ -63,6 +63,8 @@ std::string rest_of(const TextLine& line, std::size_t first) {
 }
 
 std::vector<TextLine> split_lines(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::vector<TextLine> lines;
   TextLine line{1, {}};
   std::uint32_t physical = 1;

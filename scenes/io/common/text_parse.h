@@ -35,7 +35,7 @@ struct TextLine {
 std::string rest_of(const TextLine& line, std::size_t first);
 
 /// Splits text into its non-blank lines. A backslash at the end of a line joins the next one to it; LF, CRLF
-/// and CR end lines. The text must outlive the result.
+/// and CR end lines. A byte order mark of UTF-8 is passed over. The text must outlive the result.
 std::vector<TextLine> split_lines(std::string_view text);
 
 }  // namespace reemit

@@ -39,15 +39,21 @@ constexpr std::array kObjRules = {
     NumberRule{"illum", 1, 1, 0, 10},
 };
 
-// The words of a numeric statement up to a comment.
-std::vector<std::string_view> without_comment(const TextLine& line) {
+// The words of a numeric statement up to a comment; -halo of d, by which viewers fade what is seen at a
+// slant, is passed over.
+std::vector<std::string_view> words_of_numbers(const TextLine& line) {
   const auto comment =
       std::find_if(line.words.begin(), line.words.end(), [](auto word) { return word[0] == '#'; });
-  return {line.words.begin(), comment};
+  std::vector<std::string_view> words(line.words.begin(), comment);
+  if (words.size() == 3 && words[0] == "d" && words[1] == "-halo") words.erase(words.begin() + 1);
+  return words;
 }
 
+// What single precision makes of a 1 on its way from program to program.
+constexpr double kRounding = 1e-5;
+
 std::string checked_numbers(const NumberRule& rule, const TextLine& line, const std::string& where) {
-  const std::vector<std::string_view> words = without_comment(line);
+  const std::vector<std::string_view> words = words_of_numbers(line);
   const std::size_t count = words.size() - 1;
   if (count > 0 && (words[1] == "spectral" || words[1] == "xyz"))
     throw InputError(where, fmt::format("'{} {}' is not supported", rule.keyword, words[1]),
@@ -55,40 +61,60 @@ std::string checked_numbers(const NumberRule& rule, const TextLine& line, const 
   if (count < rule.least || count > rule.most || count == 2)
     throw InputError(where, fmt::format("'{}' has {} numbers", rule.keyword, count),
                      rule.most == 3 ? "Give red, green, blue." : "Give one number.");
-  std::string text(rule.keyword);
+  std::vector<std::string> numbers;
   Spectrum values = Spectrum::Zero(static_cast<Eigen::Index>(count));
   for (std::size_t i = 1; i <= count; ++i) {
-    const auto value = parse_number(words[i]);
+    auto value = parse_number(words[i]);
+    const bool is_rounded = value && *value > rule.high && *value <= rule.high + kRounding;
+    if (is_rounded) value = rule.high;
     if (!value || *value < rule.low || *value > rule.high)
       throw InputError(
           where, fmt::format("'{} {}' is not a number in its range", rule.keyword, words[i]),
           rule.high == 1 ? "Give a fraction from 0 to 1." : "Give a finite number of 0 or more.");
     values[static_cast<Eigen::Index>(i - 1)] = *value;
-    text += fmt::format(" {}", words[i]);
+    numbers.push_back(is_rounded ? fmt::format("{}", rule.high) : std::string(words[i]));
   }
   if (rule.keyword == "Ke") {
     const std::string problem = strength_problem(values, "the radiance Ke [W/(m2 sr)]");
     if (!problem.empty()) throw InputError(where, problem, kStrengthAdvice);
   }
-  if (rule.most == 3 && count == 1)
-    text += fmt::format(" {0} {0}", words[1]);  // one number stands for all three
-  return text + "\n";
+  if (rule.most == 3 && count == 1) numbers.resize(3, numbers.front());  // one stands for all three
+  return fmt::format("{} {}\n", rule.keyword, fmt::join(numbers, " "));
 }
 
+// What a material says of its emission.
+struct EmissionStatements {
+  std::string material;
+  bool has_factor = false, has_map = false;
+
+  // Programs leave Ke out where an image has its place, and without it the image would emit nothing.
+  std::string completed(const std::string& file, std::vector<std::string>& notes) const {
+    if (!has_map || has_factor) return "";
+    notes.push_back(fmt::format("{}: material '{}' has a map_Ke without Ke, which is taken as 1 W/(m2 sr).",
+                                file, material));
+    return "Ke 1 1 1\n";
+  }
+};
+
 // What tinyobjloader gets to read: checked, one statement per line, numbers without comments.
-std::string checked_text(const std::string& text, const std::string& name) {
+std::string checked_text(const std::string& text, const std::string& name, std::vector<std::string>& notes) {
   std::string clean;
   bool in_material = false;
+  EmissionStatements emission;
   for (const TextLine& line : split_lines(text)) {
     if (line.words[0][0] == '#') continue;
     const std::string where = at_line(name, line.number);
     if (line.words[0] == "newmtl") {
       if (line.words.size() < 2) throw InputError(where, "'newmtl' has no name", "Name the material.");
       in_material = true;
+      clean += emission.completed(name, notes);
+      emission = {rest_of(line, 1)};
     } else if (!in_material) {
       throw InputError(where, fmt::format("'{}' before the first 'newmtl'", line.words[0]),
                        "Is this a MTL file, and is it complete?");
     }
+    emission.has_factor = emission.has_factor || line.words[0] == "Ke";
+    emission.has_map = emission.has_map || line.words[0] == "map_Ke";
     const auto* rule = std::find_if(kObjRules.begin(), kObjRules.end(),
                                     [&](const NumberRule& r) { return r.keyword == line.words[0]; });
     if (rule != kObjRules.end())
@@ -96,7 +122,7 @@ std::string checked_text(const std::string& text, const std::string& name) {
     else
       clean += fmt::format("{} {}\n", line.words[0], rest_of(line, 1));
   }
-  return clean;
+  return clean + emission.completed(name, notes);
 }
 
 Spectrum spectrum_of(const tinyobj::real_t (&rgb)[3]) {
@@ -278,7 +304,7 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
                     error.what()));
     return;
   }
-  std::istringstream stream(checked_text(text, file.string()));
+  std::istringstream stream(checked_text(text, file.string(), notes));
   std::map<std::string, int> names;
   std::vector<tinyobj::material_t> loaded;
   std::string ignored_warning, ignored_error;  // about what checked_text has refused

@@ -27,7 +27,7 @@ class ObjMaterials {
 
   std::vector<Material> materials;
   KindCounts refused, not_modelled;  ///< As in Scene.
-  std::vector<std::string> notes;    ///< Of images that were made smaller.
+  std::vector<std::string> notes;    ///< Of what was assumed, and images that were made smaller.
 
  private:
   struct Undefined {

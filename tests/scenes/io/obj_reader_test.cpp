@@ -146,6 +146,13 @@ TEST_F(ObjReader, MtlMistakesAreNamedWithTheirLine) {
   EXPECT_THAT(read(kSquare + "f 1 2 3\n").warnings, Contains(HasSubstr("defined again")));
 }
 
+TEST_F(ObjReader, WhatProgramsWriteOfAOneIsAOne) {
+  const Scene scene = read_with("newmtl wall\nKd 1.0000001 0.5 0.5\nd -halo 1.0\n");
+  EXPECT_EQ(scene.materials[0].reflectance[0], 1);
+  EXPECT_FALSE(scene.materials[0].non_diffuse.transmits_specularly());
+  EXPECT_EQ(read_with("newmtl wall\nKd 1.0000001\n").materials[0].reflectance[2], 1);
+}
+
 TEST_F(ObjReader, NonDiffusePartsAreKept) {
   const Material glass =
       read_with("newmtl wall\nKd 0.1\nKs 0.2 0.2 0.2\nNs 98\nNi 1.5\nd 0.25\nTf 1 0.5 1\nillum 7\n")

@@ -28,5 +28,11 @@ TEST(TextParse, LinesKeepTheirNumbersAcrossJoinsAndLineEnds) {
   EXPECT_EQ(lines[2].words, (std::vector<std::string_view>{"f\\", "g", "\\"}));
 }
 
+TEST(TextParse, AByteOrderMarkIsNoPartOfTheFirstWord) {
+  const auto lines = split_lines("\xEF\xBB\xBFmtllib a.mtl\nv 1 2 3\n");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].words.front(), "mtllib");
+}
+
 }  // namespace
 }  // namespace reemit
