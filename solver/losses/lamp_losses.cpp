@@ -1,4 +1,4 @@
-#include "solver/losses/self_lit_luminaires.h"
+#include "solver/losses/lamp_losses.h"
 
 #include <algorithm>
 #include <map>
@@ -10,6 +10,11 @@ namespace reemit {
 namespace {
 
 constexpr double kLeastKept = 0.25;
+constexpr double kLeastOutside = 0.05;
+constexpr double kMostBetween = 0.1;
+/// Packets of a zone that say whether it sees nothing, or hardly anything, but the open.
+constexpr std::uint32_t kLeastPackets = 8;
+constexpr double kMostlyMet = 0.8;
 constexpr double kSmallerThanRoom = 0.9;  // diagonals
 
 Box box_of(const Surface& surface) {
@@ -72,8 +77,8 @@ class LampGroups {
 
 }  // namespace
 
-std::vector<SelfLitLuminaire> self_lit_luminaires(const PacketRoom& transport, const PacketSources& emission,
-                                                  const StopToken* stop) {
+std::vector<LampLoss> lamp_losses(const PacketRoom& transport, const PacketSources& emission,
+                                  const StopToken* stop) {
   const Scene& scene = transport.scene();
   const ZoneMesh& mesh = transport.mesh();
   PacketSources surfaces(emission.channels);  // without the lights that have no area
@@ -89,27 +94,43 @@ std::vector<SelfLitLuminaire> self_lit_luminaires(const PacketRoom& transport, c
   }
   LampGroups lamps(scene, emits, stop);
   if (lamps.extents().empty()) return {};
-  const auto packets =
-      static_cast<std::uint32_t>(std::clamp<std::size_t>(1024 * lamps.extents().size(), 4096, 65536));
+  const auto packets = static_cast<std::uint32_t>(std::clamp<std::size_t>(
+      std::max(1024 * lamps.extents().size(), 2 * kLeastPackets * surfaces.sources.size()), 4096, 65536));
   const Flight flight = plan_first_flight(surfaces, packets, 0.5);
   std::map<std::size_t, double> sent;
   std::map<std::size_t, double> kept;
+  std::vector<std::uint32_t> met(surfaces.sources.size(), 0);  // packets
   const auto visit = [&](const ProbeRay& probe) {
     const std::size_t lamp = lamps.of(mesh.zone_surface(flight.sources[probe.source].zone).index());
     const double power = watts[probe.source] / static_cast<double>(flight.first_packet[probe.source + 1] -
                                                                    flight.first_packet[probe.source]);
     sent[lamp] += power;
     if (!probe.met) return;
+    ++met[probe.source];
     const std::size_t to = mesh.surface(probe.hit.triangle, probe.hit.front).index();
     if (emits[to] && lamps.of(to) == lamp)
       kept[lamp] += power * kept_by(scene.materials[scene.surfaces[to].material.index()]);
   };
   trace_probes(transport, flight, 0, visit, stop);
+  std::map<std::size_t, double> outside, inside;
+  for (std::size_t z = 0; z < surfaces.sources.size(); ++z) {
+    const std::uint32_t of_zone = flight.first_packet[z + 1] - flight.first_packet[z];
+    const std::size_t lamp = lamps.of(mesh.zone_surface(flight.sources[z].zone).index());
+    if (of_zone >= kLeastPackets && met[z] == 0) outside[lamp] += watts[z];
+    if (of_zone >= kLeastPackets && met[z] >= kMostlyMet * of_zone) inside[lamp] += watts[z];
+  }
   const double room = bounds(scene).size().norm();
-  std::vector<SelfLitLuminaire> found;
-  for (const auto& [lamp, box] : lamps.extents())
-    if (kept[lamp] > kLeastKept * sent[lamp] && box.size().norm() < kSmallerThanRoom * room)
-      found.push_back({lamps.surfaces_of(lamp), kept[lamp] / sent[lamp]});
+  std::vector<LampLoss> found;
+  for (const auto& [lamp, box] : lamps.extents()) {
+    LampLoss loss{{}, kept[lamp] / sent[lamp], outside[lamp] / sent[lamp]};
+    const bool is_smaller = box.size().norm() < kSmallerThanRoom * room;
+    loss.shines_onto_itself = is_smaller && loss.onto_itself > kLeastKept;
+    loss.stands_across = loss.outside > kLeastOutside && inside[lamp] > kLeastOutside * sent[lamp] &&
+                         outside[lamp] + inside[lamp] > (1 - kMostBetween) * sent[lamp];
+    if (!loss.shines_onto_itself && !loss.stands_across) continue;
+    loss.surfaces = lamps.surfaces_of(lamp);
+    found.push_back(std::move(loss));
+  }
   return found;
 }
 

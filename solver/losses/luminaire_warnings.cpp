@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "solver/losses/lamp_losses.h"
 #include "solver/losses/opening_losses.h"
 #include "solver/losses/probe_flight.h"
-#include "solver/losses/self_lit_luminaires.h"
 
 namespace reemit {
 namespace {
@@ -55,13 +55,22 @@ std::vector<std::string> luminaire_warnings(const PacketRoom& transport, const P
   const Scene& scene = transport.scene();
   std::vector<std::string> warnings;
   for (const OpeningLoss& loss : opening_losses(transport, stop)) warnings.push_back(warning_of(loss, scene));
-  for (const SelfLitLuminaire& lamp : self_lit_luminaires(transport, emission, stop))
-    warnings.push_back(fmt::format(
-        "luminaire {}{}: {} of its power shines onto the lamp itself; a closed lamp should emit from its "
-        "outer side only",
-        quoted_name(scene, lamp.surfaces[0]),
-        lamp.surfaces.size() > 1 ? fmt::format(" with {} more surface(s)", lamp.surfaces.size() - 1) : "",
-        share_text(lamp.share)));
+  for (const LampLoss& lamp : lamp_losses(transport, emission, stop)) {
+    const std::string name = fmt::format(
+        "luminaire {}{}", quoted_name(scene, lamp.surfaces[0]),
+        lamp.surfaces.size() > 1 ? fmt::format(" with {} more surface(s)", lamp.surfaces.size() - 1) : "");
+    if (lamp.shines_onto_itself)
+      warnings.push_back(
+          fmt::format("{}: {} of its power shines onto the lamp itself; a closed lamp should emit from its "
+                      "outer side only",
+                      name, share_text(lamp.onto_itself)));
+    if (lamp.stands_across)
+      warnings.push_back(
+          fmt::format("{}: {} of its power leaves from parts that see nothing but the open outside; does it "
+                      "stand through a "
+                      "ceiling or a wall? Move it in, or let only what is in the room emit",
+                      name, share_text(lamp.outside)));
+  }
   return warnings;
 }
 

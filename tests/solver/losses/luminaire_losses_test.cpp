@@ -1,11 +1,12 @@
 #include <atomic>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "solver/losses/lamp_losses.h"
 #include "solver/losses/luminaire_warnings.h"
 #include "solver/losses/opening_losses.h"
-#include "solver/losses/self_lit_luminaires.h"
 #include "solver/room/room.h"
 #include "tests/solver/emit/luminaire_tables.h"
 #include "tests/support/test_rooms.h"
@@ -189,12 +190,12 @@ TEST_F(LuminaireLosses, BacksFarAwayCountToo) {
   EXPECT_THAT(warnings(), ElementsAre(HasSubstr("the back of 'quad6'")));
 }
 
-/// The share of itself that the lamp of a room lights, by surface.
-std::vector<SelfLitLuminaire> self_lit(const RoomBuilder& room) {
+/// Of the lamps of a room.
+std::vector<LampLoss> losses_of(const RoomBuilder& room) {
   const MeshResult meshed = room.mesh();
   const Room walls(room.scene(), meshed.mesh);
   const PacketRoom transport(walls);
-  return self_lit_luminaires(transport, collect_packet_sources(transport));
+  return lamp_losses(transport, collect_packet_sources(transport));
 }
 
 TEST_F(LuminaireLosses, ClosedLampsThatEmitInsideLightThemselvesByHalf) {
@@ -203,10 +204,10 @@ TEST_F(LuminaireLosses, ClosedLampsThatEmitInsideLightThemselvesByHalf) {
   room_.scene().materials[both.index()].emits_both_sides = true;
   const MaterialId outer = room_.material("outer", 0.5, 10, true);
   room_.shape(both, Sphere{Vec3(1, 1, 1), 0.3}, 2).shape(outer, Sphere{Vec3(3, 1, 1), 0.3}, 2);
-  const std::vector<SelfLitLuminaire> found = self_lit(room_);
+  const std::vector<LampLoss> found = losses_of(room_);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_THAT(found[0].surfaces, ElementsAre(SurfaceId(6)));
-  EXPECT_NEAR(found[0].share, 0.5, 1e-3);  // powers of both sides are equal; packets share them evenly
+  EXPECT_NEAR(found[0].onto_itself, 0.5, 1e-3);  // powers of both sides are equal; packets share them evenly
   EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'shape6'"), HasSubstr("50 %"))));
 }
 
@@ -217,10 +218,10 @@ TEST_F(LuminaireLosses, OpalLampsThatEmitInsideLetMostOfItOut) {
   opal.emits_both_sides = true;
   opal.non_diffuse.diffuse_transmittance = room_.flat(0.6);
   room_.shape(both, Sphere{Vec3(1, 1, 1), 0.3}, 2);
-  EXPECT_THAT(self_lit(room_), IsEmpty()) << "0.2 of its power stays inside";
+  EXPECT_THAT(losses_of(room_), IsEmpty()) << "0.2 of its power stays inside";
   opal.non_diffuse.diffuse_transmittance = room_.flat(0.3);
-  ASSERT_EQ(self_lit(room_).size(), 1u);
-  EXPECT_NEAR(self_lit(room_)[0].share, 0.35, 1e-3);
+  ASSERT_EQ(losses_of(room_).size(), 1u);
+  EXPECT_NEAR(losses_of(room_)[0].onto_itself, 0.35, 1e-3);
 }
 
 TEST_F(LuminaireLosses, TheFacesOfABoxAreOneLamp) {
@@ -228,16 +229,48 @@ TEST_F(LuminaireLosses, TheFacesOfABoxAreOneLamp) {
   const MaterialId both = room_.material("both", 0.5, 10, true);
   room_.scene().materials[both.index()].emits_both_sides = true;
   room_.box(Vec3(1, 1, 1), Vec3(2, 2, 2), {both, both, both, both, both, both}, 2);
-  const std::vector<SelfLitLuminaire> found = self_lit(room_);
+  const std::vector<LampLoss> found = losses_of(room_);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].surfaces.size(), 6u);
-  EXPECT_NEAR(found[0].share, 0.5, 1e-3);
+  EXPECT_NEAR(found[0].onto_itself, 0.5, 1e-3);
 }
 
 TEST_F(LuminaireLosses, RoomsWhoseWallsEmitAreNoLamps) {
   const MaterialId glowing = room_.material("glowing", 0.5, 10, true);
   room_.box(Vec3(0, 0, 0), Vec3(1, 1, 1), {glowing, glowing, glowing, glowing, glowing, glowing}, 2);
-  EXPECT_THAT(self_lit(room_), IsEmpty());
+  EXPECT_THAT(losses_of(room_), IsEmpty());
+}
+
+/// A lamp of 1 m x 1 m that emits from the outer sides of all its faces.
+void add_lamp(RoomBuilder& room, MaterialId glowing, double low, double high) {
+  const Vec3 a(1, low, 1), b(2, low, 1), c(2, low, 2), d(1, low, 2);
+  const Vec3 up(0, high - low, 0);
+  for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, d), std::pair(d, a)})
+    room.quad(glowing, {p, Vec3(p + up), Vec3(q + up), q}, 2);
+  room.quad(glowing, {a, b, c, d}, 2);
+  room.quad(glowing, {Vec3(a + up), Vec3(d + up), Vec3(c + up), Vec3(b + up)}, 2);
+}
+
+TEST_F(LuminaireLosses, LampsHalfSunkIntoTheCeilingAreNamed) {
+  walls(true);
+  add_lamp(room_, room_.material("glowing", 0.5, 10), 2.98, 3.02);
+  const std::vector<LampLoss> found = losses_of(room_);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].stands_across);
+  EXPECT_NEAR(found[0].outside, 0.48, 0.03);
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'quad6'"), HasSubstr("see nothing but the open"))));
+}
+
+TEST_F(LuminaireLosses, LampsInTheRoomAndOutdoorsAreNot) {
+  walls(true);
+  add_lamp(room_, room_.material("glowing", 0.5, 10), 2.9, 2.99);
+  EXPECT_THAT(losses_of(room_), IsEmpty());
+  // A lantern over a square.
+  RoomBuilder outdoors;
+  const MaterialId ground = outdoors.material("ground", 0.3);
+  outdoors.quad(ground, {Vec3(-50, 0, -50), Vec3(-50, 0, 50), Vec3(50, 0, 50), Vec3(50, 0, -50)}, 2);
+  add_lamp(outdoors, outdoors.material("lantern", 0.5, 10), 4, 4.5);
+  EXPECT_THAT(losses_of(outdoors), IsEmpty());
 }
 
 TEST_P(LuminaireLosses, AreNotLookedForOnceSomebodyWaits) {
