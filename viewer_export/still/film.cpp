@@ -38,7 +38,7 @@ double sample_filter(PixelFilter filter, double u) {
 std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates, bool caustics) {
   // Finishing turns three of the replicates into layers.
   const std::size_t layers = (caustics ? 3 : 2) + std::max<std::size_t>(replicates, 3);
-  return (layers * bands + 6) * sizeof(float) + 1;
+  return (layers * bands + 7) * sizeof(float) + 1;
 }
 
 Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts,
@@ -54,6 +54,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
     for (std::size_t r = 0; r < replicates_; ++r) by_band.push_back(&means_[r]);
     allocate_planes(by_band, pixels * bands_);
     image_.samples.assign(pixels, 0.0F);
+    image_.luminous.assign(pixels, 0.0F);
     image_.depth.assign(pixels, 0.0F);
     image_.normal.assign(3 * pixels, 0.0F);
     seen_.assign(pixels, 0.0F);
@@ -84,6 +85,7 @@ void Film::add(std::size_t pixel, std::size_t replicate, const PixelBlock& block
     image_.albedo[k] += share_of_all * (block.albedo[b] - image_.albedo[k]);
   }
   image_.samples[pixel] += samples;
+  image_.luminous[pixel] += static_cast<float>(block.luminous);
   image_.depth[pixel] += static_cast<float>(block.depth);
   for (std::size_t k = 0; k < 3; ++k)
     image_.normal[3 * pixel + k] += static_cast<float>(block.normal[static_cast<Eigen::Index>(k)]);
@@ -139,6 +141,7 @@ void Film::complete_geometry(StillImage& image, std::size_t pixel) const {
   Eigen::Map<Vec3f> normal(&image.normal[3 * pixel]);
   const float length = normal.norm();
   if (length > 0) normal /= length;
+  if (image.samples[pixel] > 0) image.luminous[pixel] /= image.samples[pixel];
 }
 
 StillImage Film::snapshot() const {

@@ -34,6 +34,7 @@ struct PixelBlock {
   Vec3 normal{0, 0, 0};  ///< Sum over samples that saw something.
   double depth = 0;      ///< Sum over samples that saw something [m].
   int seen = 0;          ///< Samples that saw something.
+  int luminous = 0;      ///< Samples that saw a luminaire (StillImage::luminous).
   int samples = 0;
   int earlier = 0;  ///< Samples that this replicate of the pixel had before.
 };
@@ -87,7 +88,7 @@ class Film {
   std::size_t bands_;
   std::size_t replicates_;
   std::size_t parts_;
-  StillImage image_;  // depth, normal: sums over samples that saw something
+  StillImage image_;  // depth, normal: sums over samples that saw something; luminous: their number
   std::array<std::vector<float>, kReplicates> means_;
   std::vector<float> seen_;
   std::vector<std::uint8_t> begun_;  // replicates, by pixel

@@ -17,6 +17,7 @@ void check_consistent(const StillImage& image) {
        {&image.direct, &image.indirect, &image.caustic, &image.radiance_stderr, &image.albedo})
     check(*layer, values, true);
   check(image.samples, pixels, true);
+  check(image.luminous, pixels, true);
   check(image.depth, pixels, true);
   check(image.normal, 3 * pixels, true);
 }

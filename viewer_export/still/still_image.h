@@ -32,8 +32,10 @@ struct StillImage {
   std::vector<float> albedo;           ///< Reflectance of what is seen, over smooth mirrors and panes too.
 
   std::vector<float> samples;  ///< One per pixel: camera rays.
-  std::vector<float> depth;    ///< One per pixel: distance from the eye [m]; +inf where nothing is seen.
-  std::vector<float> normal;   ///< Three per pixel: unit, world coordinates; 0 where nothing is seen.
+  /// One per pixel: the share of them that saw a luminaire, straight or over smooth mirrors and panes.
+  std::vector<float> luminous;
+  std::vector<float> depth;   ///< One per pixel: distance from the eye [m]; +inf where nothing is seen.
+  std::vector<float> normal;  ///< Three per pixel: unit, world coordinates; 0 where nothing is seen.
 
   std::size_t pixel_count() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

@@ -13,6 +13,8 @@ namespace {
 /// Reflectance below which a pixel is not divided by its own: there it is not diffuse light that is seen.
 constexpr float kLeastAlbedo = 0.02F;
 constexpr float kNothing = 1e6F;  ///< Depth [m] of a pixel that sees nothing.
+/// Added to normals of luminaires: more than two normals can differ by.
+constexpr float kLamp = 4;
 /// Of the depth: a slope is taken to be at most this.
 constexpr float kSteepest = 0.1F;
 
@@ -28,6 +30,12 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
   depth.resize(n);
   for (std::vector<float>& axis : normal) axis.resize(n);
   const float fewest = *std::min_element(image.samples.begin(), image.samples.end());
+  // Others for all pixels that may be compared.
+  const auto number_nearby = [this](std::size_t p) {
+    constexpr std::size_t kSide = 32;
+    const auto across = static_cast<std::size_t>(width);
+    return p % across % kSide + kSide * (p / across % kSide);
+  };
   tbb::parallel_for(0, height, [&](int y) {
     for (std::size_t p = at(0, y); p < at(0, y + 1); ++p) {
       for (std::size_t b = 0; b < bands; ++b) {
@@ -41,8 +49,13 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
         variance[to] = 2 * error * error;  // of a half
       }
       precision[p] = image.samples[p] / fewest;
+      const float luminous = image.luminous[p];
       depth[p] = std::isfinite(image.depth[p]) ? image.depth[p] : kNothing;
       for (std::size_t k = 0; k < 3; ++k) normal[k][p] = image.normal[3 * p + k];
+      // A lamp in a ceiling is a thing of its own, and what a pixel on its rim happens to see of it is no
+      // noise of the ceiling around.
+      if (luminous >= 1) normal[0][p] += kLamp;
+      if (luminous > 0 && luminous < 1) normal[0][p] = kMixed * static_cast<float>(2 + number_nearby(p));
     }
   });
   find_slopes();

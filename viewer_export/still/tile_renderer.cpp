@@ -34,6 +34,7 @@ struct TileRenderer::PixelSums {
   float* caustic;              // null where the room bends no light
   std::vector<float>* weight;  // scratch, one per band
   PixelBlock found;
+  bool sees_luminaire = false;  // the sample at hand
 };
 
 std::vector<std::uint32_t> Tile::pixels(int width) const {
@@ -172,9 +173,11 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
   SurfaceModel::PointValues at_point;
   const float* reflectance = surfaces.reflectance(point, at_point);
   for (std::size_t b = 0; b < bands; ++b) sums.albedo[b] += sums.share * reflectance[b];
+  sums.sees_luminaire = surfaces.emits(hit.triangle, hit.front);
   add_seen(point, all_.data(), 1, sample, sums, batch);
   if (surfaces.is_specular(hit.triangle, hit.front))
     add_over_mirrors(point, hit.distance, sample, sums, batch);
+  if (sums.sees_luminaire) ++sums.found.luminous;
 }
 
 void TileRenderer::add_sky(const Vec3f& along, PixelSums& sums) const {
@@ -245,8 +248,9 @@ std::optional<TileRenderer::Look> TileRenderer::follow(const Look& from, const S
     for (float& share : outside) share *= inside;
     add_seen(next.x, outside.data(), found, sample, sums, batch);
   }
-  // Patterns behind a pane or in a mirror are part of what is seen.
+  // Patterns and luminaires behind a pane or in a mirror are part of what is seen.
   if (next.pdf_per_sr == 0 && next.steps <= kSplitSteps) {
+    sums.sees_luminaire = sums.sees_luminaire || surfaces.emits(hit.triangle, hit.front);
     SurfaceModel::PointValues at_point;
     const float* reflectance = surfaces.reflectance(next.x, at_point);
     for (std::size_t b = 0; b < next.through.size(); ++b)

@@ -31,6 +31,7 @@ struct Seen {
   double albedo = 0.5;
   Vec3 normal{0, 0, 1};
   double depth = 2;
+  bool luminous = false;
 };
 
 struct Noisy {
@@ -52,6 +53,7 @@ void add(Film& film, int x, int y, std::size_t replicate, const Seen& seen, cons
             .normal = seen.normal,
             .depth = seen.depth,
             .seen = 1,
+            .luminous = seen.luminous ? 1 : 0,
             .samples = 1});
 }
 
@@ -320,6 +322,35 @@ TEST(Smoothing, does_not_cross_edges_of_things) {
     // The means of 64 pixels, which smoothing makes of some 500 on their side: 0.5 % noise each.
     EXPECT_NEAR(right / left, 1.05, 0.03) << (by_normal ? "normals" : "depths");
   }
+}
+
+// Lamps of a pixel or two in a ceiling, 500 times as bright: some samples of a pixel meet one, and its noise
+// is larger than all that the ceiling around has.
+TEST(Smoothing, small_lamps_leave_no_disks_around_them) {
+  Film film(BandSet::grey(), kWidth, kHeight, Film::kReplicates);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto is_beside_a_lamp = [](int x, int y) { return x % 20 == 10 && y % 20 == 10; };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (std::size_t r = 0; r < Film::kReplicates; ++r) {
+        const bool meets = is_beside_a_lamp(x, y) && r == 2;
+        const Seen seen{.light = meets ? 500.0 : 1.0, .luminous = meets};
+        const auto radiance = static_cast<float>(seen.albedo * seen.light *
+                                                 std::max(0.0, 1 + kReplicateNoise * normal(random)));
+        add(film, x, y, r, seen, {.direct = radiance});
+      }
+  Noisy noisy = finished(film);
+  smooth(noisy);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const auto radiance =
+          static_cast<double>(noisy.image.radiance[static_cast<std::size_t>(y * kWidth + x)]);
+      if (is_beside_a_lamp(x, y))
+        EXPECT_GT(radiance, 20 * 0.5) << x << " " << y;
+      else
+        EXPECT_NEAR(radiance, 0.5, 0.15) << x << " " << y;
+    }
 }
 
 TEST(Smoothing, layers_add_up) {
