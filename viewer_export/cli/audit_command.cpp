@@ -75,7 +75,7 @@ void add_audit_command(CLI::App& program, Action& action) {
   add_integer_option(audit, "--points", options->settings.points, 32, 1 << 20,
                      "Shadow rays per zone, rounded up")
       ->needs(direct);
-  add_room_option(audit, options->room);
+  add_room_option(audit, options->room)->needs(direct);
   add_progress_options(audit, options->style);
   add_json_option(audit, options->style);
   audit.callback([options, &action] { action = [options] { return run_audit(*options); }; });

@@ -119,8 +119,8 @@ inline void add_sky_options(CLI::App& command, ReadOptions& options) {
                     "across the beam; without lx it only says where the sun stands");
 }
 
-inline void add_room_option(CLI::App& command, std::vector<std::filesystem::path>& room) {
-  command
+inline CLI::Option* add_room_option(CLI::App& command, std::vector<std::filesystem::path>& room) {
+  return command
       .add_option("--room", room,
                   "Room file, if it is no longer where it was solved from; of a room of several\n"
                   "files give all, in order, each with its own --room")

@@ -46,6 +46,17 @@ struct ExportOptions {
   OutputStyle style;
 };
 
+std::string worst_name(const VertexData& data) {
+  return data.worst.surface.valid() ? data.surface_names[data.worst.surface.index()] : "";
+}
+
+/// Where one surface is known much worse than all together.
+std::string worst_text(const VertexData& data) {
+  constexpr double kMuch = 2;
+  if (!(data.worst.error > kMuch * data.info.error)) return "";
+  return fmt::format(" ({} on '{}')", percent_text(data.worst.error), worst_name(data));
+}
+
 void report(const ExportOptions& options, const VertexData& data, double seconds) {
   if (options.style.json) {
     auto files = nlohmann::ordered_json::array();
@@ -57,6 +68,8 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
                                 {"triangles", data.triangles.size()},
                                 {"smoothed", data.smoothed},
                                 {"error", known_error(data.info)},
+                                {"worst_surface", worst_name(data)},
+                                {"worst_surface_error", data.worst.error},
                                 {"seconds", seconds}};
     add_zones(json, data.info.zones);
     print_json(json);
@@ -65,9 +78,18 @@ void report(const ExportOptions& options, const VertexData& data, double seconds
   std::string names;
   for (const std::filesystem::path& output : options.outputs)
     names += (names.empty() ? "" : ", ") + output.string();
-  print_result(fmt::format("{}: {} vertices, {} triangles{}, noise {}, zones {}, {:.2f} s\n", names,
+  print_result(fmt::format("{}: {} vertices, {} triangles{}, noise {}{}, zones {}, {:.2f} s\n", names,
                            data.vertex_count(), data.triangles.size(), data.smoothed ? ", smoothed" : "",
-                           percent_text(known_error(data.info)), zones_text(data.info.zones), seconds));
+                           percent_text(known_error(data.info)), worst_text(data),
+                           zones_text(data.info.zones), seconds));
+}
+
+std::size_t dark_vertices(const VertexData& data) {
+  const auto bands = static_cast<std::ptrdiff_t>(data.bands.count());
+  std::size_t count = 0;
+  for (auto first = data.irradiance.begin(); first != data.irradiance.end(); first += bands)
+    if (std::all_of(first, first + bands, [](float e) { return e == 0; })) ++count;
+  return count;
 }
 
 bool shows_colours(const ExportOptions& options) {
@@ -133,6 +155,9 @@ ExitCode run_export(const ExportOptions& options) {
     if (options.outputs.size() > 1)
       throw InputError("-o", fmt::format("{} files for form factors", options.outputs.size()),
                        "give one file with --form-factors");
+    if (!options.room.empty())
+      throw InputError("--room", "form factors are those of the mesh that the solution holds",
+                       "leave it out");
     return export_form_factors(
         {options.solution, options.outputs.front(), options.vertex.seed, options.style});
   }
@@ -169,6 +194,11 @@ ExitCode run_export(const ExportOptions& options) {
   if (data.limited_by_zones && !options.style.quiet) {
     print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
   }
+  if (const std::size_t dark = dark_vertices(data); dark > 0 && !options.style.quiet)
+    print_note(fmt::format(
+        "no light at all comes to {} vertices: they lie under what stands there, or in the dark; least "
+        "values and means of rows hold them as 0",
+        dark));
   const std::string missed = missed_by_zones("the vertices", options.vertex.error_target, data.info.zones);
   if (!missed.empty() && !options.style.quiet) print_note(missed);
   if (interrupt.requested() && !options.style.quiet) {

@@ -100,9 +100,8 @@ void print_notes(const MeasuredLight& light, double error_target) {
   if (const std::string dark = dark_points(light); !dark.empty()) print_note(dark);
   if (light.misses_light_over_mirrors)
     print_note(
-        "light of points, spots and the sun over mirrors and glass is not in these values; vertices (export) "
-        "and "
-        "surfaces (info) have it");
+        "light of points, spots and the sun that comes straight from mirrors and glass is not in these "
+        "values; vertices (export) and surfaces (info) have it");
   if (light.limited_by_zones)
     print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
   if (const std::string missed = missed_by_zones("the points", error_target, light.info.zones);

@@ -142,11 +142,15 @@ class Renderer {
   }
 
   void explain_missed_target(const Job& job, const StillImage& image) const {
+    // Of what smoothing leaves nobody knows how much is that of the zones.
     if (image.limited_by_zones)
       print_note(
-          fmt::format("{}: the noise of the zone solution keeps the error above the target; solve to a "
-                      "lower --error",
-                      job.camera.name));
+          job.camera.name +
+          (image.smoothed
+               ? ": more samples hardly lessen what smoothing leaves; solve to a lower --error, or give "
+                 "render an --error, which samples until it holds"
+               : ": the noise of the zone solution keeps the error above the target; solve to a lower "
+                 "--error"));
     // The rest is for those who named a target.
     if (options_.still.error_target == 0 || options_.still.most_mean_spp > 0) return;
     if (!image.limited_by_zones && image.info.error > options_.still.error_target && !interrupted())
@@ -209,6 +213,9 @@ Source load_source(const RenderOptions& options) {
                      "is a room, and only --integrator path makes stills of one that is not solved",
                      "Solve it first: reemit solve " + file.string() + " -o " +
                          fs::path(file.filename()).replace_extension(".h5").string());
+  if (!options.room.empty())
+    throw InputError("--room", "it says where the room of a solution is, and a room is given itself",
+                     "Leave it out.");
   Scene scene = load_room(options.files, options.read, options.style);
   if (!options.style.quiet) print_warnings(scene.warnings);
   // Nobody reads zones.
@@ -254,6 +261,9 @@ void choose_quality(RenderOptions& options) {
 ExitCode run_render(RenderOptions options) {
   const ThreadLimit limit(options.still.threads);
   check_view(options.camera);
+  if (options.still.integrator == Integrator::kZones && options.still.light_selection)
+    throw InputError("--light-selection", "pictures of zones send no shadow rays",
+                     "leave it out, or gather (--integrator gather)");
   const bool into_folder = options.into_folder();
   // Refuses what cannot be loaded before the work.
   if (check_format(options, into_folder).by_image_library) image_library();

@@ -45,7 +45,7 @@ void RunLog::check(const std::filesystem::path& file, const std::filesystem::pat
 
 RunLog::RunLog(const std::filesystem::path& file, const Run& run)
     : file_(file),
-      stream_(std::fopen(file.c_str(), "wb"), std::fclose),
+      stream_(std::fopen(file.c_str(), run.goes_on ? "ab" : "wb"), std::fclose),
       matrix_(run.settings.method == SolveMethod::kMatrix) {
   if (!stream_) throw OutputError(file.string() + ": cannot create the log");
   const SolverSettings& settings = run.settings;

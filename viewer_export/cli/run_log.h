@@ -20,6 +20,7 @@ class RunLog {
     SolverSettings settings;
     std::size_t zones = 0;
     BandSet bands = BandSet::grey();
+    bool goes_on = false;  ///< A run that was broken off: a log that is there is gone on with.
   };
 
   /// Throws InputError or OutputError unless a log can be created or replaced at `file`; of existing files
@@ -27,7 +28,8 @@ class RunLog {
   static void check(const std::filesystem::path& file, const std::filesystem::path& room,
                     const std::filesystem::path& solution);
 
-  /// Replaces the file and writes the first line. Throws OutputError when that cannot be done.
+  /// Replaces the file, unless the run goes on, and writes the first line. Throws OutputError when that
+  /// cannot be done.
   RunLog(const std::filesystem::path& file, const Run& run);
 
   /// A batch, or for the matrix method a further hundredth of the work.

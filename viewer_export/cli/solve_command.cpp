@@ -270,8 +270,9 @@ ExitCode run_solve(const SolveOptions& options) {
   }
   std::optional<RunLog> log;
   if (!options.log.empty())
-    log.emplace(options.log, RunLog::Run{start.solution.room_path, options.output, start.solution.settings,
-                                         start.solution.mesh.zone_count(), start.scene.bands});
+    log.emplace(options.log,
+                RunLog::Run{start.solution.room_path, options.output, start.solution.settings,
+                            start.solution.mesh.zone_count(), start.scene.bands, !options.resume.empty()});
   // Before the first batch there is nothing to keep.
   InterruptGuard interrupt(InterruptGuard::kLater);
   const SolveRecord before = start.solution.record;

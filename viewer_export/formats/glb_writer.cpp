@@ -135,7 +135,7 @@ Json extras_of(const VertexData& data, const ToneMap& tone_map) {
   extras["axes"] = has_z_up(data.up)
                        ? "in the meshes as in the room file, z up; the node above them turns z up to y up"
                        : "as in the room file";
-  extras["backs"] = fmt::format("moved {:.3g} m off their fronts", back_gap(data));
+  extras["backs"] = fmt::format("moved at most {:.3g} m off their fronts", back_gap(data));
   return extras;
 }
 

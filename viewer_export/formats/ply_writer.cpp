@@ -19,7 +19,7 @@ void write_header(const VertexData& data, const ToneMap& tone_map, double gap, b
   for (const auto& [name, value] : describe(data.info, data.bands))
     file.write(fmt::format("comment {}: {}\n", name, value));
   file.write(fmt::format("comment up: +{}, axes as in the room file\n", data.up.z() > 0.5 ? 'z' : 'y'));
-  if (gap > 0) file.write(fmt::format("comment backs: moved {:.3g} m off their fronts\n", gap));
+  if (gap > 0) file.write(fmt::format("comment backs: moved at most {:.3g} m off their fronts\n", gap));
   file.write("comment quality: luminance [cd/m2]\n");
   file.write(fmt::format("comment red green blue: sRGB, {}\n", tone_map.statement()));
   if (data.bands.kind() != BandKind::kRgb)

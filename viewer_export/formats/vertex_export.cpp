@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 namespace reemit {
 namespace {
 
@@ -41,9 +43,15 @@ double back_gap(double diagonal) {
 }
 
 std::vector<Vec3> positions_for_viewing(const VertexData& data, double gap) {
+  constexpr double kShareOfSurface = 1e-3;
+  std::vector<Eigen::AlignedBox3d> boxes(data.surface_names.size());
+  for (std::size_t v = 0; v < data.vertex_count(); ++v)
+    boxes[data.surfaces[v].index()].extend(data.positions[v]);
   std::vector<Vec3> positions = data.positions;
   for (std::size_t v = 0; v < positions.size(); ++v)
-    if (data.on_back[v]) positions[v] += gap * data.normals[v];
+    if (data.on_back[v])
+      positions[v] += std::min(gap, kShareOfSurface * boxes[data.surfaces[v].index()].diagonal().norm()) *
+                      data.normals[v];
   return positions;
 }
 

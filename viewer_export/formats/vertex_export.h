@@ -31,13 +31,15 @@ struct VertexColours {
 /// Pre: the data has its tone map.
 VertexColours colours_of(const VertexData& data);
 
-/// How far the backs of two-sided surfaces are moved off their fronts in files made for viewing [m]: 1/20,000
-/// of the room's diagonal; 0 if there are no backs. Front and back would lie in one place, and a program that
-/// draws both sides of every triangle, or traces rays, would show now one and now the other.
+/// How far the backs of two-sided surfaces are moved off their fronts in files made for viewing, at most [m]:
+/// 1/20,000 of the room's diagonal; 0 if there are no backs. Front and back would lie in one place, and a
+/// program that draws both sides of every triangle, or traces rays, would show now one and now the other.
 double back_gap(const VertexData& data);
 /// The same for a room with backs and this diagonal [m].
 double back_gap(double diagonal);
-/// Positions for viewing [m]: fronts as they are, backs moved along their normals by `gap`.
+/// Positions for viewing [m]: fronts as they are, backs moved along their normals by `gap`, but by no more
+/// than 1/1,000 of the diagonal of their surface: a room in a wide garden must not lose what hangs before its
+/// walls.
 std::vector<Vec3> positions_for_viewing(const VertexData& data, double gap);
 
 /// Origin for positions in single precision [m]: 0, or the centre of a room so far from 0 that float

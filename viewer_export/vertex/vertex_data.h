@@ -12,6 +12,12 @@
 
 namespace reemit {
 
+/// The surface whose vertices are known worst.
+struct WorstSurface {
+  SurfaceId surface;
+  double error = 0;  ///< As ExportInfo::error, of its vertices alone.
+};
+
 /// Light at the vertices of the zones, ready for export. Vertices are split where surface, material, side or
 /// a crease splits them, so every vertex belongs to one surface.
 struct VertexData {
@@ -23,6 +29,9 @@ struct VertexData {
   bool limited_by_zones = false;
   bool gathered = false;  ///< Else every vertex has the mean of its zones.
   bool smoothed = false;  ///< Noise was taken out (smooth_vertices).
+  /// Of surfaces that have a hundredth of the area or more. A bright part of the room hides in the error of
+  /// all what a dark one lacks.
+  WorstSurface worst{};
   BandSet bands = BandSet::grey();
   /// Of the displayable colours in PLY and glTF (tone_map_of_room); the radiances are never tone-mapped.
   ToneMap tone_map{1.0, ToneMapSettings::kFixedWhite};

@@ -193,6 +193,7 @@ VertexData gather_vertices(const Room& room, const Solution& solution, const Ver
         data.info.zones = gatherer.zone_bias(data, static_cast<double>(rings.size()) * settings.gather_rays);
     }
     data.info.error = relative_error(gatherer, rings, data);
+    data.worst = worst_surface(gatherer, rings, data);
   });
   describe(scene, solution, settings, data);
   return data;

@@ -54,6 +54,34 @@ double relative_error(const VertexGatherer& gatherer, const VertexRings& rings, 
   return worst;
 }
 
+WorstSurface worst_surface(const VertexGatherer& gatherer, const VertexRings& rings, const VertexData& data) {
+  constexpr double kLeastArea = 0.01;  // of all
+  struct Sums {
+    std::vector<BandSums> bands;
+    double area = 0;
+  };
+  std::vector<Sums> sums(data.surface_names.size());
+  double area = 0;
+  for (std::size_t v = 0; v < rings.size(); ++v) {
+    Sums& of_surface = sums[data.surfaces[v].index()];
+    const std::vector<BandSums> of_vertex = band_sums(gatherer, rings, data, v, v + 1);
+    of_surface.bands.resize(of_vertex.size());
+    for (std::size_t b = 0; b < of_vertex.size(); ++b) {
+      of_surface.bands[b].errors += of_vertex[b].errors;
+      of_surface.bands[b].values += of_vertex[b].values;
+    }
+    of_surface.area += rings.area(v);
+    area += rings.area(v);
+  }
+  WorstSurface worst;
+  for (std::size_t s = 0; s < sums.size(); ++s)
+    for (const BandSums& band : sums[s].bands) {
+      const double error = band.values > 0 ? std::sqrt(band.errors / band.values) : 0;
+      if (sums[s].area >= kLeastArea * area && error > worst.error) worst = {SurfaceId(s), error};
+    }
+  return worst;
+}
+
 VertexRefinement::VertexRefinement(const VertexGatherer& gatherer, const VertexRings& rings,
                                    const VertexSettings& settings, const VertexProgressCallback& progress,
                                    const std::atomic<bool>& interrupt, VertexData& data)

@@ -15,6 +15,7 @@ namespace reemit {
 /// sqrt(sum A s^2 / sum A L^2) over vertices, worst band, L without self-emission: a bright lamp known
 /// without error would otherwise hide the noise of the room that it lights.
 double relative_error(const VertexGatherer& gatherer, const VertexRings& rings, const VertexData& data);
+WorstSurface worst_surface(const VertexGatherer& gatherer, const VertexRings& rings, const VertexData& data);
 
 /// Decides how many samples vertices get, chunk of vertices by chunk, in parallel.
 class VertexRefinement {

@@ -91,6 +91,27 @@ TEST(ResumedProgram, GoesOnAfterAnInterruptAndIntoAnotherFile) {
   EXPECT_GE(load_solution(more).record.packets, 2 * load_solution(solution).record.packets - 100);
 }
 
+TEST(ResumedProgram, GoesOnWithItsLog) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const std::string solution = (folder / "room.h5").string();
+  const std::string log = (folder / "run.jsonl").string();
+  const auto solve = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "solve");
+    arguments.insert(arguments.end(), {"--log", log});
+    ASSERT_EQ(run_reemit(arguments).exit_code, 0);
+  };
+  solve({(folder / "room.json").string(), "-o", solution, "--packets", "20000"});
+  const std::string first = read_bytes(log);
+  solve({"--resume", solution, "--packets", "60000"});
+  const std::string both = read_bytes(log);
+  EXPECT_EQ(both.substr(0, first.size()), first);
+  EXPECT_THAT(both.substr(first.size()), ::testing::StartsWith(R"({"event":"start")"));
+  // A new run is another thing.
+  solve({(folder / "room.json").string(), "-o", solution, "--packets", "20000"});
+  EXPECT_LT(read_bytes(log).size(), both.size());
+}
+
 TEST(ResumedProgram, ATimeGivenNowCountsFromWhatStands) {
   const TempFolder folder;
   folder.write("room.json", small_json_room());

@@ -74,6 +74,10 @@ TEST(Usage, MistakesEndWithCode2AndAHint) {
       {{"render", "x.h5", "-o", "x.png", "--spp", "4", "--error", "1%"}, "excludes"},
       {{"render", "x.h5", "-o", "x.gif"}, ".gif"},
       {{"export", "x.h5", "-o", "x.xyz"}, ".xyz"},
+      {{"render", "x.h5", "-o", "x.png", "--integrator", "zones", "--light-selection", "linear"},
+       "shadow rays"},
+      {{"export", "x.h5", "-o", "x.csv", "--form-factors", "--room", "r.json"}, "--room"},
+      {{"audit", "x.h5", "--room", "r.json"}, "--direct"},
       {{"audit"}, "solution is required"},
       {{"audit", "a", "b"}, "unknown argument 'b'"},
   };

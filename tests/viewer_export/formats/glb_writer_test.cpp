@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -148,6 +149,16 @@ TEST(GlbWriter, BacksDoNotLieInTheirFronts) {
                                                           gap * data.normals[2 * v + 1][axis]));
     }
   for (const tinygltf::Material& material : model.materials) EXPECT_FALSE(material.doubleSided);
+}
+
+TEST(GlbWriter, BacksStayNearWhereTheRoomStandsInAWideGarden) {
+  VertexData data = sample_vertices(BandSet::rgb());
+  for (const std::size_t v : {1U, 3U, 5U}) data.on_back[v] = true;  // of a wall of 1.5 x 1 m
+  data.positions[4] = Vec3(1e5, 0, 0);                              // of the floor
+  EXPECT_GT(back_gap(data), 1);
+  const std::vector<Vec3> moved = positions_for_viewing(data, back_gap(data));
+  for (const std::size_t v : {1U, 3U, 5U})
+    EXPECT_NEAR((moved[v] - data.positions[v]).norm(), 1e-3 * std::hypot(1.5, 1), 1e-9);
 }
 
 TEST(GlbWriter, NothingToDrawIsAnError) {
