@@ -13,7 +13,7 @@ constexpr double kLeastKept = 0.25;
 constexpr double kLeastOutside = 0.05;
 constexpr double kMostBetween = 0.1;
 /// Packets of a zone that say whether it sees nothing, or hardly anything, but the open.
-constexpr std::uint32_t kLeastPackets = 8;
+constexpr std::uint32_t kPacketsToJudgeBy = 8;
 constexpr double kMostlyMet = 0.8;
 constexpr double kSmallerThanRoom = 0.9;  // diagonals
 
@@ -95,7 +95,7 @@ std::vector<LampLoss> lamp_losses(const PacketRoom& transport, const PacketSourc
   LampGroups lamps(scene, emits, stop);
   if (lamps.extents().empty()) return {};
   const auto packets = static_cast<std::uint32_t>(std::clamp<std::size_t>(
-      std::max(1024 * lamps.extents().size(), 2 * kLeastPackets * surfaces.sources.size()), 4096, 65536));
+      std::max(1024 * lamps.extents().size(), 2 * kPacketsToJudgeBy * surfaces.sources.size()), 4096, 65536));
   const Flight flight = plan_first_flight(surfaces, packets, 0.5);
   std::map<std::size_t, double> sent;
   std::map<std::size_t, double> kept;
@@ -116,8 +116,8 @@ std::vector<LampLoss> lamp_losses(const PacketRoom& transport, const PacketSourc
   for (std::size_t z = 0; z < surfaces.sources.size(); ++z) {
     const std::uint32_t of_zone = flight.first_packet[z + 1] - flight.first_packet[z];
     const std::size_t lamp = lamps.of(mesh.zone_surface(flight.sources[z].zone).index());
-    if (of_zone >= kLeastPackets && met[z] == 0) outside[lamp] += watts[z];
-    if (of_zone >= kLeastPackets && met[z] >= kMostlyMet * of_zone) inside[lamp] += watts[z];
+    if (of_zone >= kPacketsToJudgeBy && met[z] == 0) outside[lamp] += watts[z];
+    if (of_zone >= kPacketsToJudgeBy && met[z] >= kMostlyMet * of_zone) inside[lamp] += watts[z];
   }
   const double room = bounds(scene).size().norm();
   std::vector<LampLoss> found;

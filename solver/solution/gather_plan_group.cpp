@@ -9,10 +9,10 @@ namespace {
 
 /// Files that have `caustic_packets` instead are of a program that kept no photons on black surfaces: they
 /// are read as if nobody had looked.
-constexpr const char* kPackets = "photon_packets";
+constexpr const char* kPacketsAttribute = "photon_packets";
 
 void write_packets(const Hdf5Group& group, const CausticPackets& caustics) {
-  group.write_attribute(kPackets, caustics.packets);
+  group.write_attribute(kPacketsAttribute, caustics.packets);
   std::vector<std::uint64_t> bytes;
   std::vector<std::uint8_t> marks;
   for (const std::vector<std::uint8_t>& of_part : caustics.brings) {
@@ -29,7 +29,7 @@ void write_packets(const Hdf5Group& group, const CausticPackets& caustics) {
 
 CausticPackets read_packets(const Hdf5Group& group) {
   CausticPackets caustics;
-  caustics.packets = group.read_attribute<std::uint32_t>(kPackets);
+  caustics.packets = group.read_attribute<std::uint32_t>(kPacketsAttribute);
   caustics.radius_codes = group.read<std::uint8_t>("caustic_radii", group.shape("caustic_radii"));
   const Hdf5Shape parts = group.shape("caustic_part_bytes");
   const Hdf5Shape size = group.shape("caustic_marks");
@@ -66,7 +66,7 @@ void read_gather_plan(const Hdf5Group& root, Solution& solution) {
     plan.uneven = group.read<std::uint8_t>("uneven", {solution.mesh.zone_count()});
   require_intact(std::all_of(plan.uneven.begin(), plan.uneven.end(), [](std::uint8_t u) { return u <= 1; }),
                  "a zone is neither even nor uneven");
-  if (group.has_attribute(kPackets)) plan.caustics = read_packets(group);
+  if (group.has_attribute(kPacketsAttribute)) plan.caustics = read_packets(group);
 }
 
 }  // namespace reemit

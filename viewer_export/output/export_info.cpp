@@ -26,6 +26,13 @@ std::string text_of(double number) {
 
 }  // namespace
 
+void state_origin(const Scene& scene, const Solution& solution, ExportInfo& info) {
+  info.program_version = solution.program_version;
+  info.room = scene.source.empty() ? scene.name : scene.source;
+  info.room_hash = solution.room_hash;
+  info.seed = solution.settings.seed;
+}
+
 std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; },

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "scenes/model/bands.h"
-#include "solver/solution/zone_bias.h"
+#include "scenes/model/scene.h"
+#include "solver/solution/solution.h"
 
 namespace reemit {
 
@@ -26,6 +27,9 @@ struct ExportInfo {
   /// Further settings worth keeping, in the order they are written: {"gather rays", 256}.
   std::vector<std::pair<std::string, InfoValue>> settings;
 };
+
+/// Says of which solution and room something is.
+void state_origin(const Scene& scene, const Solution& solution, ExportInfo& info);
 
 /// The text with control characters replaced by spaces: a line break would end a comment of a file header
 /// early.

@@ -23,7 +23,8 @@ namespace {
 
 /// Independent estimates of each point, each from its own part of the zone solution.
 constexpr std::size_t kReplicates = ZoneSums::kGroups;
-constexpr std::size_t kChunk = 16;  ///< Points of one task; fixed, so that packets of rays are the same.
+constexpr std::size_t kPointsOfTask =
+    16;  ///< Points of one task; fixed, so that packets of rays are the same.
 constexpr int kMostPlaces = 1 << 14;
 
 void check(const MeasureSettings& s, std::size_t points) {
@@ -143,7 +144,7 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
     for (std::size_t i = 0; i < set.size(); ++i)
       points_.push_back(measuring_point(room_.rays(), set.places[i], set.normals[i]));
   means_.assign(points_.size() * kReplicates * 2 * bands_, 0.0F);
-  const std::size_t chunks = (points_.size() + kChunk - 1) / kChunk;
+  const std::size_t chunks = (points_.size() + kPointsOfTask - 1) / kPointsOfTask;
   const bool has_target = settings_.error_target > 0;
   double share_done = 0;
   std::mutex progress_mutex;
@@ -152,7 +153,7 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
     const int more = has_target ? std::max(1, done) : places();
     std::size_t chunks_done = 0;
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
-      gather(c * kChunk, std::min((c + 1) * kChunk, points_.size()), done, more);
+      gather(c * kPointsOfTask, std::min((c + 1) * kPointsOfTask, points_.size()), done, more);
       const std::lock_guard lock(progress_mutex);
       ++chunks_done;
       if (progress)
@@ -239,10 +240,7 @@ MeasuredLight Measurer::result(std::vector<PointSet> sets) const {
 void describe(const Scene& scene, const Solution& solution, const MeasureSettings& settings,
               MeasuredLight& light) {
   ExportInfo& info = light.info;
-  info.program_version = solution.program_version;
-  info.room = scene.source.empty() ? scene.name : scene.source;
-  info.room_hash = solution.room_hash;
-  info.seed = solution.settings.seed;
+  state_origin(scene, solution, info);
   if (!light.misses_light_over_mirrors) info.zones = solution.record.gather_bias;
   if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
   if (settings.error_target == 0) {

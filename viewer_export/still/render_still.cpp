@@ -252,10 +252,7 @@ class Rendering {
 ExportInfo describe_still(const Scene& scene, const Solution& solution, const StillSettings& settings,
                           const StillImage& image, double error) {
   ExportInfo info;
-  info.program_version = solution.program_version;
-  info.room = scene.source.empty() ? scene.name : scene.source;
-  info.room_hash = solution.room_hash;
-  info.seed = solution.settings.seed;
+  state_origin(scene, solution, info);
   info.error = std::isfinite(error) ? error : 0;
   info.settings = {{"integrator", to_string(settings.integrator)},
                    {"pixel filter", to_string(settings.filter)},

@@ -137,10 +137,7 @@ VertexData make_vertices(const Scene& scene, const Solution& solution, const Ver
 void describe(const Scene& scene, const Solution& solution, const VertexSettings& settings,
               VertexData& data) {
   ExportInfo& info = data.info;
-  info.program_version = solution.program_version;
-  info.room = scene.source.empty() ? scene.name : scene.source;
-  info.room_hash = solution.room_hash;
-  info.seed = solution.settings.seed;
+  state_origin(scene, solution, info);
   if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
   info.settings.emplace_back("vertex values", data.gathered ? "final gather" : "zone averages");
   if (!data.gathered) return;
