@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastKept = 0.25;
 constexpr double kLeastOutside = 0.05;
-constexpr double kMostBetween = 0.1;
+constexpr double kMostBetween = 0.2;
 /// Packets of a zone that say whether it sees nothing, or hardly anything, but the open.
 constexpr std::uint32_t kPacketsToJudgeBy = 8;
 constexpr double kMostlyMet = 0.8;

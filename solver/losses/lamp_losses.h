@@ -19,7 +19,7 @@ struct LampLoss {
 
 /// Lamps smaller than the room that send a quarter of their power or more onto themselves: closed ones whose
 /// inner side emits; a room whose walls emit is none. And lamps that send a twentieth or more into the open
-/// from parts that see nothing else, while nearly all that the others send meets something: those that are
+/// from parts that see nothing else, while most of what the others send meets something: those that are
 /// half sunk into a ceiling. The error of a share is 2 % at most.
 /// Throws Interrupted when `stop` (may be null) is requested.
 std::vector<LampLoss> lamp_losses(const PacketRoom& transport, const PacketSources& emission,

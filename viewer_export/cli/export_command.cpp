@@ -111,14 +111,27 @@ void check_has_effect(const ExportOptions& options) {
                      "leave it out, or write .ply or .glb");
 }
 
-/// A vertex has one value, so images on surfaces are as coarse as vertices are.
-void note_textures(const ExportOptions& options, const Scene& scene) {
+/// What the colours of a file cannot show. A vertex has one value, so images on surfaces are as coarse as
+/// vertices are; and it has the light that a surface scatters or emits, whatever is seen over it or through
+/// it.
+void note_what_colours_lack(const ExportOptions& options, const Scene& scene) {
   if (options.style.quiet || !shows_colours(options)) return;
-  const auto has_image = [&](const Surface& surface) {
-    const MaterialTextures& textures = scene.material_of(surface).textures;
-    return textures.reflectance || textures.emission;
+  const auto count_of = [&](auto&& is_meant) {
+    return std::count_if(scene.surfaces.begin(), scene.surfaces.end(),
+                         [&](const Surface& surface) { return is_meant(scene.material_of(surface)); });
   };
-  const auto count = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), has_image);
+  const auto specular = count_of([](const Material& m) {
+    return m.non_diffuse.reflects_specularly() || m.non_diffuse.transmits_specularly();
+  });
+  if (specular > 0)
+    print_note(
+        fmt::format("{} surface(s) are mirrors, gloss, panes or glass, whose colours show what they scatter "
+                    "alone: black and opaque where that is nothing",
+                    specular));
+  const auto cut_outs = count_of([](const Material& m) { return m.textures.is_cut_out(); });
+  if (cut_outs > 0) print_note(fmt::format("{} surface(s) are cut-outs, which are exported whole", cut_outs));
+  const auto count =
+      count_of([](const Material& m) { return m.textures.reflectance || m.textures.emission; });
   if (count > 0)
     print_note(
         fmt::format("{} surface(s) have textures, of which colours show one value at each vertex; the "
@@ -166,7 +179,7 @@ ExitCode run_export(const ExportOptions& options) {
   const Solution solution = load_solution(options.solution, options.style);
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs) check_keeps_room(output, scene);
-  note_textures(options, scene);
+  note_what_colours_lack(options, scene);
   VertexSettings settings = options.vertex;
   for (const std::string& name : options.surfaces)
     add_surfaces_named(name, solution.surface_names, settings.only);

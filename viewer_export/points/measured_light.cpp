@@ -8,11 +8,13 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
 #include "scenes/model/interrupted.h"
+#include "scenes/model/memory.h"
 #include "solver/gather/replicate_gather.h"
 #include "solver/solution/thread_count.h"
 #include "solver/tally/replicates.h"
@@ -143,7 +145,10 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
   for (const PointSet& set : sets)
     for (std::size_t i = 0; i < set.size(); ++i)
       points_.push_back(measuring_point(room_.rays(), set.places[i], set.normals[i]));
-  means_.assign(points_.size() * kReplicates * 2 * bands_, 0.0F);
+  const std::size_t values = points_.size() * kReplicates * 2 * bands_;
+  check_memory(fmt::format("{} points", points_.size()), static_cast<double>(values * sizeof(float)),
+               available_memory());
+  means_.assign(values, 0.0F);
   const std::size_t chunks = (points_.size() + kPointsOfTask - 1) / kPointsOfTask;
   const bool has_target = settings_.error_target > 0;
   double share_done = 0;

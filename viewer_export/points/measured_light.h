@@ -59,7 +59,7 @@ using MeasureProgress = std::function<void(double)>;
 /// and glass is found where rays meet the luminaire behind them, so that of lights without area is missed
 /// (misses_light_over_mirrors), as is nearly always that of the sun. `progress` may be empty. Throws
 /// InputError for settings out of range or no points at all and for a room that is not the one solved,
-/// Interrupted when `interrupt` becomes true.
+/// ResourceError for more points than memory holds, Interrupted when `interrupt` becomes true.
 MeasuredLight measure_light(const Room& room, const Solution& solution, std::vector<PointSet> sets,
                             const MeasureSettings& settings, const MeasureProgress& progress,
                             const std::atomic<bool>& interrupt);

@@ -11,6 +11,7 @@
 #include "scenes/io/common/text_parse.h"
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
+#include "scenes/model/memory.h"
 
 namespace reemit {
 namespace {
@@ -59,6 +60,8 @@ PointSet grid_points(const std::string& name, const PointGrid& grid, const Vec3&
     throw InputError(name, "the sides of the grid span no area",
                      "Give the corner, the two sides from there and the number of fields, as "
                      "0.5,0.85,0.5 4,0,0 0,0,5 8x10.");
+  const double fields = static_cast<double>(grid.columns) * static_cast<double>(grid.rows);
+  check_memory(fmt::format("{}: {:.3g} points", name, fields), 2 * sizeof(Vec3) * fields, available_memory());
   Vec3 normal = area.normalized();
   if (normal.dot(up) < -1e-9) normal = Vec3::Zero() - normal;  // no -0
   PointSet points{name, {}, {}};

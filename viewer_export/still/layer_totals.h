@@ -6,7 +6,8 @@
 
 namespace reemit {
 
-/// The light of a whole picture, layer by layer. Means over pixels that look alike lose some of it where
+/// The light of a whole picture but for pixels that see luminaires, which would outshine all else, layer by
+/// layer. Means over pixels that look alike lose some of it where
 /// noise is skewed: few pixels are like one that chance made bright, and it counts in few means. Photons make
 /// such noise (a density that k of them tell), and so do paths.
 class LayerTotals {
@@ -21,6 +22,8 @@ class LayerTotals {
   static constexpr double kMost = 0.25;
   enum Layer : std::size_t { kDirect, kCaustic, kRest, kLayers };
 
+  template <class Use>
+  static void for_each_pixel(const StillPlanes& planes, std::size_t band, const Use& use);
   /// Of a pixel, by layer; `at` as the index of StillPlanes::irradiance.
   static std::array<double, kLayers> light_at(const StillPlanes& planes, std::size_t at);
 

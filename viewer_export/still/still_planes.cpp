@@ -28,6 +28,7 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
   allocate_planes(by_band, bands * n);
   precision.resize(n);
   depth.resize(n);
+  sees_luminaire.resize(n);
   for (std::vector<float>& axis : normal) axis.resize(n);
   const float fewest = *std::min_element(image.samples.begin(), image.samples.end());
   // Others for all pixels that may be compared.
@@ -54,6 +55,7 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
       for (std::size_t k = 0; k < 3; ++k) normal[k][p] = image.normal[3 * p + k];
       // A lamp in a ceiling is a thing of its own, and what a pixel on its rim happens to see of it is no
       // noise of the ceiling around.
+      sees_luminaire[p] = luminous > 0 ? 1 : 0;
       if (luminous >= 1) normal[0][p] += kLamp;
       if (luminous > 0 && luminous < 1) normal[0][p] = kMixed * static_cast<float>(2 + number_nearby(p));
     }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "viewer_export/still/still_image.h"
@@ -38,7 +39,8 @@ struct StillPlanes {
   std::vector<float> precision;  ///< Samples over the fewest that a pixel has.
   std::vector<float> depth;      ///< [m], finite.
   std::array<std::vector<float>, 3> normal;
-  std::vector<float> slope_x, slope_y;  ///< Of depth per pixel [m]: of both sides the smaller.
+  std::vector<std::uint8_t> sees_luminaire;  ///< Whether any of its samples does; of squares empty.
+  std::vector<float> slope_x, slope_y;       ///< Of depth per pixel [m]: of both sides the smaller.
 
  private:
   static constexpr float kMixed = 1e3F;

@@ -81,9 +81,8 @@ class NodeReader {
     }
     if (soft_spots_)
       scene_.notes.push_back(
-          "Between its cones a spot falls off as KHR_lights_punctual recommends; Blender's own curve gives "
-          "up to "
-          "28 % more light there.");
+          "Between its cones a spot falls off as KHR_lights_punctual recommends; by Blender's own curve it "
+          "would have up to 28 % more light there.");
     if (omissions_.collapsed > 0) {
       scene_.notes.push_back(
           fmt::format("{} triangle(s) that name a vertex twice are dropped", omissions_.collapsed));

@@ -238,6 +238,21 @@ TEST_F(Pipeline, OneExportTwiceIsRefused) {
   EXPECT_THAT(factors.err, HasSubstr("--form-factors"));
 }
 
+TEST_F(Pipeline, ExportsSayWhatColoursCannotShow) {
+  folder_.write(
+      "room.json",
+      replaced(replaced(small_json_room(), R"("white":)", R"("glass": {"mirror": 0.9}, "white":)"),
+               R"({"name": "lamp")",
+               R"({"name": "pane", "material": "glass", "quad": {"corner": [0.1, 0.1, 0.9], "u": [0.2, 0, 0],
+                             "v": [0, 0.2, 0]}}, {"name": "lamp")"));
+  solve_small_room(folder_, "room.h5");
+  const ProgramRun colours = run_reemit({"export", path("room.h5"), "-o", path("a.glb"), "--samples", "8"});
+  EXPECT_EQ(colours.exit_code, 0) << colours.err;
+  EXPECT_THAT(colours.err, HasSubstr("1 surface(s) are mirrors"));
+  const ProgramRun table = run_reemit({"export", path("room.h5"), "-o", path("a.csv"), "--samples", "8"});
+  EXPECT_THAT(table.err, ::testing::Not(HasSubstr("mirrors")));
+}
+
 TEST_F(Pipeline, MeasuresGridsAndFilesOfPoints) {
   solve_small_room(folder_, "room.h5");
   folder_.write("sensors.txt", "0.5 0.5 0.5 0 0 1\n0.5 0.5 0.25 0 0 -1\n");

@@ -38,6 +38,12 @@ TEST(PointSet, GridWithoutAreaIsRefused) {
   EXPECT_THROW(grid_points("grid", {Vec3::Zero(), Vec3::Zero(), Vec3(2, 2, 0), 2, 2}, kUp), InputError);
 }
 
+TEST(PointSet, GridsThatMemoryWillNotHoldAreRefused) {
+  constexpr int kMost = 1'000'000;
+  EXPECT_THROW(grid_points("grid", {Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 0, 1), kMost, kMost}, kUp),
+               ResourceError);
+}
+
 TEST(PointSet, ReadsPointsWithAnyDividers) {
   test::TempFolder folder;
   folder.write(

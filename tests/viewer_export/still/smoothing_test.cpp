@@ -338,10 +338,21 @@ TEST(Smoothing, small_lamps_leave_no_disks_around_them) {
         const Seen seen{.light = meets ? 500.0 : 1.0, .luminous = meets};
         const auto radiance = static_cast<float>(seen.albedo * seen.light *
                                                  std::max(0.0, 1 + kReplicateNoise * normal(random)));
-        add(film, x, y, r, seen, {.direct = radiance});
+        add(film, x, y, r, seen, {.direct = radiance / 2, .indirect = radiance / 2});
       }
   Noisy noisy = finished(film);
+  const std::vector<float> sampled = noisy.image.radiance;
   smooth(noisy);
+  double before = 0;  // of the ceiling alone
+  double after = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const std::size_t p = static_cast<std::size_t>(y * kWidth + x);
+      if (is_beside_a_lamp(x, y)) continue;
+      before += static_cast<double>(sampled[p]);
+      after += static_cast<double>(noisy.image.radiance[p]);
+    }
+  EXPECT_NEAR(after / before, 1, 1e-5);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const auto radiance =
