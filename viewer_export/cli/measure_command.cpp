@@ -191,9 +191,10 @@ void add_point_options(CLI::App& command, MeasureOptions& options) {
       ->type_name("FILE")
       ->allow_extra_args(false);
   command.option_defaults()->group("Values");
-  auto* error =
-      add_parsed_option(command, "--error", options.settings.error_target, parse_share, "SHARE",
-                        "Refine until the relative error (rms over points, worst band) is below: 1%");
+  auto* error = add_parsed_option(
+      command, "--error", options.settings.error_target, parse_share, "SHARE",
+      "Refine until the relative error (rms over points, worst band) is below; 0.5% unless a\n"
+      "number of rays is given");
   add_integer_option(command, "--samples", options.settings.gather_rays, 1, 1048576,
                      "Gather rays per point, rounded up")
       ->excludes(error);
@@ -213,7 +214,7 @@ void add_measure_command(CLI::App& program, Action& action) {
       "Points are no part of the room and stand in nobody's light. On a surface they lie just before it.\n"
       "Examples:\n"
       "  reemit measure room.h5 --grid 0.5,0.85,0.5 4,0,0 0,0,5 8x10\n"
-      "  reemit measure room.h5 --points sensors.txt -o sensors.csv --error 0.5%\n"
+      "  reemit measure room.h5 --points sensors.txt -o sensors.csv --error 0.2%\n"
       "What is in each file: docs/export_formats.md");
   command.add_option("solution", options->solution, "Solution file")->required()->type_name("SOLUTION");
   command
@@ -225,7 +226,13 @@ void add_measure_command(CLI::App& program, Action& action) {
   command.option_defaults()->group("Output");
   add_json_option(command, options->style);
   add_progress_options(command, options->style);
-  command.callback([options, &action] { action = [options] { return run_measure(*options); }; });
+  command.callback([options, &command, &action] {
+    constexpr double kGoodToReport = 0.005;
+    const auto is_given = [&](const char* option) { return command.count(option) > 0; };
+    if (!is_given("--error") && !is_given("--samples") && !is_given("--light-samples"))
+      options->settings.error_target = kGoodToReport;
+    action = [options] { return run_measure(*options); };
+  });
 }
 
 }  // namespace reemit::cli
