@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,15 @@ struct ReplicateEffort {
   int points = 1;   ///< Places, each with one shadow ray.
   int gathers = 1;  ///< Gather rays from each of them.
   int first = 0;    ///< Places that this replicate had before; best a multiple of points, a power of two.
+
+  /// Of each of `replicates` that together send so many rays, each number rounded up; places are a power of
+  /// two. All >= 1.
+  static ReplicateEffort of(int gather_rays, int light_samples, int replicates) {
+    const int points =
+        static_cast<int>(std::bit_ceil(static_cast<unsigned>((light_samples + replicates - 1) / replicates)));
+    const int all_points = points * replicates;
+    return {points, (gather_rays + all_points - 1) / all_points};
+  }
 };
 
 /// One replicate of the light around a place. `place(u)` gives the SurfacePoint or MeasuringPoint for two

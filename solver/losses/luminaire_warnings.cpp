@@ -67,8 +67,7 @@ std::vector<std::string> luminaire_warnings(const PacketRoom& transport, const P
     if (lamp.stands_across)
       warnings.push_back(
           fmt::format("{}: {} of its power leaves from parts that see nothing but the open outside; does it "
-                      "stand through a "
-                      "ceiling or a wall? Move it in, or let only what is in the room emit",
+                      "stand through a ceiling or a wall? Move it in, or let only what is in the room emit",
                       name, share_text(lamp.outside)));
   }
   return warnings;

@@ -15,6 +15,10 @@ std::string zones_text(const std::optional<ZoneBias>& zones);
 /// known.
 void add_zones(nlohmann::ordered_json& json, const std::optional<ZoneBias>& zones);
 
+/// What to say where an error target was missed because of the noise of the zone solution.
+inline constexpr const char* kZonesTooNoisy =
+    "the noise of the zone solution keeps the error above the target; solve to a lower --error";
+
 /// Says so, and what helps, where the zones alone miss an error target > 0; empty where they do not or it is
 /// not known. `what`: whose target, "the picture".
 std::string missed_by_zones(const std::string& what, double target, const std::optional<ZoneBias>& zones);

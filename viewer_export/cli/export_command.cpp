@@ -205,7 +205,7 @@ ExitCode run_export(const ExportOptions& options) {
     });
 
   if (data.limited_by_zones && !options.style.quiet) {
-    print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
+    print_note(kZonesTooNoisy);
   }
   if (const std::size_t dark = dark_vertices(data); dark > 0 && !options.style.quiet)
     print_note(fmt::format(

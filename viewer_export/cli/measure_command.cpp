@@ -91,8 +91,7 @@ std::string dark_points(const MeasuredLight& light) {
   if (!first) return "";
   return fmt::format(
       "no light comes to {} of the points, the first at ({:.6g}, {:.6g}, {:.6g}) m: do they lie inside of "
-      "something, "
-      "or face a wall that they lie on?",
+      "something, or face a wall that they lie on?",
       dark, first->x(), first->y(), first->z());
 }
 
@@ -102,8 +101,7 @@ void print_notes(const MeasuredLight& light, double error_target) {
     print_note(
         "light of points, spots and the sun that comes straight from mirrors and glass is not in these "
         "values; vertices (export) and surfaces (info) have it");
-  if (light.limited_by_zones)
-    print_note("the noise of the zone solution keeps the error above the target; solve to a lower --error");
+  if (light.limited_by_zones) print_note(kZonesTooNoisy);
   if (const std::string missed = missed_by_zones("the points", error_target, light.info.zones);
       !missed.empty())
     print_note(missed);

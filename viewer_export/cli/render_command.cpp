@@ -144,13 +144,11 @@ class Renderer {
   void explain_missed_target(const Job& job, const StillImage& image) const {
     // Of what smoothing leaves nobody knows how much is that of the zones.
     if (image.limited_by_zones)
-      print_note(
-          job.camera.name +
-          (image.smoothed
-               ? ": more samples hardly lessen what smoothing leaves; solve to a lower --error, or give "
-                 "render an --error, which samples until it holds"
-               : ": the noise of the zone solution keeps the error above the target; solve to a lower "
-                 "--error"));
+      print_note(fmt::format(
+          "{}: {}", job.camera.name,
+          image.smoothed ? "more samples hardly lessen what smoothing leaves; solve to a lower --error, or "
+                           "give render an --error, which samples until it holds"
+                         : kZonesTooNoisy));
     // The rest is for those who named a target.
     if (options_.still.error_target == 0 || options_.still.most_mean_spp > 0) return;
     if (!image.limited_by_zones && image.info.error > options_.still.error_target && !interrupted())

@@ -12,8 +12,7 @@ namespace {
 /// The lines above the rows; `values` are the columns behind those that every table has.
 void write_header(const VertexData& data, const std::string& units, const std::string& values,
                   OutputFile& file) {
-  for (const auto& [name, value] : describe(data.info, data.bands))
-    file.write(fmt::format("# {}: {}\n", name, name == "units" && !units.empty() ? units : value));
+  write_csv_comments(data.info, data.bands, units, file);
   file.write("vertex,x,y,z,nx,ny,nz,surface,material" + values + "\n");
 }
 

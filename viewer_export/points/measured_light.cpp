@@ -25,8 +25,8 @@ namespace {
 
 /// Independent estimates of each point, each from its own part of the zone solution.
 constexpr std::size_t kReplicates = ZoneSums::kGroups;
-constexpr std::size_t kPointsOfTask =
-    16;  ///< Points of one task; fixed, so that packets of rays are the same.
+/// Fixed, so that packets of rays are the same for any number of threads.
+constexpr std::size_t kPointsOfTask = 16;
 constexpr int kMostPlaces = 1 << 14;
 
 void check(const MeasureSettings& s, std::size_t points) {
@@ -83,8 +83,9 @@ class Measurer {
   template <class OfBands>
   Irradiance combined(std::size_t point, OfBands&& of_bands) const;
   SetSummary summary(std::size_t first, std::size_t last, const std::vector<Irradiance>& illuminance) const;
-  int places() const;
-  int rays_per_place() const;
+  ReplicateEffort effort() const {
+    return ReplicateEffort::of(settings_.gather_rays, settings_.light_samples, static_cast<int>(kReplicates));
+  }
   int most_places() const;
   void gather(std::size_t first, std::size_t last, int first_place, int places);
   double error() const;
@@ -101,20 +102,9 @@ class Measurer {
   bool limited_by_zones_ = false;
 };
 
-int Measurer::places() const {
-  constexpr auto kParts = static_cast<int>(kReplicates);
-  return static_cast<int>(
-      std::bit_ceil(static_cast<unsigned>((settings_.light_samples + kParts - 1) / kParts)));
-}
-
-int Measurer::rays_per_place() const {
-  const int of_point = places() * static_cast<int>(kReplicates);
-  return (settings_.gather_rays + of_point - 1) / of_point;
-}
-
 int Measurer::most_places() const {
-  if (settings_.error_target == 0) return places();
-  const auto of_numbers = std::bit_floor(PathKey::kMostPaths / static_cast<unsigned>(rays_per_place()));
+  if (settings_.error_target == 0) return effort().points;
+  const auto of_numbers = std::bit_floor(PathKey::kMostPaths / static_cast<unsigned>(effort().gathers));
   return std::max(1, std::min(kMostPlaces, static_cast<int>(of_numbers)));
 }
 
@@ -122,7 +112,7 @@ void Measurer::gather(std::size_t first, std::size_t last, int first_place, int 
   const std::size_t values = 2 * bands_;
   std::vector<float> found((last - first) * kReplicates * values, 0.0F);
   GatherBatch batch(gather_);
-  const ReplicateEffort effort{places, rays_per_place(), first_place};
+  const ReplicateEffort of_replicate{places, effort().gathers, first_place};
   const int log2_places = std::countr_zero(static_cast<unsigned>(most_places()));
   float* next = found.data();
   for (std::size_t i = first; i < last; ++i)
@@ -132,8 +122,8 @@ void Measurer::gather(std::size_t first, std::size_t last, int first_place, int 
                                  log2_places);
       const PathKey key{i, static_cast<std::uint32_t>(r), 0, static_cast<std::uint32_t>(r % field_.parts())};
       add_replicate(
-          direct_, sampler, effort, key, [&](const std::array<float, 2>&) { return points_[i]; }, batch, next,
-          next + bands_);
+          direct_, sampler, of_replicate, key, [&](const std::array<float, 2>&) { return points_[i]; }, batch,
+          next, next + bands_);
     }
   batch.flush();
   const float share = static_cast<float>(places) / static_cast<float>(first_place + places);
@@ -155,7 +145,7 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
   std::mutex progress_mutex;
   RefinedPart all;  // of which there is one: every point gets the same samples
   for (int done = 0; all.is_active() && done < most_places();) {
-    const int more = has_target ? std::max(1, done) : places();
+    const int more = has_target ? std::max(1, done) : effort().points;
     std::size_t chunks_done = 0;
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
       gather(c * kPointsOfTask, std::min((c + 1) * kPointsOfTask, points_.size()), done, more);

@@ -31,8 +31,7 @@ std::string heading(const MeasuredLight& light) {
 
 void write_points_csv(const MeasuredLight& light, const std::filesystem::path& file) {
   OutputFile output(file);
-  for (const auto& [name, value] : describe(light.info, light.bands))
-    output.write(fmt::format("# {}: {}\n", name, name == "units" ? units_of(light) : value));
+  write_csv_comments(light.info, light.bands, units_of(light), output);
   output.write(heading(light));
   const auto append = [](fmt::memory_buffer& row, const Irradiance& value) {
     fmt::format_to(std::back_inserter(row), ",{},{},{}", value.all, value.standard_error, value.direct);

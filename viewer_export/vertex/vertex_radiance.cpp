@@ -1,7 +1,6 @@
 #include "viewer_export/vertex/vertex_radiance.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -150,14 +149,11 @@ void describe(const Scene& scene, const Solution& solution, const VertexSettings
 }  // namespace
 
 int VertexSettings::points_per_replicate() const {
-  constexpr auto kReplicates = static_cast<int>(VertexGatherer::kReplicates);
-  return static_cast<int>(
-      std::bit_ceil(static_cast<unsigned>((light_samples + kReplicates - 1) / kReplicates)));
+  return ReplicateEffort::of(gather_rays, light_samples, VertexGatherer::kReplicates).points;
 }
 
 int VertexSettings::gathers_per_point() const {
-  const int points = points_per_replicate() * static_cast<int>(VertexGatherer::kReplicates);
-  return (gather_rays + points - 1) / points;
+  return ReplicateEffort::of(gather_rays, light_samples, VertexGatherer::kReplicates).gathers;
 }
 
 VertexData gather_vertices(const Room& room, const Solution& solution, const VertexSettings& settings,
