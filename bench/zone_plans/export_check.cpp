@@ -96,7 +96,7 @@ ExportDifference export_difference(const Room& room, const Solution& solution, s
     const std::optional<SurfacePoint> x = place_of(room, data, point);
     if (!x) return;
     std::vector<float> found(std::size_t{2} * kHalves * bands, 0.0F);  // by half: direct and gathered
-    GatherBatch batch(gather);
+    GatherBatch batch(gather, kEffort.gathers);
     for (std::uint32_t half = 0; half < kHalves; ++half) {
       const PointSampler sampler(kSeed, RngPurpose::kDiscretisation, i, static_cast<int>(half),
                                  std::countr_zero(static_cast<unsigned>(kEffort.points)));

@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/sampling/warp.h"
+
 namespace reemit {
-namespace {
-
-constexpr float kFloatBelowOne = 0x1.fffffep-1F;
-
-float stretched(float u, float low, float width) {
-  return std::clamp((u - low) / width, 0.0F, kFloatBelowOne);
-}
-
-}  // namespace
-
 LuminaireChoice::LuminaireChoice(const LuminaireTable& table, Selection selection, const Vec3f& x,
                                  const Vec3f& n, float u)
     : table_(table), selection_(selection), x_(x), n_(n) {
@@ -93,7 +85,7 @@ bool LuminaireChoice::pick_evenly(float& u, std::size_t& entry, float& inverse_p
   const auto count = static_cast<float>(table_.size());
   const float at = u * count;
   entry = std::min(static_cast<std::size_t>(at), table_.size() - 1);
-  u = std::clamp(at - static_cast<float>(entry), 0.0F, kFloatBelowOne);
+  u = stretched(at, static_cast<float>(entry), 1);
   inverse_probability = count;
   return true;
 }

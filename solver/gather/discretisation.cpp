@@ -46,7 +46,7 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
     const std::size_t first = c * kProbesPerTask;
     const std::size_t last = std::min(first + kProbesPerTask, probes.size());
     std::vector<float> found((last - first) * kFieldHalves * 2 * bands, 0.0F);
-    GatherBatch batch(gather);
+    GatherBatch batch(gather, kEffort.gathers);
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i) {
       const std::array<float, 4> u = rng.uniform4(i, kOfProbes, 0);

@@ -1,9 +1,12 @@
 #include "solver/gather/hemisphere_gather.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
+#include "solver/gather/aim_gain.h"
 #include "solver/gather/uneven_zones.h"
 
 namespace reemit {
@@ -11,6 +14,16 @@ namespace {
 
 /// Bounces that no chance ends.
 constexpr int kSureBounces = 4;
+/// What aiming at bright zones has to be worth.
+constexpr double kLeastGain = 1.6;
+/// Of rays that graze a bright zone.
+constexpr float kLeastCosine = 1e-6F;
+
+/// Whether an aimed ray met what it was aimed at.
+bool is_target(TriangleId target, float distance, TriangleId met, float length) {
+  constexpr float kSameDistance = 1e-3F;
+  return met == target && std::abs(length - distance) <= kSameDistance * distance;
+}
 
 /// By zone, the distance within which a hit is continued [normalised units].
 std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight& direct,
@@ -47,14 +60,17 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
     : field_(&field),
       direct_(&direct),
       caustics_(caustic_map(field, settings, stop)),
+      bright_(settings.aim_at_bright ? BrightZones(field) : BrightZones()),
       white_(field.band_count(), 1.0F),
       reach_(reach_of_zones(field, direct, settings, stop)),
       most_bounces_(settings.most_bounces),
       rng_(settings.seed, RngPurpose::kHemisphere),
-      specular_(settings.seed, RngPurpose::kSpecular, RngPurpose::kSpread) {}
+      specular_(settings.seed, RngPurpose::kSpecular, RngPurpose::kSpread) {
+  if (!bright_.empty() && aim_gain(*this, direct, settings.seed) < kLeastGain) bright_ = {};
+}
 
 void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool from_air,
-                                     float* weight, float* sum, float* caustic) const {
+                                     float* weight, float* sum, float* caustic, bool aims) const {
   const RayTracer& rays = room().rays();
   const SurfaceModel& surfaces = room().surfaces();
   const std::size_t bands = band_count();
@@ -109,6 +125,9 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
     for (std::size_t b = 0; b < bands; ++b) dark = dark && weight[b] * brdf(b) == 0;
     if (dark) return;
     if (!specular) add_direct(point, bounce, key, here, sum);
+    const bool is_close = reach_[zone.index()] < std::numeric_limits<float>::infinity();
+    const float view =
+        aims && is_close && here == weight ? add_aimed(point, bounce, key, brdf, scattered, weight, sum) : 0;
     float most = 0;
     for (std::size_t b = 0; b < bands; ++b) most = std::max(most, brdf(b) * next.cosine_over_pdf);
     const float survives = bounce < kSureBounces ? 1.0F : std::min(1.0F, most);
@@ -118,11 +137,68 @@ void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const
       weight[b] *= next.cosine_over_pdf;
     }
     along = next.direction;
-    if (!rays.closest(ray_origin(rays, point), along, hit)) return;
+    const Vec3f origin = ray_origin(rays, point);
+    if (!rays.closest(origin, along, hit)) return;
+    if (view > 0) {
+      const ZoneId met = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+      const float share = met.valid() && bright_.holds(met)
+                              ? share_of_kind({origin, point.normal, view, 1}, along, met, hit)
+                              : 1;
+      for (std::size_t b = 0; b < bands; ++b) weight[b] *= share;
+    }
     way = 0;
     path.scatter();
     ++bounce;
   }
+}
+
+float HemisphereGather::share_of_kind(const AimingPoint& x, const Vec3f& along, ZoneId met,
+                                      const Hit& hit) const {
+  const float cosine = along.dot(x.normal);
+  if (!(cosine > 0)) return 0;
+  const float facing = -along.dot(side_normal(room().rays(), hit.triangle, hit.u, hit.v, hit.front));
+  const float aimed =
+      bright_.pdf_per_sr(x.origin, x.normal, x.view, met, std::max(facing, kLeastCosine), hit.distance);
+  const float others = x.others * cosine * std::numbers::inv_pi_v<float>;
+  return others / (others + aimed);
+}
+
+float HemisphereGather::add_aimed(const SurfacePoint& y, int bounce, const PathKey& key,
+                                  const BrdfValue& brdf, float chance, const float* weight,
+                                  float* sum) const {
+  if (bright_.empty()) return 0;
+  const RayTracer& rays = room().rays();
+  const Vec3f origin = ray_origin(rays, y);
+  BrightZones::View view;
+  bright_.view(origin, y.normal, view);
+  if (!(view.total > 0)) return 0;
+  const auto number = static_cast<std::uint32_t>(2 * bounce + 1);
+  const std::array<float, 4> u = rng_.uniform4(key.index + PathKey::kOfAiming, key.batch, key.step(number));
+  const SurfacePoint target = bright_.aim(view, {u[0], u[1], u[2]});
+  const Vec3f to_target = rays.point(target.triangle, target.u, target.v) - origin;
+  const float distance = to_target.norm();
+  if (!(distance > 0)) return view.total;
+  const Vec3f along = to_target / distance;
+  Hit hit;
+  if (!(along.dot(y.normal) > 0) || !rays.closest(origin, along, hit) ||
+      !is_target(target.triangle, distance, hit.triangle, hit.distance))
+    return view.total;
+  const ZoneId met = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
+  if (!met.valid() || !bright_.holds(met)) return view.total;
+  // Over pi: what rays of a Lambertian lobe count for.
+  const float share =
+      share_of_kind({origin, y.normal, view.total, 1}, along, met, hit) * std::numbers::pi_v<float> / chance;
+  std::vector<float> of_ray(band_count());
+  for (std::size_t b = 0; b < of_ray.size(); ++b) of_ray[b] = weight[b] * brdf(b) * share;
+  if (continues(met, hit.distance) || room().surfaces().is_specular(hit.triangle, hit.front)) {
+    PathKey on = key;
+    on.index += PathKey::kOfAimedBounce * static_cast<std::uint64_t>(bounce + 1);
+    add_continued(hit, along, on, false, of_ray.data(), sum, sum, false);
+    return view.total;
+  }
+  const float* radiance = field_->reflected(met, key.part);
+  for (std::size_t b = 0; b < of_ray.size(); ++b) sum[b] += of_ray[b] * radiance[b];
+  return view.total;
 }
 
 void HemisphereGather::add_direct(const SurfacePoint& y, int bounce, const PathKey& key, const float* weight,
@@ -151,54 +227,101 @@ std::array<float, 4> HemisphereGather::numbers(int bounce, const PathKey& key) c
   return rng_.uniform4(key.index, key.batch, key.step(static_cast<std::uint32_t>(2 * bounce)));
 }
 
-GatherBatch::GatherBatch(const HemisphereGather& gather)
-    : gather_(&gather), bands_(gather.band_count()), weights_(static_cast<std::size_t>(kWidth) * bands_) {}
+GatherBatch::GatherBatch(const HemisphereGather& gather, int rays_of_place)
+    : gather_(&gather),
+      bands_(gather.band_count()),
+      aims_(rays_of_place > 0 && !gather.bright().empty()),
+      rays_of_place_(static_cast<float>(rays_of_place)),
+      weights_(static_cast<std::size_t>(kWidth) * bands_) {}
 
 void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
                       float* sum, float* caustic) {
-  if (caustic == nullptr) caustic = sum;
-  // Inside a body of glass most rays would go round for ever, and no one asks for light there.
-  if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return;
-  gather_->add_photons(x, u0, u1, key, weight, caustic);
-  leave_from(x);
-  queue(u0, u1, key, false, weight, sum, caustic);
+  if (!leave_from(x)) return;
+  Way way{.key = key, .sum = sum, .caustic = caustic == nullptr ? sum : caustic};
+  gather_->add_photons(x, u0, u1, key, weight, way.caustic);
+  queue(frame_.to_world(sample_cosine_hemisphere(u0, u1)), way, weight);
 }
 
 void GatherBatch::add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight,
                       float* sum, float* caustic) {
-  from_ = {};  // on no surface, so that no point is taken for it
-  origin_ = x.place;
-  above_ = x.normal;
-  frame_ = Frame(x.normal);
-  queue(u0, u1, key, true, weight, sum, caustic == nullptr ? sum : caustic);
+  leave_from(x);
+  const Way way{.from_air = true, .key = key, .sum = sum, .caustic = caustic == nullptr ? sum : caustic};
+  queue(frame_.to_world(sample_cosine_hemisphere(u0, u1)), way, weight);
 }
 
-void GatherBatch::queue(float u0, float u1, const PathKey& key, bool from_air, const float* weight,
-                        float* sum, float* caustic) {
-  const Vec3f direction = frame_.to_world(sample_cosine_hemisphere(u0, u1));
+template <class Place>
+void GatherBatch::aim(const Place& x, const std::array<float, 3>& u, PathKey key, const float* weight,
+                      float* sum, float* caustic) {
+  if (!leave_from(x) || !(view_.total > 0)) return;
+  const SurfacePoint target = gather_->bright().aim(view_, u);
+  const Vec3f to_target = gather_->room().rays().point(target.triangle, target.u, target.v) - origin_;
+  const float distance = to_target.norm();
+  if (!(distance > 0)) return;
+  key.index += PathKey::kOfAimed;
+  const Way way{.from_air = std::is_same_v<Place, MeasuringPoint>,
+                .key = key,
+                .sum = sum,
+                .caustic = caustic == nullptr ? sum : caustic,
+                .target = target.triangle,
+                .distance = distance};
+  queue(to_target / distance, way, weight);
+}
+template void GatherBatch::aim(const SurfacePoint&, const std::array<float, 3>&, PathKey, const float*,
+                               float*, float*);
+template void GatherBatch::aim(const MeasuringPoint&, const std::array<float, 3>&, PathKey, const float*,
+                               float*, float*);
+
+void GatherBatch::queue(const Vec3f& direction, const Way& way, const float* weight) {
   // Below a shading normal's horizon there is only the surface itself.
   if (!(direction.dot(above_) > 0)) return;
   rays_.set(count_, origin_, direction);
   const auto lane = static_cast<std::size_t>(count_);
-  second_look_[lane] = false;
-  from_air_[lane] = from_air;
-  keys_[lane] = key;
-  sums_[lane] = sum;
-  caustics_[lane] = caustic;
+  ways_[lane] = way;
+  ways_[lane].normal = normal_;
+  ways_[lane].view = view_.total;
   std::copy_n(weight, bands_, &weights_[lane * bands_]);
   ++count_;
   while (count_ == kWidth) trace();
 }
 
-void GatherBatch::leave_from(const SurfacePoint& x) {
+bool GatherBatch::leave_from(const SurfacePoint& x) {
+  // Inside a body of glass most rays would go round for ever, and no one asks for light there.
+  if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return false;
   if (x.triangle == from_.triangle && x.u == from_.u && x.v == from_.v && x.front == from_.front &&
       x.normal == from_.normal)
-    return;
+    return true;
   const RayTracer& rays = gather_->room().rays();
   from_ = x;
   origin_ = ray_origin(rays, x);
   above_ = side_normal(rays, x);
+  normal_ = x.normal;
   frame_ = Frame(x.normal);
+  look_at_bright();
+  return true;
+}
+
+bool GatherBatch::leave_from(const MeasuringPoint& x) {
+  from_ = {};  // on no surface, so that no point is taken for it
+  origin_ = x.place;
+  above_ = normal_ = x.normal;
+  frame_ = Frame(x.normal);
+  look_at_bright();
+  return true;
+}
+
+void GatherBatch::look_at_bright() {
+  if (aims_) gather_->bright().view(origin_, normal_, view_);
+}
+
+float GatherBatch::share_of_kind(int lane, const Way& way, ZoneId zone, const Hit16& hits) const {
+  if (way.target.valid() &&
+      !is_target(way.target, way.distance, TriangleId(hits.triangle[lane]), hits.distance[lane]))
+    return 0;
+  if (!gather_->bright().holds(zone)) return way.target.valid() ? 0.0F : 1.0F;
+  const Hit hit{TriangleId(hits.triangle[lane]), hits.u[lane], hits.v[lane], hits.distance[lane],
+                hits.front[lane]};
+  return gather_->share_of_kind({rays_.origin(lane), way.normal, way.view, rays_of_place_},
+                                rays_.direction(lane), zone, hit);
 }
 
 void GatherBatch::flush() {
@@ -212,11 +335,8 @@ void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
   rays_.set(count_, rays_.origin(ray), rays.second_direction(rays_.direction(ray), hits, ray),
             rays.cut_out_key(rays_, ray));
   const auto to = static_cast<std::size_t>(count_++);
-  second_look_[to] = true;
-  from_air_[to] = from_air_[lane];
-  keys_[to] = keys_[lane];
-  sums_[to] = sums_[lane];
-  caustics_[to] = caustics_[lane];
+  ways_[to] = ways_[lane];
+  ways_[to].second_look = true;
   std::copy_n(&weights_[lane * bands_], bands_, &weights_[to * bands_]);
 }
 
@@ -232,24 +352,30 @@ void GatherBatch::trace() {
   mesh.zones_at16(hits.points(), zones);
   // What is read of a room of many zones is rarely in the cache: all of it is asked for before any is used.
   for (std::size_t i = 0; i < count; ++i)
-    if (zones[i] != ZoneMesh::kNone) gather_->fetch(ZoneId(zones[i]), keys_[i].part);
+    if (zones[i] != ZoneMesh::kNone) gather_->fetch(ZoneId(zones[i]), ways_[i].key.part);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t t = hits.triangle[i];
-    if (!second_look_[i] && rays.is_doubtful(t, hits.u[i], hits.v[i], hits.front[i])) {
+    if (!ways_[i].second_look && rays.is_doubtful(t, hits.u[i], hits.v[i], hits.front[i])) {
       keep_for_second_look(i, hits);
       continue;
     }
     if (zones[i] == ZoneMesh::kNone) continue;
-    float* weight = &weights_[i * bands_];
+    const Way& way = ways_[i];
     const ZoneId zone(zones[i]);
+    float* weight = &weights_[i * bands_];
+    if (aims_) {
+      const float share = share_of_kind(static_cast<int>(i), way, zone, hits);
+      if (share == 0) continue;
+      for (std::size_t b = 0; b < bands_; ++b) weight[b] *= share;
+    }
     if (gather_->continues(zone, hits.distance[i]) || surfaces.is_specular(TriangleId(t), hits.front[i])) {
       const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
-      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), keys_[i], from_air_[i], weight,
-                             sums_[i], caustics_[i]);
+      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), way.key, way.from_air, weight,
+                             way.sum, way.caustic, true);
       continue;
     }
-    const float* radiance = field.reflected(zone, keys_[i].part);
-    for (std::size_t b = 0; b < bands_; ++b) sums_[i][b] += weight[b] * radiance[b];
+    const float* radiance = field.reflected(zone, way.key.part);
+    for (std::size_t b = 0; b < bands_; ++b) way.sum[b] += weight[b] * radiance[b];
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenes/model/stop_token.h"
+#include "solver/gather/bright_zones.h"
 #include "solver/gather/caustic_map.h"
 #include "solver/gather/direct_light.h"
 #include "solver/gather/path_key.h"
@@ -32,6 +33,8 @@ struct GatherSettings {
   bool continue_uneven = true;
   /// Shoot photons for light over mirrors and glass before the first ray (CausticMap); else rays find it.
   bool caustics = false;
+  /// Look for zones that are worth rays of their own (GatherBatch::aims).
+  bool aim_at_bright = true;
   std::uint64_t seed = 1;
   /// What was found before of the solution and the room, needed by the constructor alone; null: nothing. What
   /// it lacks is found with `seed`.
@@ -59,6 +62,7 @@ class HemisphereGather {
   /// True if a hit of this zone at this distance [normalised units] is continued instead of read.
   bool continues(ZoneId zone, float distance) const { return distance < reach_[zone.index()]; }
   const RadianceField& field() const { return *field_; }
+  const BrightZones& bright() const { return bright_; }
   /// Has what a hit of this zone reads brought into the cache.
   void fetch(ZoneId zone, std::size_t part) const {
     __builtin_prefetch(&reach_[zone.index()]);
@@ -77,11 +81,27 @@ class HemisphereGather {
   /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
   /// on a mirror or glass, sends back along it to sum[b], of luminaires over mirrors, glass and gloss alone
   /// to caustic[b], which may be the same. `weight` is used up. `from_air`: of a ray from a point where no
-  /// photons are asked for.
+  /// photons are asked for. `aims`: points that it goes on from because they
+  /// are near aim a ray at bright zones, too.
   void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool from_air, float* weight,
-                     float* sum, float* caustic) const;
+                     float* sum, float* caustic, bool aims) const;
+
+  /// From where rays are aimed at bright zones.
+  struct AimingPoint {
+    Vec3f origin, normal;
+    float view;    ///< BrightZones::View::total.
+    float others;  ///< Cosine-distributed rays for each aimed one.
+  };
+  /// What a ray of either kind from x that met a bright zone counts for, by the balance heuristic [VG95], as
+  /// a share of all the weight that the others have together.
+  float share_of_kind(const AimingPoint& x, const Vec3f& along, ZoneId met, const Hit& hit) const;
 
  private:
+  /// Adds what a ray aimed from y brings at this bounce; returns BrightZones::View::total from there, 0 if
+  /// none can be. `chance`: of coming here.
+  float add_aimed(const SurfacePoint& y, int bounce, const PathKey& key, const BrdfValue& brdf, float chance,
+                  const float* weight, float* sum) const;
+
   /// A look at photons costs as much as several rays and has less noise: one of eight that might takes it.
   static constexpr float kPhotonLooks = 0.125F;
 
@@ -99,6 +119,7 @@ class HemisphereGather {
   const RadianceField* field_;
   const DirectLight* direct_;
   CausticMap caustics_;
+  BrightZones bright_;
   std::vector<float> white_;  // by band: 1
   std::vector<float> reach_;  // by zone: hits nearer than this are continued
   int most_bounces_;
@@ -111,7 +132,10 @@ class HemisphereGather {
 /// weight = 1/n over n cosine-distributed rays, pi times the sum is the irradiance.
 class GatherBatch {
  public:
-  explicit GatherBatch(const HemisphereGather& gather);
+  /// `rays_of_place`: from each place so many rays by `add` and, where there are bright zones, one by `aim`,
+  /// all of the same weight; 0: none is aimed, and any number may leave a place.
+  explicit GatherBatch(const HemisphereGather& gather, int rays_of_place = 0);
+  bool aims() const { return aims_; }
 
   /// Queues a ray from x in direction (u0,u1) of the cosine-weighted hemisphere. `weight` has one value per
   /// band and is copied; `sum` must live until flush(), and `caustic`, which gets what comes from luminaires
@@ -122,32 +146,54 @@ class GatherBatch {
   /// what rays find there, which do not find lights without area.
   void add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
            float* caustic = nullptr);
+  /// Queues the ray from x, a SurfacePoint or a MeasuringPoint, to a bright zone, for three uniform numbers.
+  /// Pre: aims().
+  template <class Place>
+  void aim(const Place& x, const std::array<float, 3>& u, PathKey key, const float* weight, float* sum,
+           float* caustic = nullptr);
   /// Traces what is queued. Call it before the sums are read.
   void flush();
 
  private:
   static constexpr int kWidth = 16;
 
-  /// Finds how rays leave x, unless the last one left it as well.
-  void leave_from(const SurfacePoint& x);
-  void queue(float u0, float u1, const PathKey& key, bool from_air, const float* weight, float* sum,
-             float* caustic);
+  /// Of a lane.
+  struct Way {
+    bool second_look = false;
+    bool from_air = false;
+    PathKey key{};
+    float* sum = nullptr;
+    float* caustic = nullptr;
+    Vec3f normal{0, 0, 1};  // at the place
+    float view = 0;         // BrightZones::View::total from there
+    TriangleId target{};    // valid: of an aimed ray, which brings nothing if it meets anything else
+    float distance = 0;     // to the target
+  };
+
+  /// Finds how rays leave x, unless the last one left it as well. False where none does.
+  bool leave_from(const SurfacePoint& x);
+  bool leave_from(const MeasuringPoint& x);
+  void look_at_bright();
+  void queue(const Vec3f& direction, const Way& way, const float* weight);
+  /// What a ray that met this counts for, by the balance heuristic; 0 if it was aimed at something else.
+  float share_of_kind(int lane, const Way& way, ZoneId zone, const Hit16& hits) const;
   void trace();
   void keep_for_second_look(std::size_t lane, const Hit16& hits);
+  bool counts(const Way& way, ZoneId zone, TriangleId triangle, bool front) const;
 
   const HemisphereGather* gather_;
   std::size_t bands_;
+  bool aims_;
+  float rays_of_place_;
   int count_ = 0;
   SurfacePoint from_;  // that the last ray left
   Vec3f origin_{0, 0, 0};
   Vec3f above_{0, 0, 1};         // geometric normal there
   Frame frame_{Vec3f(0, 0, 1)};  // of directions there
+  Vec3f normal_{0, 0, 1};        // that cosines are to
+  BrightZones::View view_;
   Ray16 rays_{};
-  std::array<bool, kWidth> second_look_{};
-  std::array<bool, kWidth> from_air_{};
-  std::array<PathKey, kWidth> keys_{};
-  std::array<float*, kWidth> sums_{};
-  std::array<float*, kWidth> caustics_{};
+  std::array<Way, kWidth> ways_{};
   std::vector<float> weights_;
 };
 

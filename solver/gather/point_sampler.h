@@ -44,6 +44,11 @@ class PointSampler {
     const std::uint32_t i = position(sample, light_shuffle_, ray, rays);
     return {light_.sample(i, 0), light_.sample(i, 1), light_.sample(i, 2)};
   }
+  /// The ray of a sample that is aimed at a bright zone.
+  std::array<float, 3> bright(int sample) const {
+    const std::uint32_t i = position(sample, bright_shuffle_, 0, 1);
+    return {bright_.sample(i, 0), bright_.sample(i, 1), bright_.sample(i, 2)};
+  }
   /// Gather ray `ray` of `rays` of a sample.
   std::array<float, 2> hemisphere(int sample, int ray, int rays) const {
     const std::uint32_t i = position(sample, hemisphere_shuffle_, ray, rays);
@@ -52,13 +57,17 @@ class PointSampler {
 
  private:
   PointSampler(const CounterRng& rng, std::uint64_t index, std::uint32_t replicate, int log2_samples)
-      : PointSampler(rng.bits4(index, replicate, 0), rng.bits4(index, replicate, 1), log2_samples) {}
-  PointSampler(const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b, int log2_samples)
+      : PointSampler(rng.bits4(index, replicate, 0), rng.bits4(index, replicate, 1),
+                     rng.bits4(index, replicate, 2), log2_samples) {}
+  PointSampler(const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b,
+               const std::array<std::uint32_t, 4>& c, int log2_samples)
       : place_(join(a[0], a[1])),
         light_(join(a[2], a[3])),
         hemisphere_(join(b[0], b[1])),
+        bright_(join(c[0], c[1])),
         light_shuffle_(b[2]),
         hemisphere_shuffle_(b[3]),
+        bright_shuffle_(c[2]),
         free_bits_(32 - log2_samples) {}
 
   static std::uint64_t join(std::uint32_t high, std::uint32_t low) {
@@ -72,8 +81,8 @@ class PointSampler {
     return i * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(ray);
   }
 
-  SobolSequence place_, light_, hemisphere_;
-  std::uint32_t light_shuffle_, hemisphere_shuffle_;
+  SobolSequence place_, light_, hemisphere_, bright_;
+  std::uint32_t light_shuffle_, hemisphere_shuffle_, bright_shuffle_;
   int free_bits_;
   std::uint32_t first_ = 0;
 };

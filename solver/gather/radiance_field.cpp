@@ -40,11 +40,15 @@ float RadianceField::mean_reflected(ZoneId zone, std::size_t band) const {
   return static_cast<float>(sum / static_cast<double>(parts_));
 }
 
-bool RadianceField::has_light_that_rays_miss() const {
-  constexpr double kMostMissed = 0.005;
+double RadianceField::share_that_rays_miss() const {
   const Scene& scene = room_->scene();
   const bool has_small_lights = !scene.lights.empty() || (scene.sky && scene.sky->sun_shines());
-  return has_small_lights && caustic_share() >= kMostMissed;
+  return has_small_lights ? caustic_share() : 0;
+}
+
+bool RadianceField::has_light_that_rays_miss() const {
+  constexpr double kMostMissed = 0.005;
+  return share_that_rays_miss() >= kMostMissed;
 }
 
 double RadianceField::caustic_share() const {

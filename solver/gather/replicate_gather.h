@@ -41,8 +41,9 @@ struct ReplicateEffort {
 /// uniform numbers. Adds
 /// the mean direct irradiance [W/m2] to direct[b] and the mean reflected radiance over cosine-distributed
 /// rays [W/(m2 sr)] to indirect[b] (pi times it is the indirect irradiance; complete after batch.flush()), of
-/// it that of luminaires over mirrors, glass and gloss to caustic[b] unless that is null.
-/// The sampler must have been made for first + points samples.
+/// it that of luminaires over mirrors, glass and gloss to caustic[b] unless that is null. Each place has a
+/// ray to bright zones of its own where the batch aims. The sampler must have been made for first + points
+/// samples.
 template <class Place>
 void add_replicate(const DirectLight& light, const PointSampler& sampler, const ReplicateEffort& effort,
                    PathKey key, Place&& place, GatherBatch& batch, float* direct, float* indirect,
@@ -54,6 +55,10 @@ void add_replicate(const DirectLight& light, const PointSampler& sampler, const 
   for (int i = effort.first; i < effort.first + effort.points; ++i) {
     const auto x = place(sampler.place(i));
     light.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), direct);
+    if (batch.aims()) {
+      key.path = first_path + static_cast<std::uint32_t>(i);
+      batch.aim(x, sampler.bright(i), key, ray_weight.data(), indirect, caustic);
+    }
     for (int j = 0; j < effort.gathers; ++j) {
       const std::array<float, 2> u = sampler.hemisphere(i, j, effort.gathers);
       key.path = first_path + static_cast<std::uint32_t>(i * effort.gathers + j);

@@ -177,7 +177,7 @@ class Gatherer {
     const std::size_t stride = 2 * bands_;
     std::vector<float> found((last - first) * kReplicates * stride, 0.0F);
     std::vector<float> caustic(bands_, 0.0F);
-    GatherBatch batch(gather_);
+    GatherBatch batch(gather_, kGathersPerPoint);
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i)
       for (std::size_t r = 0; r < kReplicates; ++r, next += stride) {

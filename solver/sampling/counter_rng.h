@@ -38,6 +38,7 @@ enum class RngPurpose : std::uint32_t {
   kPixelGroup,
   kVertexGroup,
   kMeasuringPoint,
+  kAimGain,
 };
 
 /// Four 32-bit numbers of each of 16 packets: word[k][lane].

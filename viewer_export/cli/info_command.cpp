@@ -68,10 +68,10 @@ ExitCode show_solution(const InfoOptions& options) {
     nlohmann::ordered_json json = solution_json(solution, file, room.status);
     add_light(json, solution, room.luminaires, room.outside);
     print_json(json);
-    return ExitCode::kDone;
+  } else {
+    print_result(solution_text(solution, file, room.status) + '\n' +
+                 light_text(solution, room.luminaires, room.outside));
   }
-  print_result(solution_text(solution, file, room.status) + '\n' +
-               light_text(solution, room.luminaires, room.outside));
   std::fflush(stdout);
   if (options.style.quiet) return ExitCode::kDone;
   print_warnings(solution.mesh_report.warnings);
@@ -93,12 +93,12 @@ ExitCode show_room(const InfoOptions& options) {
   } else {
     print_result(room_text(scene, meshed));
     if (reports) print_result('\n' + inspection_text(scene, meshed, options.report));
-    std::fflush(stdout);
-    if (options.style.quiet) return ExitCode::kDone;
-    print_warnings(scene.warnings);
-    print_warnings(meshed.report.warnings);
-    print_warnings(light_warnings);
   }
+  std::fflush(stdout);
+  if (options.style.quiet) return ExitCode::kDone;
+  print_warnings(scene.warnings);
+  print_warnings(meshed.report.warnings);
+  print_warnings(light_warnings);
   return ExitCode::kDone;
 }
 

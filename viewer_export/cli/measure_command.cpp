@@ -1,9 +1,12 @@
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -44,11 +47,21 @@ struct MeasureOptions {
   OutputStyle style;
 };
 
+/// NxM. Throws std::invalid_argument.
+std::array<int, 2> parse_fields(const std::string& text) {
+  try {
+    const PixelSize fields = parse_size(text);
+    return {fields.width, fields.height};
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument(fmt::format("'{}' is not two numbers of fields NxM, as in 8x10", text));
+  }
+}
+
 /// Throws std::invalid_argument.
 PointGrid grid_of(const GridWords& words) {
   const auto& [corner, along, across, fields] = words;
-  const PixelSize size = parse_size(fields);
-  return {parse_point(corner), parse_point(along), parse_point(across), size.width, size.height};
+  const auto [fields_along, fields_across] = parse_fields(fields);
+  return {parse_point(corner), parse_point(along), parse_point(across), fields_along, fields_across};
 }
 
 /// The grids, then the files, each in the order they were given.
@@ -64,7 +77,12 @@ std::vector<PointSet> point_sets(const MeasureOptions& options, const Vec3& up) 
                        "  --grid 0.5,0.85,0.5 4,0,0 0,0,5 8x10");
     }
   }
-  for (const std::filesystem::path& file : options.points) sets.push_back(read_points(file));
+  for (const std::filesystem::path& file : options.points) {
+    PointSet set = read_points(file);
+    const auto has_name = [&](const PointSet& other) { return other.name == set.name; };
+    if (std::any_of(sets.begin(), sets.end(), has_name)) set.name = file.string();
+    sets.push_back(std::move(set));
+  }
   return sets;
 }
 
@@ -95,12 +113,19 @@ std::string dark_points(const MeasuredLight& light) {
       dark, first->x(), first->y(), first->z());
 }
 
+/// What makes the values themselves too small.
+std::vector<std::string> warnings_of(const MeasuredLight& light) {
+  if (light.missed_over_mirrors == 0) return {};
+  return {fmt::format(
+      "{} of the light on the surfaces of this room comes over mirrors, gloss or glass, and what of it comes "
+      "straight from there to the points is not in their values, unless a luminous surface sent it: that of "
+      "points, spots, measured luminaires and the sun is missing. Surfaces (info) and vertices (export) have "
+      "it, a clear sheet in the place of the points as well (docs/export_formats.md)",
+      percent_text(light.missed_over_mirrors))};
+}
+
 void print_notes(const MeasuredLight& light, double error_target) {
   if (const std::string dark = dark_points(light); !dark.empty()) print_note(dark);
-  if (light.misses_light_over_mirrors)
-    print_note(
-        "light of points, spots and the sun that comes straight from mirrors and glass is not in these "
-        "values; vertices (export) and surfaces (info) have it");
   if (light.limited_by_zones) print_note(kZonesTooNoisy);
   if (const std::string missed = missed_by_zones("the points", error_target, light.info.zones);
       !missed.empty())
@@ -109,13 +134,13 @@ void print_notes(const MeasuredLight& light, double error_target) {
 
 std::string text_of(const MeasuredLight& light) {
   TextTable table;
-  table.row({"points", "number", "mean E [lx]", "+-", "least", "most", "least/mean"});
+  table.row({"points", "number", "mean E [lx]", "+-", "least", "most", "least/mean", "noise"});
   for (std::size_t s = 0; s < light.sets.size(); ++s) {
     const SetSummary& of_set = light.summaries[s];
     const auto [mean, error] = estimate_texts(of_set.mean, of_set.standard_error);
     table.row({light.sets[s].name, std::to_string(light.sets[s].size()), mean, error,
                number_text(of_set.least), number_text(of_set.most),
-               fmt::format("{:.3f}", of_set.uniformity())});
+               fmt::format("{:.3f}", of_set.uniformity()), percent_text(of_set.error)});
   }
   return table.text();
 }
@@ -130,10 +155,13 @@ nlohmann::ordered_json json_of(const MeasuredLight& light) {
                     {"stderr_of_mean", of_set.standard_error},
                     {"least_illuminance", of_set.least},
                     {"most_illuminance", of_set.most},
-                    {"uniformity", of_set.uniformity()}});
+                    {"uniformity", of_set.uniformity()},
+                    {"error", of_set.error}});
   }
   nlohmann::ordered_json json{{"sets", sets}, {"error", known_error(light.info)}};
   add_zones(json, light.info.zones);
+  json["missed_over_mirrors"] = light.missed_over_mirrors;
+  json["warnings"] = warnings_of(light);
   return json;
 }
 
@@ -157,7 +185,10 @@ ExitCode run_measure(const MeasureOptions& options) {
       interrupt.requested());
   progress.finish();
   if (options.output) write_output([&] { write_points_csv(light, *options.output); });
-  if (!options.style.quiet) print_notes(light, options.settings.error_target);
+  if (!options.style.quiet) {
+    print_warnings(warnings_of(light));
+    print_notes(light, options.settings.error_target);
+  }
   const double seconds = seconds_since(start);
   if (options.style.json) {
     nlohmann::ordered_json json = json_of(light);
@@ -166,9 +197,10 @@ ExitCode run_measure(const MeasureOptions& options) {
     print_json(json);
   } else {
     print_result(text_of(light));
-    print_result(fmt::format("{}noise {}, zones {}, {:.2f} s\n",
-                             options.output ? options.output->string() + ": " : "",
-                             percent_text(known_error(light.info)), zones_text(light.info.zones), seconds));
+    print_result(fmt::format(
+        "{}noise {}, zones {}{}, {:.2f} s\n", options.output ? options.output->string() + ": " : "",
+        percent_text(known_error(light.info)), zones_text(light.info.zones),
+        light.missed_over_mirrors > 0 ? ", light straight from mirrors missing" : "", seconds));
   }
   return ExitCode::kDone;
 }

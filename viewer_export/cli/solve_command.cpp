@@ -121,6 +121,7 @@ Start new_run(const SolveOptions& options) {
   if (!options.style.quiet) print_warnings(meshed.report.warnings);
 
   SolverSettings settings = options.solver;
+  if (matrix) settings.reemission = Reemission::kFromZones;  // what the linear system is of
   if (!matrix && !has_stopping_rule(settings)) {
     settings.error_target = kDefaultErrorTarget;
     if (!options.style.quiet)

@@ -87,8 +87,9 @@ class Measurer {
     return ReplicateEffort::of(settings_.gather_rays, settings_.light_samples, static_cast<int>(kReplicates));
   }
   int most_places() const;
+  double error_of(std::size_t first, std::size_t last) const;
   void gather(std::size_t first, std::size_t last, int first_place, int places);
-  double error() const;
+  double worst_error(const std::vector<PointSet>& sets) const;
 
   const Room& room_;
   const MeasureSettings& settings_;
@@ -111,7 +112,7 @@ int Measurer::most_places() const {
 void Measurer::gather(std::size_t first, std::size_t last, int first_place, int places) {
   const std::size_t values = 2 * bands_;
   std::vector<float> found((last - first) * kReplicates * values, 0.0F);
-  GatherBatch batch(gather_);
+  GatherBatch batch(gather_, effort().gathers);
   const ReplicateEffort of_replicate{places, effort().gathers, first_place};
   const int log2_places = std::countr_zero(static_cast<unsigned>(most_places()));
   float* next = found.data();
@@ -154,27 +155,37 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
       if (progress)
         progress(has_target ? share_done : static_cast<double>(chunks_done) / static_cast<double>(chunks));
     });
-    if (stop_.requested()) throw Interrupted("measuring was interrupted; nothing was written");
+    if (stop_.requested()) throw Interrupted("measuring was interrupted");
     done += more;
     if (!has_target) return;
-    const double excess = std::pow(error() / RefinedPart::aim(settings_.error_target), 2);
+    const double excess = std::pow(worst_error(sets) / RefinedPart::aim(settings_.error_target), 2);
     share_done = std::min(1.0, 1 / excess);
     all.look(excess, excess, true);
   }
   limited_by_zones_ = all.is_stalled();
 }
 
-double Measurer::error() const {
+double Measurer::error_of(std::size_t first, std::size_t last) const {
   double worst = 0;
   for (std::size_t b = 0; b < bands_; ++b) {
     double errors = 0;
     double values = 0;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
+    for (std::size_t i = first; i < last; ++i) {
       const ReplicateMean light = mean([&](std::size_t r) { return irradiance(i, r, b); });
       errors += light.squared_error;
       values += light.mean * light.mean;
     }
     if (values > 0) worst = std::max(worst, std::sqrt(errors / values));
+  }
+  return worst;
+}
+
+double Measurer::worst_error(const std::vector<PointSet>& sets) const {
+  double worst = 0;
+  std::size_t first = 0;
+  for (const PointSet& set : sets) {
+    worst = std::max(worst, error_of(first, first + set.size()));
+    first += set.size();
   }
   return worst;
 }
@@ -204,7 +215,7 @@ SetSummary Measurer::summary(std::size_t first, std::size_t last,
       std::minmax_element(illuminance.begin() + static_cast<std::ptrdiff_t>(first),
                           illuminance.begin() + static_cast<std::ptrdiff_t>(last),
                           [](const Irradiance& a, const Irradiance& b) { return a.all < b.all; });
-  return {mean_of_set, std::sqrt(squared_error), least->all, most->all};
+  return {mean_of_set, std::sqrt(squared_error), least->all, most->all, error_of(first, last)};
 }
 
 MeasuredLight Measurer::result(std::vector<PointSet> sets) const {
@@ -225,10 +236,10 @@ MeasuredLight Measurer::result(std::vector<PointSet> sets) const {
     light.summaries.push_back(summary(first, first + set.size(), light.illuminance));
     first += set.size();
   }
+  light.info.error = worst_error(sets);
   light.sets = std::move(sets);
   light.limited_by_zones = limited_by_zones_;
-  light.misses_light_over_mirrors = field_.has_light_that_rays_miss();
-  light.info.error = error();
+  if (field_.has_light_that_rays_miss()) light.missed_over_mirrors = field_.share_that_rays_miss();
   return light;
 }
 
@@ -236,7 +247,10 @@ void describe(const Scene& scene, const Solution& solution, const MeasureSetting
               MeasuredLight& light) {
   ExportInfo& info = light.info;
   state_origin(scene, solution, info);
-  if (!light.misses_light_over_mirrors) info.zones = solution.record.gather_bias;
+  if (light.missed_over_mirrors == 0)
+    info.zones = solution.record.gather_bias;
+  else
+    info.settings.emplace_back("missing in part: share over mirrors and glass", light.missed_over_mirrors);
   if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
   if (settings.error_target == 0) {
     info.settings.emplace_back("gather rays", static_cast<std::uint64_t>(settings.gather_rays));

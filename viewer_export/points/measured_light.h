@@ -15,8 +15,8 @@ namespace reemit {
 struct MeasureSettings {
   int gather_rays = 4096;    ///< Per point, rounded up [1, 1048576].
   int light_samples = 1024;  ///< Shadow rays per point, rounded up [1, 65536].
-  /// Relative error to reach as a fraction [0, 1): sqrt(sum s^2 / sum E^2) over all points, worst band, with
-  /// s the standard error of irradiance E. 0 = take the samples above; else only their ratio counts.
+  /// Relative error to reach as a fraction [0, 1), SetSummary::error of each set, with s the standard error
+  /// of irradiance E. 0 = take the samples above; else only their ratio counts.
   double error_target = 0;
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = all cores. The values do not depend on it.
@@ -34,6 +34,7 @@ struct SetSummary {
   double mean = 0;
   double standard_error = 0;  ///< Of the mean; knows what errors of points have in common.
   double least = 0, most = 0;
+  double error = 0;  ///< Relative, rms over its points: sqrt(sum s^2 / sum E^2), worst band.
   double uniformity() const { return mean > 0 ? least / mean : 0; }  ///< Least over mean.
 };
 
@@ -44,11 +45,13 @@ struct MeasuredLight {
   /// Under a sky: its illuminance on a horizontal plane outside, without the sun [lx]; else 0.
   double outside = 0;
   std::vector<PointSet> sets;
-  std::vector<SetSummary> summaries;       ///< By set.
-  std::vector<Irradiance> irradiance;      ///< [W/m2]; index point * bands + band.
-  std::vector<Irradiance> illuminance;     ///< [lx], by point; the error is that of the sum over bands.
-  bool limited_by_zones = false;           ///< An error target was missed because of the noise of the zones.
-  bool misses_light_over_mirrors = false;  ///< See measure_light.
+  std::vector<SetSummary> summaries;    ///< By set.
+  std::vector<Irradiance> irradiance;   ///< [W/m2]; index point * bands + band.
+  std::vector<Irradiance> illuminance;  ///< [lx], by point; the error is that of the sum over bands.
+  bool limited_by_zones = false;        ///< An error target was missed because of the noise of the zones.
+  /// Of the light on all surfaces of the room, the share that comes over mirrors and glass and of which
+  /// points miss what comes to them straight from there (measure_light); 0 where it is less than 0.5 %.
+  double missed_over_mirrors = 0;
 };
 
 /// Gets the finished share of the work [0,1], from one thread at a time.
@@ -57,7 +60,7 @@ using MeasureProgress = std::function<void(double)>;
 /// Irradiance at points that are no part of the room, by direct light and final gather there as at vertices
 /// (gather_vertices), but for photons, which only surfaces have: what comes to a point straight from mirrors
 /// and glass is found where rays meet the luminaire behind them, so that of lights without area is missed
-/// (misses_light_over_mirrors), as is nearly always that of the sun. `progress` may be empty. Throws
+/// (missed_over_mirrors), as is nearly always that of the sun. `progress` may be empty. Throws
 /// InputError for settings out of range or no points at all and for a room that is not the one solved,
 /// ResourceError for more points than memory holds, Interrupted when `interrupt` becomes true.
 MeasuredLight measure_light(const Room& room, const Solution& solution, std::vector<PointSet> sets,

@@ -103,7 +103,7 @@ void TileRenderer::render(std::span<const std::uint32_t> pixels, const SampleBlo
   std::vector<float> weight(bands);
   std::vector<PixelBlock> found;
   found.reserve(pixels.size() * static_cast<std::size_t>(block.replicates));
-  GatherBatch batch(light_.gather());
+  GatherBatch batch(light_.gather(), settings_->gathers);
   float* next = values.data();
   for (const std::uint32_t pixel : pixels) {
     const std::uint32_t column = pixel % width;
@@ -133,7 +133,7 @@ void TileRenderer::fill_with_zones(const Tile& tile, int width, Film& film) cons
   const std::size_t bands = field_.band_count();
   std::vector<float> values(layers() * bands);
   std::vector<float> weight(bands);
-  GatherBatch batch(light_.gather());
+  GatherBatch batch(light_.gather(), settings_->gathers);
   const auto pixel_at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(film.image().width) +
            static_cast<std::size_t>(x);
@@ -368,16 +368,26 @@ void TileRenderer::add_scattered(const SurfacePoint& x, const float* share, std:
   // Scattered radiance is share/pi times pi times the mean radiance over cosine-distributed rays.
   const bool path = settings_->integrator == Integrator::kPath;
   const int gathers = path ? 1 : settings_->gathers;
+  const auto weigh_ray = [&] {
+    for (std::size_t b = 0; b < bands; ++b)
+      weight[b] = share[b] * sums.share / static_cast<float>(gathers) * through[b];
+  };
+  weigh_ray();
+  if (!path && batch.aims()) {
+    const auto number = static_cast<std::uint32_t>(sample - sums.found.earlier);
+    batch.aim(x, sums.sampler.bright(sample), {index, sums.batch, number, sums.part}, weight.data(),
+              sums.indirect, sums.caustic);
+  }
   for (int i = 0; i < gathers; ++i) {
     const std::array<float, 2> u = sums.sampler.hemisphere(sample, i, gathers);
     const auto ray = static_cast<std::uint32_t>((sample - sums.found.earlier) * gathers + i);
     const PathKey key{index, sums.batch, ray, sums.part};
-    for (std::size_t b = 0; b < bands; ++b)
-      weight[b] = share[b] * sums.share / static_cast<float>(gathers) * through[b];
-    if (path)
+    if (path) {
+      weigh_ray();  // it is used up
       light_.path().add_indirect(x, u[0], u[1], key, weight.data(), sums.indirect, sums.caustic);
-    else
+    } else {
       batch.add(x, u[0], u[1], key, weight.data(), sums.indirect, sums.caustic);
+    }
   }
 }
 

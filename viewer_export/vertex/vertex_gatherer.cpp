@@ -59,7 +59,7 @@ PointSampler VertexGatherer::sampler_of(std::size_t v, int replicate) const {
 bool VertexGatherer::gather(std::size_t first, std::size_t last, const PointBlock& block, float* means,
                             VertexData& data) const {
   std::vector<float> found((last - first) * values_per_vertex(), 0.0F);
-  GatherBatch batch(gather_);
+  GatherBatch batch(gather_, gathers_per_point_);
   const ReplicateEffort effort{block.count, gathers_per_point_, block.first};
   float* next = found.data();
   for (std::size_t v = first; v < last; ++v)

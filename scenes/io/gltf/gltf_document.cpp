@@ -15,7 +15,17 @@ namespace {
 
 constexpr const char* kAdvice = "Check the file with the Khronos glTF validator, or export it anew.";
 
-enum class Kind { kIndex, kIndices, kNumber, kNumbers, kText, kFlag, kComponentType, kElementType };
+enum class Kind {
+  kIndex,
+  kIndices,
+  kNumber,
+  kNumbers,
+  kText,
+  kFlag,
+  kComponentType,
+  kElementType,
+  kAlphaMode
+};
 
 /// What stands at `path`, keys apart by '/', in each entry of a list; rules of one list stand together.
 struct Rule {
@@ -23,6 +33,7 @@ struct Rule {
   const char* path;
   Kind kind;
   bool required = false;
+  std::size_t count = 0;  ///< Of kNumbers.
 };
 
 constexpr Rule kRules[] = {
@@ -45,15 +56,19 @@ constexpr Rule kRules[] = {
     {"nodes", "mesh", Kind::kIndex},
     {"nodes", "camera", Kind::kIndex},
     {"nodes", "children", Kind::kIndices},
-    {"nodes", "translation", Kind::kNumbers},
-    {"nodes", "rotation", Kind::kNumbers},
-    {"nodes", "scale", Kind::kNumbers},
-    {"nodes", "matrix", Kind::kNumbers},
+    {"nodes", "translation", Kind::kNumbers, false, 3},
+    {"nodes", "rotation", Kind::kNumbers, false, 4},
+    {"nodes", "scale", Kind::kNumbers, false, 3},
+    {"nodes", "matrix", Kind::kNumbers, false, 16},
     {"nodes", "extensions/KHR_lights_punctual/light", Kind::kIndex},
     {"scenes", "nodes", Kind::kIndices},
-    {"materials", "emissiveFactor", Kind::kNumbers},
+    {"materials", "emissiveFactor", Kind::kNumbers, false, 3},
     {"materials", "doubleSided", Kind::kFlag},
-    {"materials", "pbrMetallicRoughness/baseColorFactor", Kind::kNumbers},
+    {"materials", "alphaMode", Kind::kAlphaMode},
+    {"materials", "alphaCutoff", Kind::kNumber},
+    {"materials", "extensions/KHR_materials_emissive_strength/emissiveStrength", Kind::kNumber},
+    {"materials", "extensions/KHR_materials_ior/ior", Kind::kNumber},
+    {"materials", "pbrMetallicRoughness/baseColorFactor", Kind::kNumbers, false, 4},
     {"materials", "pbrMetallicRoughness/metallicFactor", Kind::kNumber},
     {"materials", "pbrMetallicRoughness/roughnessFactor", Kind::kNumber},
     {"materials", "pbrMetallicRoughness/baseColorTexture/index", Kind::kIndex},
@@ -75,7 +90,7 @@ constexpr Rule kPrimitiveRules[] = {
 constexpr Rule kLightRules[] = {
     {"lights", "type", Kind::kText, true},
     {"lights", "intensity", Kind::kNumber},
-    {"lights", "color", Kind::kNumbers},
+    {"lights", "color", Kind::kNumbers, false, 3},
     {"lights", "spot/innerConeAngle", Kind::kNumber},
     {"lights", "spot/outerConeAngle", Kind::kNumber},
 };
@@ -87,11 +102,11 @@ void check_index(const JsonCursor& at, bool required = false) {
   if (value != std::floor(value)) at.fail(fmt::format("{} is not a whole number", value), kAdvice);
 }
 
-void check_value(const JsonCursor& at, Kind kind, bool required) {
+void check_value(const JsonCursor& at, const Rule& rule) {
   constexpr int kFirstType = 5120, kLastType = 5126;  // BYTE ... FLOAT
-  switch (kind) {
+  switch (rule.kind) {
     case Kind::kIndex:
-      return check_index(at, required);
+      return check_index(at, rule.required);
     case Kind::kIndices:
       for (std::size_t i = 0; i < at.size(); ++i) check_index(at[i]);
       return;
@@ -99,7 +114,8 @@ void check_value(const JsonCursor& at, Kind kind, bool required) {
       at.number();
       return;
     case Kind::kNumbers:
-      at.numbers();
+      if (const std::size_t count = at.numbers().size(); count != rule.count)
+        at.fail(fmt::format("there are {} numbers in place of {}", count, rule.count), kAdvice);
       return;
     case Kind::kText:
       at.string();
@@ -109,6 +125,9 @@ void check_value(const JsonCursor& at, Kind kind, bool required) {
       return;
     case Kind::kElementType:
       at.choice({"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"});
+      return;
+    case Kind::kAlphaMode:
+      at.choice({"OPAQUE", "MASK", "BLEND"});
       return;
     case Kind::kComponentType:
       at.number_in(kFirstType, kLastType);
@@ -125,7 +144,7 @@ void check_path(const JsonCursor& entry, const Rule& rule) {
     if (!next) return;
     at = *next;
   }
-  check_value(at, rule.kind, rule.required);
+  check_value(at, rule);
 }
 
 void check_entries(const JsonCursor& list, std::span<const Rule> rules) {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <filesystem>
 #include <limits>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -83,6 +86,52 @@ bool empty_fallback_buffers(nlohmann::json& document) {
   return changed;
 }
 
+/// A URI as the name of a file, without its escapes.
+std::string unescaped(std::string_view uri) {
+  std::string name;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned char byte = 0;
+    const char* digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+      name += static_cast<char>(byte);
+      i += 2;
+    } else {
+      name += uri[i];
+    }
+  }
+  return name;
+}
+
+/// Bytes of a data URI in base 64; 0 if it is none.
+std::uintmax_t size_of_data(std::string_view uri) {
+  constexpr std::string_view kMark = ";base64,";
+  const std::size_t mark = uri.find(kMark);
+  if (!uri.starts_with("data:") || mark == std::string_view::npos) return 0;
+  uri.remove_prefix(mark + kMark.size());
+  while (uri.ends_with('=')) uri.remove_suffix(1);
+  return uri.size() * 3 / 4;
+}
+
+/// Files and data URIs may be longer than their buffers say; the parser wants them to be the same.
+bool lengthen_buffers(nlohmann::json& document, const std::filesystem::path& folder) {
+  bool changed = false;
+  if (nlohmann::json::array_t* buffers = find_list(document, "buffers"))
+    for (nlohmann::json& buffer : *buffers) {
+      const nlohmann::json* uri = find_path(buffer, {"uri"});
+      const nlohmann::json* length = find_path(buffer, {"byteLength"});
+      if (!uri || !uri->is_string() || !length || !length->is_number_unsigned()) continue;
+      const auto& text = uri->get_ref<const std::string&>();
+      std::uintmax_t bytes = size_of_data(text);
+      std::error_code error;
+      if (!text.starts_with("data:")) bytes = std::filesystem::file_size(folder / unescaped(text), error);
+      if (error || bytes <= length->get<std::uintmax_t>() || bytes > kLargestGltf) continue;
+      buffer["byteLength"] = bytes;
+      changed = true;
+    }
+  return changed;
+}
+
 bool rename_image_types(nlohmann::json& document) {
   constexpr std::array<std::string_view, 3> kTypes{"data:image/webp;", "data:image/avif;",
                                                    "data:image/ktx2;"};
@@ -137,11 +186,13 @@ void check_gltf_extensions(const nlohmann::json& document, const std::string& fi
   }
 }
 
-std::optional<nlohmann::json> simplified_for_parser(const nlohmann::json& document) {
+std::optional<nlohmann::json> simplified_for_parser(const nlohmann::json& document,
+                                                    const std::filesystem::path& folder) {
   nlohmann::json simplified = document;
   const bool emptied = empty_fallback_buffers(simplified);
+  const bool lengthened = lengthen_buffers(simplified, folder);
   const bool renamed = rename_image_types(simplified);
-  if (!take_out_draco_indices(simplified) && !emptied && !renamed) return std::nullopt;
+  if (!take_out_draco_indices(simplified) && !emptied && !lengthened && !renamed) return std::nullopt;
   return simplified;
 }
 

@@ -22,7 +22,6 @@ namespace reemit {
 
 namespace {
 
-constexpr std::uintmax_t kLargestGltf = std::uintmax_t{2} << 30;  // The parser counts bytes with 32 bits.
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
@@ -150,7 +149,7 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
   JsonCursor(document, loaded.file).expect_object();
   check_gltf_extensions(document, loaded.file);
   check_gltf_document(document, loaded.file);
-  if (const auto simplified = simplified_for_parser(document))
+  if (const auto simplified = simplified_for_parser(document, file.parent_path()))
     bytes = binary ? with_json(bytes, simplified->dump()) : simplified->dump();
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keep_encoded, nullptr);

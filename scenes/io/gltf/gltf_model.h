@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@ namespace reemit {
 
 /// What to do about compressed geometry that cannot be decoded.
 inline constexpr const char* kDamagedAdvice = "The file is damaged; export it anew.";
+
+inline constexpr std::uintmax_t kLargestGltf = std::uintmax_t{2}
+                                               << 30;  ///< The parser counts bytes in 32 bits.
 
 /// A parsed glTF file whose images are still encoded: tinygltf::Image::image holds the bytes of the image
 /// file, or nothing where they lie in a buffer view or could not be found.

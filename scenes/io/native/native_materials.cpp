@@ -255,10 +255,10 @@ void NativeMaterials::share_total_powers(Scene& scene) const {
     }
     if (material.emits_both_sides) area *= 2;
     if (!(area > 0)) {
-      total.at.fail(
-          fmt::format("no surface of the room has the material \"{}\", so its power has nowhere to go",
-                      material.name),
-          "Use the material, or remove its emission.");
+      scene.warnings.push_back(fmt::format(
+          "{}: no surface of the room has the material '{}', so it sends out nothing of its power",
+          total.at.where(), material.name));
+      continue;
     }
     material.emitted_radiance = radiance_of_exitance(total.power / area, material);
     material.area_of_total_power = area;

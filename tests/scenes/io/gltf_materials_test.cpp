@@ -157,6 +157,17 @@ TEST(GltfMaterials, RefusesWrongValues) {
       {"#/materials/0/extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor: "});
 }
 
+// The parser takes its defaults for what it cannot read, for a whole block of values where one is wrong.
+TEST(GltfMaterials, RefusesValuesOfTheWrongKind) {
+  expect_gltf_refused(
+      with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.4, 0.2}}}}}),
+      {"#/materials/0/pbrMetallicRoughness/baseColorFactor: there are 3 numbers in place of 4"});
+  expect_gltf_refused(with_material({{"alphaCutoff", "0.2"}}), {"#/materials/0/alphaCutoff: "});
+  expect_gltf_refused(with_material({{"alphaMode", "mask"}}), {"#/materials/0/alphaMode: ", "MASK"});
+  expect_gltf_refused(with_material({{"extensions", {{"KHR_materials_emissive_strength", 1000}}}}),
+                      {"#/materials/0/extensions/KHR_materials_emissive_strength: "});
+}
+
 /// A PNG of one black and three white texels.
 std::string checker_png(const test::TempFolder& folder) {
   const std::vector<unsigned char> texels{0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 128, 0};

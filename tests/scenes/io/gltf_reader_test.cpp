@@ -56,6 +56,27 @@ TEST(GltfReader, GlbAndExternalBufferReadAlike) {
                      {"#/buffers/0/uri", "gone.bin", "Put it beside the room"});
 }
 
+TEST(GltfReader, BuffersMayHaveMoreBytesThanTheySay) {
+  const TempFolder folder;
+  GltfBuilder gltf;
+  gltf.square();
+  const Scene exact = read_gltf_scene(folder.write("room.glb", gltf.glb()), {});
+  folder.write("geo metry.bin", gltf.buffer() + std::string(8, '\0'));
+  gltf.json["buffers"] = {{{"byteLength", gltf.buffer().size()}, {"uri", "geo%20metry.bin"}}};
+  EXPECT_EQ(read_gltf_scene(folder.write("room.gltf", gltf.json.dump()), {}).surfaces.at(0).positions,
+            exact.surfaces.at(0).positions);
+  GltfBuilder embedded;
+  embedded.square();
+  json document = json::parse(embedded.text());
+  document["buffers"][0]["byteLength"] = embedded.buffer().size() - 1;
+  for (json& view : document["bufferViews"])  // the last byte is nobody's
+    if (view["byteOffset"].get<std::size_t>() + view["byteLength"].get<std::size_t>() ==
+        embedded.buffer().size())
+      view["byteLength"] = view["byteLength"].get<std::size_t>() - 1;
+  expect_input_error([&] { read_gltf_scene(folder.write("room.gltf", document.dump()), {}); },
+                     {"#/meshes/0"});
+}
+
 TEST(GltfReader, IndexTypesAndNoIndices) {
   for (int type = 0; type < 4; ++type) {
     GltfBuilder gltf;

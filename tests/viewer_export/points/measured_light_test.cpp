@@ -156,6 +156,49 @@ TEST(MeasuredLight, ComesToTheErrorAskedFor) {
   EXPECT_FALSE(light.limited_by_zones);
 }
 
+// A bright set does not decide for a dark one: the one that is known worst does.
+TEST(MeasuredLight, ComesToTheErrorAskedForInEachSet) {
+  RoomBuilder room = black_room();
+  const MaterialId black(0);
+  room.quad(black, {Vec3(0, 2.2, 0.4), Vec3(4, 2.2, 0.4), Vec3(4, 3, 0.4), Vec3(0, 3, 0.4)}, 1);
+  const Solution solution = test::dark_solution(room);
+  const Room walls(room.scene(), solution.mesh);
+  const PointSet shaded =
+      grid_points("shaded", {Vec3(0.5, 2.3, 0.1), Vec3(3, 0, 0), Vec3(0, 0.6, 0), 8, 4}, Vec3(0, 0, 1));
+  MeasureSettings settings;
+  settings.error_target = 0.02;
+  const MeasuredLight light =
+      measure_light(walls, solution, {plane_of_black_room(), shaded}, settings, {}, kNever);
+  ASSERT_EQ(light.summaries.size(), 2U);
+  EXPECT_LT(light.summaries[1].mean, 0.2 * light.summaries[0].mean);
+  EXPECT_GT(light.summaries[1].mean, 0);
+  EXPECT_LT(light.summaries[1].error, 0.02);
+  EXPECT_LT(2 * light.summaries[0].error, light.summaries[1].error);
+  EXPECT_EQ(light.info.error, light.summaries[1].error);
+}
+
+/// A spot that lights the floor over a mirror on the ceiling.
+TEST(MeasuredLight, SaysHowMuchOfTheLightComesOverMirrors) {
+  RoomBuilder room;
+  const MaterialId grey = room.material("grey", 0.2);
+  const MaterialId mirror = room.material("mirror", 0);
+  room.scene().materials[mirror.index()].non_diffuse.specular_reflectance = room.flat(0.9);
+  room.box(Vec3::Zero(), Vec3(2, 2, 2), {grey, grey, grey, grey, grey, mirror}, 2);
+  SpotLight spot{"spot", {1, 1, 1}, Vec3(0, 0, 1), room.flat(10), 0.2, 0.3};
+  room.scene().lights.emplace_back(spot);
+  SolverSettings settings;
+  settings.packets = 100'000;
+  const Solution over_mirror = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  const PointSet plane =
+      grid_points("plane", {Vec3(0.8, 0.8, 0.5), Vec3(0.4, 0, 0), Vec3(0, 0.4, 0), 2, 2}, Vec3(0, 0, 1));
+  // Nine tenths of what the floor reflects, and more than half of the whole room's.
+  EXPECT_GT(measure(room, over_mirror, plane).missed_over_mirrors, 0.5);
+  spot.direction = -Vec3::UnitZ();
+  room.scene().lights = {spot};
+  const Solution straight = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+  EXPECT_LT(measure(room, straight, plane).missed_over_mirrors, 0.1);
+}
+
 TEST(MeasuredLight, SameBitsOnAnyNumberOfThreads) {
   const VariableFurnace furnace(4);
   const Solution solution = solved_furnace(furnace);
