@@ -1,7 +1,6 @@
 #include "solver/gather/aim_gain.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -24,7 +23,6 @@ constexpr double kLeastRadiance = 0.1;
 constexpr double kRestOfSample = 2.5;
 constexpr double kAim = 0.5;
 constexpr double kContinued = 3;
-constexpr float kLeastCosine = 1e-6F;
 
 /// Mean of what a ray brings and of its square.
 struct Moments {
@@ -96,12 +94,12 @@ Found Pilot::look(ZoneId zone, const SurfacePoint& x, std::uint64_t index) const
       found.continued += continued / kRays;
       return;
     }
-    const float cosine = -side_normal(rays, hit.triangle, hit.u, hit.v, hit.front).dot(direction);
-    const double pdf = static_cast<double>(x.normal.dot(direction)) / std::numbers::pi;
-    const double pdf_aimed = static_cast<double>(
-        bright.pdf_per_sr(origin, x.normal, view.total, met, std::max(cosine, kLeastCosine), hit.distance));
-    const double share = pdf / (kGathers * pdf + pdf_aimed);
-    const double by_chance = pdf / (pdf + pdf_aimed);
+    const auto share_of_others = [&](float count) {
+      return static_cast<double>(
+          gather_.share_of_kind({origin, x.normal, view.total, count}, direction, met, hit));
+    };
+    const double share = share_of_others(static_cast<float>(kGathers)) / kGathers;
+    const double by_chance = share_of_others(1);
     unaimed.add(value, by_chance);
     others.add(share * value, by_chance);
     aimed.add(share * value, 1 - by_chance);
