@@ -81,8 +81,8 @@ class HemisphereGather {
   /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
   /// on a mirror or glass, sends back along it to sum[b], of luminaires over mirrors, glass and gloss alone
   /// to caustic[b], which may be the same. `weight` is used up. `from_air`: of a ray from a point where no
-  /// photons are asked for. `aims`: points that it goes on from because they
-  /// are near aim a ray at bright zones, too.
+  /// photons are asked for. `aims`: points that it goes on from because they are near aim a ray at bright
+  /// zones, too.
   void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool from_air, float* weight,
                      float* sum, float* caustic, bool aims) const;
 

@@ -106,8 +106,9 @@ std::optional<ZoneBias> estimate_zone_bias(const RadianceField& field, const Sol
   if (probes.size() < ZoneBiasEffort::kPoints) return std::nullopt;
   const Room& room = field.room();
   const DirectLight direct(room);
-  const HemisphereGather gather(field, direct, GatherSettings{.seed = seed, .plan = &solution.gather_plan},
-                                &stop);
+  const HemisphereGather gather(
+      field, direct, GatherSettings{.aim_at_bright = false, .seed = seed, .plan = &solution.gather_plan},
+      &stop);
   if (stop.requested()) return std::nullopt;
   const PathTracer path(room, direct, seed);
 

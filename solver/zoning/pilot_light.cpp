@@ -102,7 +102,9 @@ PilotLight::PilotLight(const Scene& scene, MeshResult mesh, const WorkWatch& wat
               watch.part(0, 0.5)),
       field_(room(), solve(solver_, watch.part(0.5, 1)), kPilotHalves),
       direct_(room()),
-      gather_(field_, direct_, GatherSettings{.close_hit = 0, .continue_uneven = false, .seed = kPilotSeed}) {
+      gather_(field_, direct_,
+              GatherSettings{
+                  .close_hit = 0, .continue_uneven = false, .aim_at_bright = false, .seed = kPilotSeed}) {
   const std::vector<double> means = mean_radiances(field_);
   mean_ = std::accumulate(means.begin(), means.end(), 0.0);
   for (const double m : means)
