@@ -90,7 +90,7 @@ def printed_values(program: pathlib.Path, room: pathlib.Path) -> dict:
 
 def stored_values(reemit: pathlib.Path, room: pathlib.Path, solution: pathlib.Path) -> dict:
     run(reemit, "solve", room, "-o", solution, "--error", "5%", "--quiet")
-    info = json.loads(run(reemit, "info", solution, "--json"))
+    info = json.loads(run(reemit, "info", solution, "--json", "--quiet"))
     return {(surface["name"], surface["side"], band): value
             for surface in info["surfaces"] if surface["counts"]
             for band, value in zip(info["bands"], surface["irradiance_W_m2"])}
