@@ -12,7 +12,7 @@ namespace {
 /// A zone is bright from so many times the mean reflected radiance on.
 constexpr double kTimesMean = 2;
 /// Of the mean square of reflected radiance, the share that bright zones have at least.
-constexpr double kLeastShare = 0.8;
+constexpr double kLeastBrightShare = 0.8;
 /// Length of the mean of the normals of a clump from which on they count as one.
 constexpr float kLikeNormals = 0.7F;
 
@@ -52,7 +52,7 @@ void BrightZones::choose(const RadianceField& field) {
     zones_.push_back({zone, rays.normalised(mesh.zone_centroid(zone)),
                       mesh.side_normal(mesh.zone_side(zone)).cast<float>(), radiance * aimed_at});
   }
-  if (of_bright < kLeastShare * square) zones_.clear();
+  if (of_bright < kLeastBrightShare * square) zones_.clear();
 }
 
 /// Splits what is worst to take for one, until there are enough.

@@ -18,8 +18,8 @@ struct Point2 {
 /// A number of [0,1) that fell into the interval [low, low + width), stretched over it so that it can be used
 /// again ([SWZ96] Fig. 8).
 inline float stretched(float u, float low, float width) {
-  constexpr float kBelowOne = 0x1.fffffep-1F;
-  return std::clamp((u - low) / width, 0.0F, kBelowOne);
+  constexpr float kLargestBelowOne = 0x1.fffffep-1F;
+  return std::clamp((u - low) / width, 0.0F, kLargestBelowOne);
 }
 
 /// Uniform on the unit disk, concentric map: keeps strata compact [SC97].
