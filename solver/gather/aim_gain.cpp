@@ -13,8 +13,8 @@
 namespace reemit {
 namespace {
 
-constexpr std::size_t kPoints = 512;
-constexpr int kRays = 16;  // of each kind from a point
+constexpr std::size_t kPilotPoints = 512;
+constexpr int kRaysOfKind = 16;  // of each kind from a point
 constexpr double kGathers = 2;
 /// Of the mean radiance of the points, what counts as a point's own at least.
 constexpr double kLeastRadiance = 0.1;
@@ -29,8 +29,8 @@ struct Moments {
   double mean = 0;
   double square = 0;
   void add(double value, double weight) {
-    mean += weight * value / kRays;
-    square += weight * value * value / kRays;
+    mean += weight * value / kRaysOfKind;
+    square += weight * value * value / kRaysOfKind;
   }
   double variance() const { return std::max(0.0, square - mean * mean); }
 };
@@ -91,7 +91,7 @@ Found Pilot::look(ZoneId zone, const SurfacePoint& x, std::uint64_t index) const
     if (!bright.holds(met)) {
       unaimed.add(value, 1);
       others.add(value / kGathers, 1);
-      found.continued += continued / kRays;
+      found.continued += continued / kRaysOfKind;
       return;
     }
     const auto share_of_others = [&](float count) {
@@ -103,10 +103,10 @@ Found Pilot::look(ZoneId zone, const SurfacePoint& x, std::uint64_t index) const
     unaimed.add(value, by_chance);
     others.add(share * value, by_chance);
     aimed.add(share * value, 1 - by_chance);
-    found.continued += by_chance * continued / kRays;
-    found.aimed_continued += (1 - by_chance) * continued / kRays;
+    found.continued += by_chance * continued / kRaysOfKind;
+    found.aimed_continued += (1 - by_chance) * continued / kRaysOfKind;
   };
-  for (std::uint32_t i = 0; i < kRays; ++i) {
+  for (std::uint32_t i = 0; i < kRaysOfKind; ++i) {
     const std::array<float, 4> u = rng_.uniform4(index, i, 0);
     const std::array<float, 4> v = rng_.uniform4(index, i, 1);
     look_along(frame.to_world(sample_cosine_hemisphere(u[0], u[1])), false, {});
@@ -146,10 +146,10 @@ double aim_gain(const HemisphereGather& gather, const DirectLight& direct, std::
   }
   const Pilot pilot(gather, direct, seed);
   const CounterRng rng(seed, RngPurpose::kAimGain);
-  std::vector<Found> found(kPoints);
-  tbb::parallel_for(std::size_t{0}, kPoints, [&](std::size_t i) {
-    const std::array<float, 4> u = rng.uniform4(i, kRays, 0);
-    const double at = (static_cast<double>(i) + static_cast<double>(u[0])) / kPoints * area_to.back();
+  std::vector<Found> found(kPilotPoints);
+  tbb::parallel_for(std::size_t{0}, kPilotPoints, [&](std::size_t i) {
+    const std::array<float, 4> u = rng.uniform4(i, kRaysOfKind, 0);
+    const double at = (static_cast<double>(i) + static_cast<double>(u[0])) / kPilotPoints * area_to.back();
     const auto next = std::upper_bound(area_to.begin() + 1, area_to.end() - 1, at);
     const ZoneId zone(static_cast<std::size_t>(next - area_to.begin()) - 1);
     const SurfacePoint x = point_in_zone(room, zone, {u[1], u[2]});
@@ -157,7 +157,7 @@ double aim_gain(const HemisphereGather& gather, const DirectLight& direct, std::
     found[i] = pilot.look(zone, x, i);
   });
   double mean = 0;
-  for (const Found& f : found) mean += f.radiance / kPoints;
+  for (const Found& f : found) mean += f.radiance / kPilotPoints;
   double before = 0;
   double after = 0;
   double work = kRestOfSample + kGathers;
@@ -167,8 +167,8 @@ double aim_gain(const HemisphereGather& gather, const DirectLight& direct, std::
     if (!(radiance > 0)) continue;
     before += (f.direct + f.unaimed / kGathers) / (radiance * radiance);
     after += (f.direct + kGathers * f.others + f.aimed) / (radiance * radiance);
-    work += kContinued * kGathers * f.continued / kPoints;
-    more_work += kContinued * f.aimed_continued / kPoints;
+    work += kContinued * kGathers * f.continued / kPilotPoints;
+    more_work += kContinued * f.aimed_continued / kPilotPoints;
   }
   return after > 0 ? before * work / (after * (work + more_work)) : 1;
 }

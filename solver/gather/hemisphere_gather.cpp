@@ -18,7 +18,7 @@ constexpr int kSureBounces = 4;
 /// quarter more time (docs/gather.md).
 constexpr double kLeastGain = 2.2;
 /// Of rays that graze a bright zone.
-constexpr float kLeastCosine = 1e-6F;
+constexpr float kLeastFacing = 1e-6F;
 
 /// Whether an aimed ray met what it was aimed at.
 bool is_target(TriangleId target, float distance, TriangleId met, float length) {
@@ -159,7 +159,7 @@ float HemisphereGather::share_of_kind(const AimingPoint& x, const Vec3f& along, 
   if (!(cosine > 0)) return 0;
   const float facing = -along.dot(side_normal(room().rays(), hit.triangle, hit.u, hit.v, hit.front));
   const float aimed =
-      bright_.pdf_per_sr(x.origin, x.normal, x.view, met, std::max(facing, kLeastCosine), hit.distance);
+      bright_.pdf_per_sr(x.origin, x.normal, x.view, met, std::max(facing, kLeastFacing), hit.distance);
   const float others = x.others * cosine * std::numbers::inv_pi_v<float>;
   return others / (others + aimed);
 }
