@@ -13,7 +13,7 @@
 namespace reemit {
 namespace {
 
-constexpr std::size_t kPilotPoints = 512;
+constexpr std::size_t kPointsOfPilot = 512;
 constexpr int kRaysOfKind = 16;  // of each kind from a point
 constexpr double kGathers = 2;
 /// Of the mean radiance of the points, what counts as a point's own at least.
@@ -54,13 +54,6 @@ class Pilot {
   Found look(ZoneId zone, const SurfacePoint& x, std::uint64_t index) const;
 
  private:
-  double radiance(ZoneId zone) const {
-    double sum = 0;
-    for (std::size_t b = 0; b < gather_.band_count(); ++b)
-      sum += static_cast<double>(gather_.field().mean_reflected(zone, b));
-    return sum;
-  }
-
   const HemisphereGather& gather_;
   const DirectLight& direct_;
   CounterRng rng_;
@@ -81,12 +74,13 @@ Found Pilot::look(ZoneId zone, const SurfacePoint& x, std::uint64_t index) const
   std::vector<float> light(gather_.band_count());
   const std::vector<float> weight(light.size(), std::numbers::inv_pi_v<float>);
   // Rays of both kinds tell what either would find on bright zones [VG95].
-  const auto look_along = [&](const Vec3f& direction, bool is_aimed, TriangleId target) {
+  const auto look_along = [&](const Vec3f& direction, const BrightZones::Aim* aim) {
     Hit hit;
     if (!(x.normal.dot(direction) > 0) || !rays.closest(origin, direction, hit)) return;
     const ZoneId met = gather_.room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
-    if (!met.valid() || (is_aimed && (hit.triangle != target || !bright.holds(met)))) return;
-    const double value = radiance(met);
+    if (!met.valid() || (aim != nullptr && !(aim->is_met(hit.triangle, hit.distance) && bright.holds(met))))
+      return;
+    const auto value = static_cast<double>(bright.radiance(met));
     const double continued = gather_.continues(met, hit.distance) ? 1 : 0;
     if (!bright.holds(met)) {
       unaimed.add(value, 1);
@@ -109,16 +103,15 @@ Found Pilot::look(ZoneId zone, const SurfacePoint& x, std::uint64_t index) const
   for (std::uint32_t i = 0; i < kRaysOfKind; ++i) {
     const std::array<float, 4> u = rng_.uniform4(index, i, 0);
     const std::array<float, 4> v = rng_.uniform4(index, i, 1);
-    look_along(frame.to_world(sample_cosine_hemisphere(u[0], u[1])), false, {});
+    look_along(frame.to_world(sample_cosine_hemisphere(u[0], u[1])), nullptr);
     std::fill(light.begin(), light.end(), 0.0F);
     direct_.add_sample(x, {u[2], u[3], v[0]}, weight.data(), light.data());
     double sum = 0;
     for (const float l : light) sum += static_cast<double>(l);
     direct.add(sum, 1);
     if (!(view.total > 0)) continue;
-    const SurfacePoint target = bright.aim(view, {v[1], v[2], v[3]});
-    const Vec3f towards = rays.point(target.triangle, target.u, target.v) - origin;
-    look_along(towards.normalized(), true, target.triangle);
+    const BrightZones::Aim aim = bright.aim(origin, view, {v[1], v[2], v[3]});
+    if (aim.distance > 0) look_along(aim.direction, &aim);
   }
   const float* reflectance = gather_.room().zone_reflectance(zone);
   for (std::size_t b = 0; b < gather_.band_count(); ++b)
@@ -139,17 +132,15 @@ double aim_gain(const HemisphereGather& gather, const DirectLight& direct, std::
   // Evenly over the area that reflects light.
   std::vector<double> area_to(mesh.zone_count() + 1, 0.0);
   for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
-    bool is_lit = false;
-    for (std::size_t b = 0; b < room.band_count(); ++b)
-      is_lit = is_lit || gather.field().mean_reflected(ZoneId(z), b) > 0;
+    const bool is_lit = gather.bright().radiance(ZoneId(z)) > 0;
     area_to[z + 1] = area_to[z] + (is_lit ? mesh.zone_area(ZoneId(z)) : 0.0);
   }
   const Pilot pilot(gather, direct, seed);
   const CounterRng rng(seed, RngPurpose::kAimGain);
-  std::vector<Found> found(kPilotPoints);
-  tbb::parallel_for(std::size_t{0}, kPilotPoints, [&](std::size_t i) {
+  std::vector<Found> found(kPointsOfPilot);
+  tbb::parallel_for(std::size_t{0}, kPointsOfPilot, [&](std::size_t i) {
     const std::array<float, 4> u = rng.uniform4(i, kRaysOfKind, 0);
-    const double at = (static_cast<double>(i) + static_cast<double>(u[0])) / kPilotPoints * area_to.back();
+    const double at = (static_cast<double>(i) + static_cast<double>(u[0])) / kPointsOfPilot * area_to.back();
     const auto next = std::upper_bound(area_to.begin() + 1, area_to.end() - 1, at);
     const ZoneId zone(static_cast<std::size_t>(next - area_to.begin()) - 1);
     const SurfacePoint x = point_in_zone(room, zone, {u[1], u[2]});
@@ -157,7 +148,7 @@ double aim_gain(const HemisphereGather& gather, const DirectLight& direct, std::
     found[i] = pilot.look(zone, x, i);
   });
   double mean = 0;
-  for (const Found& f : found) mean += f.radiance / kPilotPoints;
+  for (const Found& f : found) mean += f.radiance / kPointsOfPilot;
   double before = 0;
   double after = 0;
   double work = kRestOfSample + kGathers;
@@ -167,8 +158,8 @@ double aim_gain(const HemisphereGather& gather, const DirectLight& direct, std::
     if (!(radiance > 0)) continue;
     before += (f.direct + f.unaimed / kGathers) / (radiance * radiance);
     after += (f.direct + kGathers * f.others + f.aimed) / (radiance * radiance);
-    work += kContinued * kGathers * f.continued / kPilotPoints;
-    more_work += kContinued * f.aimed_continued / kPilotPoints;
+    work += kContinued * kGathers * f.continued / kPointsOfPilot;
+    more_work += kContinued * f.aimed_continued / kPointsOfPilot;
   }
   return after > 0 ? before * work / (after * (work + more_work)) : 1;
 }

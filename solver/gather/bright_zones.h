@@ -6,7 +6,6 @@
 
 #include "scenes/model/vec.h"
 #include "solver/gather/radiance_field.h"
-#include "solver/trace/surface_point.h"
 
 namespace reemit {
 
@@ -27,21 +26,34 @@ class BrightZones {
     std::array<float, kMostClumps> weight;
     float total = 0;  ///< 0 where none of them can light it.
   };
+  /// Where a ray is aimed.
+  struct Aim {
+    Vec3f direction{0, 0, 1};  ///< Unit.
+    TriangleId triangle;       ///< That holds the point aimed at.
+    float distance = 0;        ///< To that point [normalised]; 0: none was found.
+    /// Whether a ray along it that ended so met what it was aimed at.
+    bool is_met(TriangleId t, float length) const {
+      constexpr float kSameDistance = 1e-3F;
+      return t == triangle && std::fabs(length - distance) <= kSameDistance * distance;
+    }
+  };
+
   BrightZones() = default;  ///< None.
-  /// Zones from which several times as much is reflected as from the mean of the room. None where these have
-  /// too little of the variance of a gather ray to be worth rays of their own. They are found by all parts of
-  /// the field; which they are has no say in what is gathered on average. The room must outlive it.
+  /// Zones from which more than twice as much is reflected as from the mean of the room. None where these
+  /// have too little of the variance of a gather ray to be worth rays of their own. They are found by all
+  /// parts of the field; which they are has no say in what is gathered on average. The room must outlive it.
   explicit BrightZones(const RadianceField& field);
 
   bool empty() const { return clumps_ == 0; }
-  std::size_t size() const { return zones_.size(); }  ///< Zones.
+  /// Reflected by any zone of the room, all bands together, the mean over all parts [W/(m2 sr)].
+  float radiance(ZoneId zone) const { return radiance_[zone.index()]; }
   /// Pre: not empty().
   bool holds(ZoneId zone) const { return clump_of_[zone.index()] != kNone; }
 
   /// From a point x (normalised) where light counts by the cosine to the unit normal n. Pre: not empty().
   void view(const Vec3f& x, const Vec3f& n, View& view) const;
-  /// A point of a bright zone for three uniform numbers. Pre: view.total > 0.
-  SurfacePoint aim(const View& view, const std::array<float, 3>& u) const;
+  /// From there at a point of a bright zone, for three uniform numbers. Pre: view.total > 0.
+  Aim aim(const Vec3f& x, const View& view, const std::array<float, 3>& u) const;
   /// Density with which aim() goes along a ray from x to a point of a bright zone [1/sr]. `total`: of the
   /// view from there. `cosine`: of the ray to the normal of the zone, above 0; `distance`: its length.
   float pdf_per_sr(const Vec3f& x, const Vec3f& n, float total, ZoneId zone, float cosine,
@@ -49,14 +61,6 @@ class BrightZones {
 
  private:
   static constexpr std::uint8_t kNone = 255;
-  struct Zone {
-    ZoneId zone;
-    Vec3f centre;
-    Vec3f normal;
-    double power;
-  };
-  void choose(const RadianceField& field);
-  void make_clumps();
   float weight(std::size_t clump, const Vec3f& x, const Vec3f& n) const {
     const float dx = x_[clump] - x.x();
     const float dy = y_[clump] - x.y();
@@ -73,7 +77,7 @@ class BrightZones {
   }
 
   const Room* room_ = nullptr;
-  std::vector<Zone> zones_;             // by clump
+  std::vector<ZoneId> zones_;           // by clump
   std::vector<std::uint8_t> clump_of_;  // by zone of the mesh
   std::vector<float> radiance_;         // by zone of the mesh
   std::size_t clumps_ = 0;

@@ -20,12 +20,6 @@ constexpr double kLeastGain = 2.2;
 /// Of rays that graze a bright zone.
 constexpr float kLeastFacing = 1e-6F;
 
-/// Whether an aimed ray met what it was aimed at.
-bool is_target(TriangleId target, float distance, TriangleId met, float length) {
-  constexpr float kSameDistance = 1e-3F;
-  return met == target && std::abs(length - distance) <= kSameDistance * distance;
-}
-
 /// By zone, the distance within which a hit is continued [normalised units].
 std::vector<float> reach_of_zones(const RadianceField& field, const DirectLight& direct,
                                   const GatherSettings& settings, const StopToken* stop) {
@@ -175,14 +169,11 @@ float HemisphereGather::add_aimed(const SurfacePoint& y, int bounce, const PathK
   if (!(view.total > 0)) return 0;
   const auto number = static_cast<std::uint32_t>(2 * bounce + 1);
   const std::array<float, 4> u = rng_.uniform4(key.index + PathKey::kOfAiming, key.batch, key.step(number));
-  const SurfacePoint target = bright_.aim(view, {u[0], u[1], u[2]});
-  const Vec3f to_target = rays.point(target.triangle, target.u, target.v) - origin;
-  const float distance = to_target.norm();
-  if (!(distance > 0)) return view.total;
-  const Vec3f along = to_target / distance;
+  const BrightZones::Aim aim = bright_.aim(origin, view, {u[0], u[1], u[2]});
+  const Vec3f& along = aim.direction;
   Hit hit;
-  if (!(along.dot(y.normal) > 0) || !rays.closest(origin, along, hit) ||
-      !is_target(target.triangle, distance, hit.triangle, hit.distance))
+  if (!(aim.distance > 0) || !(along.dot(y.normal) > 0) || !rays.closest(origin, along, hit) ||
+      !aim.is_met(hit.triangle, hit.distance))
     return view.total;
   const ZoneId met = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
   if (!met.valid() || !bright_.holds(met)) return view.total;
@@ -254,18 +245,15 @@ template <class Place>
 void GatherBatch::aim(const Place& x, const std::array<float, 3>& u, PathKey key, const float* weight,
                       float* sum, float* caustic) {
   if (!leave_from(x) || !(view_.total > 0)) return;
-  const SurfacePoint target = gather_->bright().aim(view_, u);
-  const Vec3f to_target = gather_->room().rays().point(target.triangle, target.u, target.v) - origin_;
-  const float distance = to_target.norm();
-  if (!(distance > 0)) return;
+  const BrightZones::Aim aim = gather_->bright().aim(origin_, view_, u);
+  if (!(aim.distance > 0)) return;
   key.index += PathKey::kOfAimed;
   const Way way{.from_air = std::is_same_v<Place, MeasuringPoint>,
                 .key = key,
                 .sum = sum,
                 .caustic = caustic == nullptr ? sum : caustic,
-                .target = target.triangle,
-                .distance = distance};
-  queue(to_target / distance, way, weight);
+                .aim = aim};
+  queue(aim.direction, way, weight);
 }
 template void GatherBatch::aim(const SurfacePoint&, const std::array<float, 3>&, PathKey, const float*,
                                float*, float*);
@@ -315,10 +303,9 @@ void GatherBatch::look_at_bright() {
 }
 
 float GatherBatch::share_of_kind(int lane, const Way& way, ZoneId zone, const Hit16& hits) const {
-  if (way.target.valid() &&
-      !is_target(way.target, way.distance, TriangleId(hits.triangle[lane]), hits.distance[lane]))
-    return 0;
-  if (!gather_->bright().holds(zone)) return way.target.valid() ? 0.0F : 1.0F;
+  const bool is_aimed = way.aim.distance > 0;
+  if (is_aimed && !way.aim.is_met(TriangleId(hits.triangle[lane]), hits.distance[lane])) return 0;
+  if (!gather_->bright().holds(zone)) return is_aimed ? 0.0F : 1.0F;
   const Hit hit{TriangleId(hits.triangle[lane]), hits.u[lane], hits.v[lane], hits.distance[lane],
                 hits.front[lane]};
   return gather_->share_of_kind({rays_.origin(lane), way.normal, way.view, rays_of_place_},

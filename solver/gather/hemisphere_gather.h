@@ -164,10 +164,9 @@ class GatherBatch {
     PathKey key{};
     float* sum = nullptr;
     float* caustic = nullptr;
-    Vec3f normal{0, 0, 1};  // at the place
-    float view = 0;         // BrightZones::View::total from there
-    TriangleId target{};    // valid: of an aimed ray, which brings nothing if it meets anything else
-    float distance = 0;     // to the target
+    Vec3f normal{0, 0, 1};   // at the place
+    float view = 0;          // BrightZones::View::total from there
+    BrightZones::Aim aim{};  // distance > 0: of an aimed ray, which brings nothing if it meets anything else
   };
 
   /// Finds how rays leave x, unless the last one left it as well. False where none does.

@@ -234,9 +234,9 @@ MeasuredLight Measurer::result(std::vector<PointSet> sets) const {
   std::size_t first = 0;
   for (const PointSet& set : sets) {
     light.summaries.push_back(summary(first, first + set.size(), light.illuminance));
+    light.info.error = std::max(light.info.error, light.summaries.back().error);
     first += set.size();
   }
-  light.info.error = worst_error(sets);
   light.sets = std::move(sets);
   light.limited_by_zones = limited_by_zones_;
   if (field_.has_light_that_rays_miss()) light.missed_over_mirrors = field_.share_that_rays_miss();

@@ -41,6 +41,7 @@ StillLight::StillLight(const Room& room, const Solution& solution, const StillSe
               // The other integrators gather nothing; without close hits there is nothing to prepare.
               GatherSettings{.close_hit = settings.integrator == Integrator::kGather ? settings.close_hit : 0,
                              .caustics = settings.integrator == Integrator::kGather,
+                             .aim_at_bright = settings.integrator == Integrator::kGather,
                              .seed = settings.seed,
                              .plan = &solution.gather_plan},
               &stop),

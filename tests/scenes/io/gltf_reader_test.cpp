@@ -67,6 +67,12 @@ TEST(GltfReader, BuffersMayHaveMoreBytesThanTheySay) {
             exact.surfaces.at(0).positions);
   GltfBuilder embedded;
   embedded.square();
+  json padded = json::parse(embedded.text());
+  auto& uri = padded["buffers"][0]["uri"].get_ref<std::string&>();
+  ASSERT_FALSE(uri.ends_with('='));
+  uri += "AAAA";
+  EXPECT_EQ(read_gltf_scene(folder.write("room.gltf", padded.dump()), {}).surfaces.at(0).positions,
+            exact.surfaces.at(0).positions);
   json document = json::parse(embedded.text());
   document["buffers"][0]["byteLength"] = embedded.buffer().size() - 1;
   for (json& view : document["bufferViews"])  // the last byte is nobody's

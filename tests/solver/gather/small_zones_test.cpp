@@ -275,34 +275,42 @@ test::RoomBuilder plate_and_bright_spot(bool mirrored) {
   return room;
 }
 
-/// The zones of the plate that the spot lights.
-std::vector<ZoneId> zones_over_the_spot(const Solution& packets) {
-  std::vector<ZoneId> zones;
-  for (std::size_t z = 0; z < packets.mesh.zone_count(); ++z) {
-    const Vec3 centre = packets.mesh.zone_centroid(ZoneId(z));
-    if (is_small(packets, z) && centre.z() > 0.2 && centre.x() < 0.25 &&
-        packets.irradiance(ZoneId(z), 0).mean > 0.03)
-      zones.emplace_back(z);
+/// That room, by packets and with small zones gathered.
+struct PlateSolved {
+  Solution gathered, packets;
+
+  explicit PlateSolved(bool mirrored) {
+    const test::RoomBuilder room = plate_and_bright_spot(mirrored);
+    SolverSettings settings;
+    settings.packets = 5'000'000;
+    gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
+    settings.gather_small_zones = false;
+    packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
   }
-  return zones;
-}
+
+  /// The two zones of the plate that the spot lights.
+  std::vector<ZoneId> over_the_spot() const {
+    std::vector<ZoneId> zones;
+    for (std::size_t z = 0; z < packets.mesh.zone_count(); ++z) {
+      const Vec3 centre = packets.mesh.zone_centroid(ZoneId(z));
+      if (is_small(packets, z) && centre.z() > 0.2 && centre.x() < 0.25 &&
+          packets.irradiance(ZoneId(z), 0).mean > 0.03)
+        zones.emplace_back(z);
+    }
+    EXPECT_EQ(zones.size(), 2U);
+    return zones;
+  }
+};
 
 // The pilot's rays miss the spot, and one of thousands that follow meets it: one half of the plate has far
 // too much light then, and the other none of it, with a standard error that knows nothing of it. Packets know
 // the light on each half to 5 %.
 TEST(SmallZones, keep_what_packets_brought_where_few_gather_rays_meet_a_bright_spot) {
-  const test::RoomBuilder room = plate_and_bright_spot(true);
-  SolverSettings settings;
-  settings.packets = 5'000'000;
-  const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  EXPECT_GT(gathered.record.gathered_zones, 2U);
-  settings.gather_small_zones = false;
-  const Solution packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  const std::vector<ZoneId> over_the_spot = zones_over_the_spot(packets);
-  EXPECT_EQ(over_the_spot.size(), 2U);
-  for (const ZoneId z : over_the_spot) {
-    const Estimate by_packets = packets.irradiance(z, 0);
-    const Estimate kept = gathered.irradiance(z, 0);
+  const PlateSolved solved(true);
+  EXPECT_GT(solved.gathered.record.gathered_zones, 2U);
+  for (const ZoneId z : solved.over_the_spot()) {
+    const Estimate by_packets = solved.packets.irradiance(z, 0);
+    const Estimate kept = solved.gathered.irradiance(z, 0);
     EXPECT_EQ(kept.mean, by_packets.mean);
     EXPECT_EQ(kept.stderr_of_mean, by_packets.stderr_of_mean);
     EXPECT_LT(kept.stderr_of_mean, 0.06 * kept.mean);
@@ -312,17 +320,10 @@ TEST(SmallZones, keep_what_packets_brought_where_few_gather_rays_meet_a_bright_s
 // Rays that are aimed at the spot find it. Against packets: 5 standard errors for two zones, odds of a false
 // alarm below 1 in 3,000 by Student's t with 15 degrees of freedom.
 TEST(SmallZones, are_gathered_where_rays_are_aimed_at_a_bright_spot) {
-  const test::RoomBuilder room = plate_and_bright_spot(false);
-  SolverSettings settings;
-  settings.packets = 5'000'000;
-  const Solution gathered = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  settings.gather_small_zones = false;
-  const Solution packets = solve_zones(room.scene(), room.mesh(), settings, {}, kNever);
-  const std::vector<ZoneId> over_the_spot = zones_over_the_spot(packets);
-  EXPECT_EQ(over_the_spot.size(), 2U);
-  for (const ZoneId z : over_the_spot) {
-    const Estimate by_packets = packets.irradiance(z, 0);
-    const Estimate found = gathered.irradiance(z, 0);
+  const PlateSolved solved(false);
+  for (const ZoneId z : solved.over_the_spot()) {
+    const Estimate by_packets = solved.packets.irradiance(z, 0);
+    const Estimate found = solved.gathered.irradiance(z, 0);
     EXPECT_LT(found.stderr_of_mean, 0.2 * by_packets.stderr_of_mean);
     EXPECT_LT(std::abs(found.mean - by_packets.mean),
               5 * std::hypot(by_packets.stderr_of_mean, found.stderr_of_mean));
