@@ -20,6 +20,7 @@
 #include "bench/vector_option.h"
 #include "scenes/io/scene_reader.h"
 #include "solver/gather/direct_light.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/point_sampler.h"

@@ -11,6 +11,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/replicate_gather.h"
 #include "viewer_export/vertex/vertex_radiance.h"
 

@@ -18,21 +18,19 @@ constexpr double kTypicalRays = 256;
 
 constexpr double kTypicalRadius = 0.3 * static_cast<double>(kLargestPhotonRadius);
 
-float kernel(float squared_distance, float radius) {
-  const float r2 = radius * radius;
-  return 2 / (std::numbers::pi_v<float> * r2) * (1 - squared_distance / r2);
-}
-
 }  // namespace
 
 CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, const CausticPackets* known,
-                       const StopToken* stop)
+                       const StopToken* stop, const PointsInAir& in_air)
     : room_(&room),
       ends_(FaceEnds(room.rays(), room.mesh().flat_count())),
       left_to_rays_(room.surfaces().surface_count(), 1.0F) {
   if (!room.surfaces().any_specular()) return;
   const CausticShooter shooter(room, seed);
-  CausticShots shots = shoot_caustics(shooter, known, stop);
+  std::optional<AirSheets> sheets;
+  if (!in_air.points.empty()) sheets.emplace(in_air.points, kPilotReach);
+  CausticShots shots =
+      sheets ? shoot_caustics(shooter, *sheets, in_air.rounds, stop) : shoot_caustics(shooter, known, stop);
   if (shots.packets == 0) return;
   const std::vector<float> density = shooter.density_of_surfaces(shots.packets);
   for (std::size_t s = 0; s < density.size(); ++s) {
@@ -41,12 +39,17 @@ CausticMap::CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, 
     left_to_rays_[s] = static_cast<float>(kTypicalRays / (kTypicalRays + photons));
   }
   parts_.resize(parts);
-  tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t p) {
-    std::vector<CausticPhotons> together;
-    for (std::size_t k = p; k < CausticShots::kParts; k += parts)
-      together.push_back(std::move(shots.parts[k]));
-    parts_[p] = of_part(mean_of(std::move(together)));
-  });
+  tbb::parallel_for(std::size_t{0}, parts,
+                    [&](std::size_t p) { parts_[p] = of_part(mean_of_parts(shots.parts, p, parts)); });
+  if (!sheets) return;
+  std::vector<CausticPhotons> of_air;
+  for (std::size_t p = 0; p < parts; ++p) of_air.push_back(mean_of_parts(shots.in_air, p, parts));
+  air_ = AirPhotons(room, in_air.points, *sheets, std::move(of_air));
+}
+
+void CausticMap::add_irradiance(const MeasuringPoint& x, std::size_t part, const float* weight,
+                                float* sum) const {
+  air_.add_irradiance(x, part, left_to_rays_, weight, sum);
 }
 
 CausticMap::Photons CausticMap::of_part(CausticPhotons photons) {
@@ -54,11 +57,7 @@ CausticMap::Photons CausticMap::of_part(CausticPhotons photons) {
   result.all = std::move(photons);
   result.spread = std::make_unique<std::atomic<Spread>[]>(result.all.size());
   for (const std::uint8_t code : result.all.radius_codes) result.radius.push_back(photon_radius(code));
-  std::array<std::vector<std::uint32_t>, kRadiusLevels> of_level;
-  for (std::uint32_t i = 0; i < result.radius.size(); ++i)
-    of_level[level_of_radius(result.radius[i])].push_back(i);
-  for (std::size_t level = 0; level < kRadiusLevels; ++level)
-    result.grids[level] = PhotonGrid(result.all.places, of_level[level], 2 * radius_of_level(level));
+  result.grids = grids_by_radius(result.all);
   return result;
 }
 
@@ -114,7 +113,7 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
   for (std::size_t level = 0; level < kRadiusLevels; ++level)
     photons.grids[level].visit(place, radius_of_level(level), [&](std::uint32_t i, float d2) {
       float radius = photons.radius[i];
-      if (d2 >= radius * radius || !photons.all.is_on_face(i, x.normal, place, radius)) return;
+      if (d2 >= radius * radius || !photons.all.is_on_face(i, {place, x.normal, x.triangle}, radius)) return;
       const Spread spread = spread_of(photons, i);
       radius = spread.radius_of(radius);
       if (d2 >= radius * radius) return;
@@ -125,7 +124,7 @@ void CausticMap::add_reflected(const SurfacePoint& at, std::size_t part, bool wh
       }
       if (found.empty()) found.assign(bands, 0.0F);
       const float share = whole ? 1 : 1 - left_to_rays(photons.all.luminaires[i]);
-      const float per_unit = share * kernel(d2, radius) * spread.gain;
+      const float per_unit = share * photon_kernel(d2, radius) * spread.gain;
       const float per_m2 = per_unit / (metres * metres);
       for (std::size_t b = 0; b < bands; ++b) found[b] += per_m2 * photons.all.power[i * bands + b];
       largest = std::max(largest, radius);

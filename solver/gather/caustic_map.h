@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scenes/model/stop_token.h"
+#include "solver/gather/air_photons.h"
 #include "solver/gather/caustic_photons.h"
 #include "solver/gather/face_ends.h"
 #include "solver/gather/photon_grid.h"
@@ -17,6 +19,13 @@
 #include "solver/trace/surface_point.h"
 
 namespace reemit {
+
+/// Points in the air that photons are looked out for at, in the order of their numbers.
+struct PointsInAir {
+  std::span<const MeasuringPoint> points = {};
+  /// By how many times as many packets as on surfaces, >= 1: values at single points are not smoothed.
+  int rounds = 1;
+};
 
 /// Light of luminaires that comes over mirrors, glass or narrow gloss to points of Lambertian surfaces, by
 /// the density of photons near the point [JEN96]: gather rays find a small bright lamp over such a way
@@ -35,8 +44,9 @@ class CausticMap {
   /// Shoots the photons: `parts` independent sets, a power of two up to CausticShots::kParts. `known` (may be
   /// null): which of these packets bring any, if found with this seed. The room must outlive it. When `stop`
   /// is requested it ends early and means little.
+  /// With `in_air`, add_irradiance may be asked about its points; all packets set out then.
   CausticMap(const Room& room, std::size_t parts, std::uint64_t seed, const CausticPackets* known,
-             const StopToken* stop);
+             const StopToken* stop, const PointsInAir& in_air = {});
   CausticMap() = default;  ///< Without photons.
 
   /// False if no luminaire lights anything over such a way.
@@ -51,6 +61,10 @@ class CausticMap {
   /// ends of the face.
   void add_reflected(const SurfacePoint& x, std::size_t part, bool whole, float turn, const BrdfValue& brdf,
                      const float* weight, float* sum) const;
+  /// Adds weight[b] times the irradiance [W/m2] at a point in the air of photons of a part to sum[b]: what
+  /// left_to_rays() does not leave. Always the same for a point and a part; nothing at points without a
+  /// number.
+  void add_irradiance(const MeasuringPoint& x, std::size_t part, const float* weight, float* sum) const;
 
  private:
   /// How a photon spreads its power on its face. Aligned to its size, as what is read and written at once
@@ -78,6 +92,7 @@ class CausticMap {
   std::optional<FaceEnds> ends_;
   std::vector<float> left_to_rays_;  // by surface
   std::vector<Photons> parts_;
+  AirPhotons air_;
 };
 
 /// Which part of the light that comes from luminaires over such ways to a point rays from there count.

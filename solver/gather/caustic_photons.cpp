@@ -5,10 +5,11 @@
 
 namespace reemit {
 
-bool CausticPhotons::is_on_face(std::uint32_t i, const Vec3f& normal, const Vec3f& place,
-                                float radius) const {
+bool CausticPhotons::is_on_face(std::uint32_t i, const Place& place, float radius) const {
+  if (in_air) return triangles[i] == place.triangle;
   constexpr float kFlat = 0.15F;
-  return normals[i].dot(normal) > kSameFace && std::fabs((places[i] - place).dot(normal)) < kFlat * radius;
+  return normals[i].dot(place.normal) > kSameFace &&
+         std::fabs((places[i] - place.at).dot(place.normal)) < kFlat * radius;
 }
 
 void CausticPhotons::append(const CausticPhotons& more) {
@@ -23,6 +24,7 @@ void CausticPhotons::append(const CausticPhotons& more) {
 CausticPhotons mean_of(std::vector<CausticPhotons> estimates) {
   if (estimates.size() == 1) return std::move(estimates.front());
   CausticPhotons mean;
+  if (!estimates.empty()) mean.in_air = estimates.front().in_air;
   for (const CausticPhotons& estimate : estimates) mean.append(estimate);
   for (float& watts : mean.power) watts /= static_cast<float>(estimates.size());
   return mean;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -84,7 +85,7 @@ std::vector<float> CausticShooter::density_of_surfaces(double packets) const {
 class CausticShooter::Task {
  public:
   Task(const CausticShooter& shooter, const Flight& flight, std::uint32_t batch, const Options& options,
-       const Marks* marked, CausticPhotons& result)
+       const Marks* marked, PhotonCatch& result)
       : shooter_(shooter),
         flight_(flight),
         batch_(batch),
@@ -146,11 +147,11 @@ class CausticShooter::Task {
       power_[band] +=
           static_cast<float>(shooter_.emission_.watts_per_quantum[c] * static_cast<double>(own[c]));
     });
-    const std::size_t before = result_.size();
-    shooter_.follow(waiting_rays_.origin(lane), waiting_rays_.direction(lane), id, batch_, luminaire, power_,
-                    result_);
+    const std::size_t before = result_.on_surfaces.size();
+    shooter_.follow({waiting_rays_.origin(lane), waiting_rays_.direction(lane), id, batch_, luminaire},
+                    power_, options_, result_);
     // A task has bytes of its own.
-    if (options_.brought != nullptr && result_.size() > before)
+    if (options_.brought != nullptr && result_.on_surfaces.size() > before)
       (*options_.brought)[id / 8] = static_cast<std::uint8_t>((*options_.brought)[id / 8] | 1U << (id % 8));
   }
 
@@ -160,7 +161,7 @@ class CausticShooter::Task {
   const Options& options_;
   const Marks* marked_;
   Channels channels_;
-  CausticPhotons& result_;
+  PhotonCatch& result_;
   Ray16 rays_{};
   std::vector<std::int64_t> quanta_;
   Ray16 waiting_rays_{};
@@ -170,9 +171,8 @@ class CausticShooter::Task {
   std::vector<float> power_;
 };
 
-CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
-                                     const Options& options) const {
-  CausticPhotons all;
+PhotonCatch CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch, const Options& options) const {
+  PhotonCatch all;
   if (emission_.sources.empty()) return all;
   const double offset = static_cast<double>(CounterRng(seed_, RngPurpose::kCaustic).uniform4(0, batch, 0)[0]);
   const Flight flight = plan_first_flight(emission_, packets, offset);
@@ -182,13 +182,16 @@ CausticPhotons CausticShooter::shoot(std::uint32_t packets, std::uint32_t batch,
   if (options.brought != nullptr) options.brought->assign(mark_bytes, 0);
   const FlightNumbers numbers(SamplingKind::kSobol, seed_ ^ 0x9e3779b97f4a7c15ULL, batch, 0);
   const std::uint32_t tasks = (flight.packets() + kCausticPacketsPerTask - 1) / kCausticPacketsPerTask;
-  std::vector<CausticPhotons> of_task(tasks);
+  std::vector<PhotonCatch> of_task(tasks);
   tbb::parallel_for(std::uint32_t{0}, tasks, [&](std::uint32_t task) {
     const std::uint32_t begin = task * kCausticPacketsPerTask;
     const std::uint32_t end = std::min(flight.packets(), begin + kCausticPacketsPerTask);
     Task(*this, flight, batch, options, marked, of_task[task]).run(numbers, begin, end);
   });
-  for (const CausticPhotons& photons : of_task) all.append(photons);
+  for (const PhotonCatch& photons : of_task) {
+    all.on_surfaces.append(photons.on_surfaces);
+    all.in_air.append(photons.in_air);
+  }
   return all;
 }
 
@@ -208,33 +211,44 @@ std::uint32_t CausticShooter::go_on(const Ray16& rays, int count, const std::uin
   return on;
 }
 
-void CausticShooter::follow(const Vec3f& origin, const Vec3f& direction, std::uint32_t id,
-                            std::uint32_t batch, SurfaceId luminaire, std::vector<float>& power,
-                            CausticPhotons& result) const {
+void CausticShooter::follow(const Packet& packet, std::vector<float>& power, const Options& options,
+                            PhotonCatch& result) const {
   const RayTracer& rays = transport_.rays();
   const SurfaceModel& surfaces = transport_.surface_model();
   const std::size_t bands = transport_.channels().bands();
   const CounterRng choice(seed_, RngPurpose::kCaustic);
   SpecularStep step(bands);
-  Vec3f from = origin;
-  Vec3f along = direction;
+  const auto keep = [&](CausticPhotons& photons, const Vec3f& place, const Vec3f& normal, TriangleId face) {
+    photons.places.push_back(place);
+    photons.normals.push_back(normal);
+    photons.triangles.push_back(face);
+    photons.luminaires.push_back(packet.luminaire);
+    photons.power.insert(photons.power.end(), power.begin(), power.end());
+  };
+  Vec3f from = packet.origin;
+  Vec3f along = packet.direction;
   TriangleId body;
   bool bent = false;
   for (std::uint32_t n = 0; n < kMostSteps; ++n) {
     Hit hit;
-    if (!rays.closest(from, along, hit)) return;
-    if (!transport_.mesh().has_zones(hit.triangle, hit.front)) return;
-    surfaces.attenuate(surfaces.body_around(hit.triangle, hit.front, body), hit.distance, power.data());
-    const SurfacePoint x = surface_point(rays, hit, along);
-    if (bent && takes_light(surfaces, hit)) {
-      result.places.push_back(from + hit.distance * along);
-      result.normals.push_back(x.normal);
-      result.triangles.push_back(hit.triangle);
-      result.luminaires.push_back(luminaire);
-      result.power.insert(result.power.end(), power.begin(), power.end());
+    const bool met = rays.closest(from, along, hit);
+    const TriangleId around = met ? surfaces.body_around(hit.triangle, hit.front, body) : TriangleId();
+    if (bent && options.sheets != nullptr) {
+      const float length = met ? hit.distance : std::numeric_limits<float>::infinity();
+      for (const AirSheets::Crossing& at : options.sheets->crossings(from, along, length, options.reach)) {
+        keep(result.in_air, from + at.distance * along, options.sheets->normal(at.sheet),
+             TriangleId(at.sheet));
+        surfaces.attenuate(around, at.distance,
+                           result.in_air.power.data() + result.in_air.power.size() - bands);
+      }
     }
+    if (!met || !transport_.mesh().has_zones(hit.triangle, hit.front)) return;
+    surfaces.attenuate(around, hit.distance, power.data());
+    const SurfacePoint x = surface_point(rays, hit, along);
+    if (bent && takes_light(surfaces, hit))
+      keep(result.on_surfaces, from + hit.distance * along, x.normal, hit.triangle);
     if (!is_mirror(surfaces, hit.triangle, hit.front)) return;
-    const std::array<float, 4> u = choice.uniform4(id, batch, n + 1);
+    const std::array<float, 4> u = choice.uniform4(packet.id, packet.batch, n + 1);
     if (!surfaces.specular(hit.triangle).choose(x, u[0], {u[1], u[2]}, Survival::kRoulette, step)) return;
     if (step.is_wide) return;
     for (std::size_t b = 0; b < bands; ++b) power[b] *= step.share()[b] / step.chance;

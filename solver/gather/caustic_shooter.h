@@ -7,6 +7,7 @@
 #include "solver/room/room.h"
 #include "solver/shoot/packet_room.h"
 #include "solver/shoot/packet_sources.h"
+#include "solver/trace/air_sheets.h"
 #include "solver/trace/face_sieve.h"
 
 namespace reemit {
@@ -28,12 +29,14 @@ class CausticShooter {
     /// Those alone set out; all that bring photons have to be among them. Marks of a batch of another size
     /// are not heeded.
     const Marks* marked = nullptr;
-    Marks* brought = nullptr;         ///< Receives which packets brought photons.
-    const StopToken* stop = nullptr;  ///< When requested it ends early, with less light than there is.
+    Marks* brought = nullptr;           ///< Receives which packets brought photons.
+    const StopToken* stop = nullptr;    ///< When requested it ends early, with less light than there is.
+    const AirSheets* sheets = nullptr;  ///< Which packets are caught on, too, while they fly on.
+    float reach = 0;                    ///< As AirSheets::crossings has it.
   };
   /// What a batch of about so many packets over all luminaires brings, an estimate of all such light by
   /// itself.
-  CausticPhotons shoot(std::uint32_t packets, std::uint32_t batch, const Options& options) const;
+  PhotonCatch shoot(std::uint32_t packets, std::uint32_t batch, const Options& options) const;
 
  private:
   class Task;
@@ -42,8 +45,14 @@ class CausticShooter {
   static std::vector<bool> mirrors_of(const Room& room);
   /// Bit k: ray k of these, of packets with these numbers, may go on from what it meets.
   std::uint32_t go_on(const Ray16& rays, int count, const std::uint32_t* id, std::uint32_t batch) const;
-  void follow(const Vec3f& origin, const Vec3f& direction, std::uint32_t id, std::uint32_t batch,
-              SurfaceId luminaire, std::vector<float>& power, CausticPhotons& result) const;
+  /// A packet that leaves a luminaire, whose power changes on the way.
+  struct Packet {
+    Vec3f origin, direction;
+    std::uint32_t id, batch;
+    SurfaceId luminaire;
+  };
+  void follow(const Packet& packet, std::vector<float>& power, const Options& options,
+              PhotonCatch& result) const;
 
   PacketRoom transport_;
   PacketSources emission_;

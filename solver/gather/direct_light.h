@@ -10,9 +10,9 @@
 #include "solver/emit/luminaire_choice.h"
 #include "solver/emit/luminaire_table.h"
 #include "solver/gather/caustic_map.h"
-#include "solver/gather/measuring_point.h"
 #include "solver/room/room.h"
 #include "solver/sampling/sobol.h"
+#include "solver/trace/measuring_point.h"
 #include "solver/trace/surface_point.h"
 
 namespace reemit {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
-#include <utility>
 
 #include "solver/gather/aim_gain.h"
 #include "solver/gather/uneven_zones.h"
@@ -17,6 +15,8 @@ constexpr int kSureBounces = 4;
 /// What aiming at bright zones has to be worth, as foreseen: at 1.8 stills took from a quarter less to a
 /// quarter more time (docs/gather.md).
 constexpr double kLeastGain = 2.2;
+/// PointsInAir::rounds where light of small lamps comes over mirrors and glass.
+constexpr int kRoundsInAir = 4;
 /// Of rays that graze a bright zone.
 constexpr float kLeastFacing = 1e-6F;
 
@@ -44,8 +44,13 @@ CausticMap caustic_map(const RadianceField& field, const GatherSettings& setting
   if (!settings.caustics) return {};
   const GatherPlan* plan = settings.plan;
   const bool is_known = plan != nullptr && plan->caustics;
-  return {field.room(), field.parts(), is_known ? plan->seed : settings.seed,
-          is_known ? &*plan->caustics : nullptr, stop};
+  const PointsInAir in_air{settings.in_air, field.has_light_that_rays_miss() ? kRoundsInAir : 1};
+  return {field.room(),
+          field.parts(),
+          is_known ? plan->seed : settings.seed,
+          is_known ? &*plan->caustics : nullptr,
+          stop,
+          in_air};
 }
 
 }  // namespace
@@ -64,15 +69,16 @@ HemisphereGather::HemisphereGather(const RadianceField& field, const DirectLight
   if (!bright_.empty() && aim_gain(*this, direct, settings.seed) < kLeastGain) bright_ = {};
 }
 
-void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool from_air,
-                                     float* weight, float* sum, float* caustic, bool aims) const {
+void HemisphereGather::add_continued(const Hit& y, const Vec3f& direction, const PathKey& key,
+                                     bool without_photons, float* weight, float* sum, float* caustic,
+                                     bool aims) const {
   const RayTracer& rays = room().rays();
   const SurfaceModel& surfaces = room().surfaces();
   const std::size_t bands = band_count();
   Hit hit = y;
   Vec3f along = direction;
   float way = 0;  // from the last surface that scattered the light
-  SpecularPath path(room(), specular_, key, {&caustics_, false, from_air});
+  SpecularPath path(room(), specular_, key, {&caustics_, false, without_photons});
   for (int bounce = 0;;) {
     const ZoneId zone = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
     if (!zone.valid()) return;
@@ -217,154 +223,6 @@ void HemisphereGather::add_photons_beyond(const SurfacePoint& y, int bounce, con
 
 std::array<float, 4> HemisphereGather::numbers(int bounce, const PathKey& key) const {
   return rng_.uniform4(key.index, key.batch, key.step(static_cast<std::uint32_t>(2 * bounce)));
-}
-
-GatherBatch::GatherBatch(const HemisphereGather& gather, int rays_of_place)
-    : gather_(&gather),
-      bands_(gather.band_count()),
-      aims_(rays_of_place > 0 && !gather.bright().empty()),
-      rays_of_place_(static_cast<float>(rays_of_place)),
-      weights_(static_cast<std::size_t>(kWidth) * bands_) {}
-
-void GatherBatch::add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight,
-                      float* sum, float* caustic) {
-  if (!leave_from(x)) return;
-  Way way{.key = key, .sum = sum, .caustic = caustic == nullptr ? sum : caustic};
-  gather_->add_photons(x, u0, u1, key, weight, way.caustic);
-  queue(frame_.to_world(sample_cosine_hemisphere(u0, u1)), way, weight);
-}
-
-void GatherBatch::add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight,
-                      float* sum, float* caustic) {
-  leave_from(x);
-  const Way way{.from_air = true, .key = key, .sum = sum, .caustic = caustic == nullptr ? sum : caustic};
-  queue(frame_.to_world(sample_cosine_hemisphere(u0, u1)), way, weight);
-}
-
-template <class Place>
-void GatherBatch::aim(const Place& x, const std::array<float, 3>& u, PathKey key, const float* weight,
-                      float* sum, float* caustic) {
-  if (!leave_from(x) || !(view_.total > 0)) return;
-  const BrightZones::Aim aim = gather_->bright().aim(origin_, view_, u);
-  if (!(aim.distance > 0)) return;
-  key.index += PathKey::kOfAimed;
-  const Way way{.from_air = std::is_same_v<Place, MeasuringPoint>,
-                .key = key,
-                .sum = sum,
-                .caustic = caustic == nullptr ? sum : caustic,
-                .aim = aim};
-  queue(aim.direction, way, weight);
-}
-template void GatherBatch::aim(const SurfacePoint&, const std::array<float, 3>&, PathKey, const float*,
-                               float*, float*);
-template void GatherBatch::aim(const MeasuringPoint&, const std::array<float, 3>&, PathKey, const float*,
-                               float*, float*);
-
-void GatherBatch::queue(const Vec3f& direction, const Way& way, const float* weight) {
-  // Below a shading normal's horizon there is only the surface itself.
-  if (!(direction.dot(above_) > 0)) return;
-  rays_.set(count_, origin_, direction);
-  const auto lane = static_cast<std::size_t>(count_);
-  ways_[lane] = way;
-  ways_[lane].normal = normal_;
-  ways_[lane].view = view_.total;
-  std::copy_n(weight, bands_, &weights_[lane * bands_]);
-  ++count_;
-  while (count_ == kWidth) trace();
-}
-
-bool GatherBatch::leave_from(const SurfacePoint& x) {
-  // Inside a body of glass most rays would go round for ever, and no one asks for light there.
-  if (!x.front && gather_->room().surfaces().specular(x.triangle).is_body()) return false;
-  if (x.triangle == from_.triangle && x.u == from_.u && x.v == from_.v && x.front == from_.front &&
-      x.normal == from_.normal)
-    return true;
-  const RayTracer& rays = gather_->room().rays();
-  from_ = x;
-  origin_ = ray_origin(rays, x);
-  above_ = side_normal(rays, x);
-  normal_ = x.normal;
-  frame_ = Frame(x.normal);
-  look_at_bright();
-  return true;
-}
-
-bool GatherBatch::leave_from(const MeasuringPoint& x) {
-  from_ = {};  // on no surface, so that no point is taken for it
-  origin_ = x.place;
-  above_ = normal_ = x.normal;
-  frame_ = Frame(x.normal);
-  look_at_bright();
-  return true;
-}
-
-void GatherBatch::look_at_bright() {
-  if (aims_) gather_->bright().view(origin_, normal_, view_);
-}
-
-float GatherBatch::share_of_kind(int lane, const Way& way, ZoneId zone, const Hit16& hits) const {
-  const bool is_aimed = way.aim.distance > 0;
-  if (is_aimed && !way.aim.is_met(TriangleId(hits.triangle[lane]), hits.distance[lane])) return 0;
-  if (!gather_->bright().holds(zone)) return is_aimed ? 0.0F : 1.0F;
-  const Hit hit{TriangleId(hits.triangle[lane]), hits.u[lane], hits.v[lane], hits.distance[lane],
-                hits.front[lane]};
-  return gather_->share_of_kind({rays_.origin(lane), way.normal, way.view, rays_of_place_},
-                                rays_.direction(lane), zone, hit);
-}
-
-void GatherBatch::flush() {
-  while (count_ > 0) trace();
-}
-
-// Puts a ray back into the queue, turned a little, where it costs no block of its own.
-void GatherBatch::keep_for_second_look(std::size_t lane, const Hit16& hits) {
-  const int ray = static_cast<int>(lane);
-  const RayTracer& rays = gather_->room().rays();
-  rays_.set(count_, rays_.origin(ray), rays.second_direction(rays_.direction(ray), hits, ray),
-            rays.cut_out_key(rays_, ray));
-  const auto to = static_cast<std::size_t>(count_++);
-  ways_[to] = ways_[lane];
-  ways_[to].second_look = true;
-  std::copy_n(&weights_[lane * bands_], bands_, &weights_[to * bands_]);
-}
-
-void GatherBatch::trace() {
-  const RadianceField& field = gather_->field();
-  const RayTracer& rays = gather_->room().rays();
-  const ZoneMesh& mesh = gather_->room().mesh();
-  const SurfaceModel& surfaces = gather_->room().surfaces();
-  Hit16 hits;
-  rays.closest16(rays_, count_, hits);
-  const auto count = static_cast<std::size_t>(std::exchange(count_, 0));
-  alignas(64) std::uint32_t zones[kWidth];
-  mesh.zones_at16(hits.points(), zones);
-  // What is read of a room of many zones is rarely in the cache: all of it is asked for before any is used.
-  for (std::size_t i = 0; i < count; ++i)
-    if (zones[i] != ZoneMesh::kNone) gather_->fetch(ZoneId(zones[i]), ways_[i].key.part);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t t = hits.triangle[i];
-    if (!ways_[i].second_look && rays.is_doubtful(t, hits.u[i], hits.v[i], hits.front[i])) {
-      keep_for_second_look(i, hits);
-      continue;
-    }
-    if (zones[i] == ZoneMesh::kNone) continue;
-    const Way& way = ways_[i];
-    const ZoneId zone(zones[i]);
-    float* weight = &weights_[i * bands_];
-    if (aims_) {
-      const float share = share_of_kind(static_cast<int>(i), way, zone, hits);
-      if (share == 0) continue;
-      for (std::size_t b = 0; b < bands_; ++b) weight[b] *= share;
-    }
-    if (gather_->continues(zone, hits.distance[i]) || surfaces.is_specular(TriangleId(t), hits.front[i])) {
-      const Hit hit{TriangleId(t), hits.u[i], hits.v[i], hits.distance[i], hits.front[i]};
-      gather_->add_continued(hit, rays_.direction(static_cast<int>(i)), way.key, way.from_air, weight,
-                             way.sum, way.caustic, true);
-      continue;
-    }
-    const float* radiance = field.reflected(zone, way.key.part);
-    for (std::size_t b = 0; b < bands_; ++b) way.sum[b] += weight[b] * radiance[b];
-  }
 }
 
 }  // namespace reemit

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "scenes/model/stop_token.h"
@@ -33,6 +34,9 @@ struct GatherSettings {
   bool continue_uneven = true;
   /// Shoot photons for light over mirrors and glass before the first ray (CausticMap); else rays find it.
   bool caustics = false;
+  /// Points in the air about which photons tell as well, in the order of their numbers; needed by the
+  /// constructor alone. At others rays find that light, but none of lights without area.
+  std::span<const MeasuringPoint> in_air = {};
   /// Look for zones that are worth rays of their own (GatherBatch::aims).
   bool aim_at_bright = true;
   std::uint64_t seed = 1;
@@ -80,11 +84,11 @@ class HemisphereGather {
 
   /// Adds weight[b] times the radiance that a hit y of a ray of this direction (unit), which is continued or
   /// on a mirror or glass, sends back along it to sum[b], of luminaires over mirrors, glass and gloss alone
-  /// to caustic[b], which may be the same. `weight` is used up. `from_air`: of a ray from a point where no
-  /// photons are asked for. `aims`: points that it goes on from because they are near aim a ray at bright
-  /// zones, too.
-  void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool from_air, float* weight,
-                     float* sum, float* caustic, bool aims) const;
+  /// to caustic[b], which may be the same. `weight` is used up. `without_photons`: of a ray from a point
+  /// where photons tell nothing, so that rays count all that they find over mirrors and glass. `aims`: points
+  /// that it goes on from because they are near aim a ray at bright zones, too.
+  void add_continued(const Hit& y, const Vec3f& direction, const PathKey& key, bool without_photons,
+                     float* weight, float* sum, float* caustic, bool aims) const;
 
   /// From where rays are aimed at bright zones.
   struct AimingPoint {
@@ -125,75 +129,6 @@ class HemisphereGather {
   int most_bounces_;
   CounterRng rng_;
   SpecularNumbers specular_;
-};
-
-/// Gather rays of any points in packets of 16. One per thread; the order of the calls decides the order of
-/// the sums, so results do not depend on threads. Every ray adds weight[b] * L_b to its sum; with
-/// weight = 1/n over n cosine-distributed rays, pi times the sum is the irradiance.
-class GatherBatch {
- public:
-  /// `rays_of_place`: from each place so many rays by `add` and, where there are bright zones, one by `aim`,
-  /// all of the same weight; 0: none is aimed, and any number may leave a place.
-  explicit GatherBatch(const HemisphereGather& gather, int rays_of_place = 0);
-  bool aims() const { return aims_; }
-
-  /// Queues a ray from x in direction (u0,u1) of the cosine-weighted hemisphere. `weight` has one value per
-  /// band and is copied; `sum` must live until flush(), and `caustic`, which gets what comes from luminaires
-  /// over mirrors, glass and gloss unless it is null.
-  void add(const SurfacePoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
-           float* caustic = nullptr);
-  /// The same from a point in the air, where photons tell nothing: light over mirrors, gloss and glass is
-  /// what rays find there, which do not find lights without area.
-  void add(const MeasuringPoint& x, float u0, float u1, const PathKey& key, const float* weight, float* sum,
-           float* caustic = nullptr);
-  /// Queues the ray from x, a SurfacePoint or a MeasuringPoint, to a bright zone, for three uniform numbers.
-  /// Pre: aims().
-  template <class Place>
-  void aim(const Place& x, const std::array<float, 3>& u, PathKey key, const float* weight, float* sum,
-           float* caustic = nullptr);
-  /// Traces what is queued. Call it before the sums are read.
-  void flush();
-
- private:
-  static constexpr int kWidth = 16;
-
-  /// Of a lane.
-  struct Way {
-    bool second_look = false;
-    bool from_air = false;
-    PathKey key{};
-    float* sum = nullptr;
-    float* caustic = nullptr;
-    Vec3f normal{0, 0, 1};   // at the place
-    float view = 0;          // BrightZones::View::total from there
-    BrightZones::Aim aim{};  // distance > 0: of an aimed ray, which brings nothing if it meets anything else
-  };
-
-  /// Finds how rays leave x, unless the last one left it as well. False where none does.
-  bool leave_from(const SurfacePoint& x);
-  bool leave_from(const MeasuringPoint& x);
-  void look_at_bright();
-  void queue(const Vec3f& direction, const Way& way, const float* weight);
-  /// What a ray that met this counts for, by the balance heuristic; 0 if it was aimed at something else.
-  float share_of_kind(int lane, const Way& way, ZoneId zone, const Hit16& hits) const;
-  void trace();
-  void keep_for_second_look(std::size_t lane, const Hit16& hits);
-  bool counts(const Way& way, ZoneId zone, TriangleId triangle, bool front) const;
-
-  const HemisphereGather* gather_;
-  std::size_t bands_;
-  bool aims_;
-  float rays_of_place_;
-  int count_ = 0;
-  SurfacePoint from_;  // that the last ray left
-  Vec3f origin_{0, 0, 0};
-  Vec3f above_{0, 0, 1};         // geometric normal there
-  Frame frame_{Vec3f(0, 0, 1)};  // of directions there
-  Vec3f normal_{0, 0, 1};        // that cosines are to
-  BrightZones::View view_;
-  Ray16 rays_{};
-  std::array<Way, kWidth> ways_{};
-  std::vector<float> weights_;
 };
 
 }  // namespace reemit

@@ -57,6 +57,16 @@ float photon_radius(std::uint8_t code) {
   return kLargestPhotonRadius * std::exp2(-static_cast<float>(code) / kCodesPerOctave);
 }
 
+std::array<PhotonGrid, kRadiusLevels> grids_by_radius(const CausticPhotons& photons) {
+  std::array<std::vector<std::uint32_t>, kRadiusLevels> of_level;
+  for (std::uint32_t i = 0; i < photons.size(); ++i)
+    of_level[level_of_radius(photon_radius(photons.radius_codes[i]))].push_back(i);
+  std::array<PhotonGrid, kRadiusLevels> grids;
+  for (std::size_t level = 0; level < kRadiusLevels; ++level)
+    grids[level] = PhotonGrid(photons.places, of_level[level], 2 * radius_of_level(level));
+  return grids;
+}
+
 std::size_t level_of_radius(float radius) {
   std::size_t level = 0;
   while (level + 1 < kRadiusLevels && radius_of_level(level + 1) >= radius) ++level;
@@ -79,15 +89,14 @@ class PhotonRadii::Neighbours {
       : radii_(radii), parts_(parts) {}
 
   std::uint8_t code_of(const Photon& photon) {
-    const Vec3f& normal = parts_[photon.part].normals[photon.number];
-    const Vec3f& place = parts_[photon.part].places[photon.number];
+    const CausticPhotons::Place place = parts_[photon.part].place(photon.number);
     const auto same = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
       const CausticPhotons& part = parts_[known.photon.part];
-      return (part.places[known.photon.number] - place).squaredNorm() < known.reach * known.reach &&
-             part.is_on_face(known.photon.number, normal, place, known.reach);
+      return (part.places[known.photon.number] - place.at).squaredNorm() < known.reach * known.reach &&
+             part.is_on_face(known.photon.number, place, known.reach);
     });
     if (same != known_.end()) return same->code;
-    const float radius = radii_.radius_at(normal, place, levels_);
+    const float radius = radii_.radius_at(place, levels_);
     known_.push_back({photon, kSameRadius * radius, code_of_radius(radius)});
     return known_.back().code;
   }
@@ -125,12 +134,12 @@ void PhotonRadii::set(std::span<CausticPhotons> parts, const StopToken* stop) co
   });
 }
 
-float PhotonRadii::radius_at(const Vec3f& normal, const Vec3f& place, std::size_t& levels) const {
+float PhotonRadii::radius_at(const CausticPhotons::Place& place, std::size_t& levels) const {
   const auto found_within = [&](std::size_t level) {
     const float radius = radius_of_level(level);
     float found = 0;
-    grids_[level].visit_some(place, radius, kMostOfCell, [&](std::uint32_t i, float d2, float scale) {
-      if (pilot_.is_on_face(i, normal, place, radius)) found += 2 * scale * (1 - d2 / (radius * radius));
+    grids_[level].visit_some(place.at, radius, kMostOfCell, [&](std::uint32_t i, float d2, float scale) {
+      if (pilot_.is_on_face(i, place, radius)) found += 2 * scale * (1 - d2 / (radius * radius));
     });
     return found;
   };

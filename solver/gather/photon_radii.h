@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 
 #include "scenes/model/stop_token.h"
@@ -26,6 +27,14 @@ inline constexpr std::size_t kRadiusLevels = 6;
 constexpr float radius_of_level(std::size_t level) {
   return kLargestPhotonRadius / static_cast<float>(1U << level);
 }
+/// By level, the photons of all radii down to half that of the level.
+std::array<PhotonGrid, kRadiusLevels> grids_by_radius(const CausticPhotons& photons);
+/// Epanechnikov's kernel over a disk [per square unit] at this squared distance, below the squared radius.
+inline float photon_kernel(float squared_distance, float radius) {
+  const float r2 = radius * radius;
+  return 2 / (std::numbers::pi_v<float> * r2) * (1 - squared_distance / r2);
+}
+
 /// The last level whose radius is not smaller. Photons are counted within that of this level to find the
 /// radius, if they lie about evenly.
 std::size_t level_of_radius(float radius);
@@ -48,7 +57,7 @@ class PhotonRadii {
   };
   class Neighbours;
   /// `levels`: with photons enough at a place nearby, from the largest on; becomes that of this place.
-  float radius_at(const Vec3f& normal, const Vec3f& place, std::size_t& levels) const;
+  float radius_at(const CausticPhotons::Place& place, std::size_t& levels) const;
 
   CausticPhotons pilot_;
   float enough_;  // photons of the pilot in the radius

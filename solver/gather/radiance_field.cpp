@@ -28,9 +28,10 @@ float mean_irradiance(const ZoneSums& sums, const std::vector<double>& of_part, 
 RadianceField::RadianceField(const Room& room, const Solution& solution, std::size_t parts)
     : room_(&room), bands_(room.band_count()), parts_(parts), zero_(bands_, 0.0F) {
   const Scene& scene = room.scene();
-  if (!(scene.bands == solution.bands) || scene.surfaces.size() != solution.surface_names.size())
+  if (!(scene.bands == solution.bands) || scene.surfaces.size() != solution.surface_names.size() ||
+      room.mesh().zone_count() != solution.mesh.zone_count())
     throw InputError(scene.source, "the room is not the one that was solved",
-                     "Solve it again: its surfaces or bands have changed since.");
+                     "Solve it again: its surfaces, zones or bands have changed since.");
   read_zones(solution);
 }
 
@@ -40,15 +41,11 @@ float RadianceField::mean_reflected(ZoneId zone, std::size_t band) const {
   return static_cast<float>(sum / static_cast<double>(parts_));
 }
 
-double RadianceField::share_that_rays_miss() const {
-  const Scene& scene = room_->scene();
-  const bool has_small_lights = !scene.lights.empty() || (scene.sky && scene.sky->sun_shines());
-  return has_small_lights ? caustic_share() : 0;
-}
-
 bool RadianceField::has_light_that_rays_miss() const {
   constexpr double kMostMissed = 0.005;
-  return share_that_rays_miss() >= kMostMissed;
+  const Scene& scene = room_->scene();
+  const bool has_small_lights = !scene.lights.empty() || (scene.sky && scene.sky->sun_shines());
+  return has_small_lights && caustic_share() >= kMostMissed;
 }
 
 double RadianceField::caustic_share() const {

@@ -36,11 +36,9 @@ class RadianceField {
     return zone.valid() && !reflected_caustic_.empty() ? &reflected_caustic_[zone.index() * bands_]
                                                        : zero_.data();
   }
-  /// Of what zones reflect, the share [0,1] that came over mirrors, gloss and glass in rooms where rays from
-  /// surfaces do not find all of such light: that of lights without area, and most of that of the sun. 0 in
-  /// others.
-  double share_that_rays_miss() const;
-  /// Whether that is one part in 200 or more.
+  /// Whether of what zones reflect one part in 200 or more came over mirrors, gloss and glass in a room where
+  /// rays from surfaces do not find all of such light: that of lights without area, and most of that of the
+  /// sun.
   bool has_light_that_rays_miss() const;
   /// Edge length of the square that two zones such as this make up [normalised units].
   float zone_size(ZoneId z) const;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/gather/direct_light.h"
-#include "solver/gather/hemisphere_gather.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/sampling/warp.h"
 

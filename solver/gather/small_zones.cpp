@@ -13,6 +13,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/replicate_gather.h"
 #include "solver/tally/batch_statistics.h"
 #include "solver/tally/replicates.h"

@@ -8,6 +8,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/gather/replicate_gather.h"
 #include "solver/gather/zone_probes.h"

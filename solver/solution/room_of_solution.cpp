@@ -15,7 +15,9 @@ fs::path find_room_file(const fs::path& stored, const fs::path& solution_file) {
   if (fs::exists(stored, code)) return stored;
   const fs::path beside = solution_file.parent_path() / stored.filename();
   if (stored.has_filename() && fs::exists(beside, code)) return beside;
-  throw InputError(solution_file.string(), "the room it was solved from is gone: " + stored.string(),
+  throw InputError(solution_file.string(),
+                   stored.empty() ? "it does not say which room it was solved from"
+                                  : "the room it was solved from is gone: " + stored.string(),
                    "Put the room file back, or beside the solution, or name it (render and export: --room).");
 }
 
@@ -51,6 +53,16 @@ bool fits(const Solution& solution, const Scene& scene) {
 }
 
 }  // namespace
+
+void check_is_room_of(const Solution& solution, const Scene& scene, const ZoneMesh& mesh) {
+  const bool fits_zones = solution.mesh.zone_count() == mesh.zone_count() &&
+                          solution.mesh.triangle_count() == mesh.triangle_count() &&
+                          solution.bands == scene.bands &&
+                          solution.surface_names.size() == scene.surfaces.size();
+  if (!fits_zones || (!solution.room_hash.empty() && content_hash(scene) != solution.room_hash))
+    throw InputError(scene.source, "the room is not the one that was solved",
+                     "Solve it again: something of it or its zones has changed since.");
+}
 
 Scene read_room_of(const Solution& solution, const fs::path& solution_file,
                    const std::vector<fs::path>& override) {

@@ -88,7 +88,7 @@ EmbreeTree::~EmbreeTree() {
 
 void EmbreeTree::add(const std::vector<Vec3f>& vertices,
                      const std::vector<std::array<std::uint32_t, 3>>& indices, unsigned number,
-                     const RoomTextures* cut_outs) {
+                     RTCFilterFunctionN filter, const void* of_filter) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
@@ -102,10 +102,10 @@ void EmbreeTree::add(const std::vector<Vec3f>& vertices,
   for (const Vec3f& p : vertices)
     for (int k = 0; k < 3; ++k) *vertex++ = p[k];
   for (const auto& corners : indices) index = std::copy(corners.begin(), corners.end(), index);
-  if (cut_outs != nullptr) {
-    rtcSetGeometryUserData(geometry, const_cast<RoomTextures*>(cut_outs));
-    rtcSetGeometryIntersectFilterFunction(geometry, pass_cut_out);
-    rtcSetGeometryOccludedFilterFunction(geometry, pass_cut_out);
+  if (filter != nullptr) {
+    rtcSetGeometryUserData(geometry, const_cast<void*>(of_filter));
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
   }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene_, geometry, number);
@@ -139,7 +139,13 @@ void EmbreeTree::add_triangles(const std::vector<Vec3f>& vertices, std::span<con
   const Apart of_feet = set_apart(feet);
   add(vertices, indices, kTriangles);
   if (!feet.empty()) add(of_feet.vertices, of_feet.indices, kFeet);
-  if (textures != nullptr) add(of_cut_outs.vertices, of_cut_outs.indices, kCutOuts, textures);
+  if (textures != nullptr) add(of_cut_outs.vertices, of_cut_outs.indices, kCutOuts, pass_cut_out, textures);
+}
+
+void EmbreeTree::add_filtered(const std::vector<Vec3f>& vertices,
+                              const std::vector<std::array<std::uint32_t, 3>>& indices,
+                              RTCFilterFunctionN filter) {
+  add(vertices, indices, kTriangles, filter);
 }
 
 void EmbreeTree::add_shapes(const std::vector<CurvedShape>& shapes) {

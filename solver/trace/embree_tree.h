@@ -5,6 +5,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -49,6 +50,9 @@ class EmbreeTree {
   void add_triangles(const std::vector<Vec3f>& vertices, std::span<const BaseTriangle> triangles,
                      const std::vector<std::uint32_t>& feet, const RoomTextures* textures);
   void add_shapes(const std::vector<CurvedShape>& shapes);
+  /// Triangles kTriangles about which `filter` is asked whenever a ray meets one, and may let it pass.
+  void add_filtered(const std::vector<Vec3f>& vertices,
+                    const std::vector<std::array<std::uint32_t, 3>>& indices, RTCFilterFunctionN filter);
   /// Builds the tree.
   void commit();
 
@@ -56,7 +60,7 @@ class EmbreeTree {
 
  private:
   void add(const std::vector<Vec3f>& vertices, const std::vector<std::array<std::uint32_t, 3>>& indices,
-           unsigned number, const RoomTextures* cut_outs = nullptr);
+           unsigned number, RTCFilterFunctionN filter = nullptr, const void* of_filter = nullptr);
 
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;

@@ -17,21 +17,6 @@ constexpr float kEdgeWidth = 2e-6F;
 /// By how much rays are turned for the second look.
 constexpr float kTurn = 3e-6F;
 
-RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float near, float far, std::uint32_t key) {
-  RTCRay ray{};
-  ray.org_x = origin.x();
-  ray.org_y = origin.y();
-  ray.org_z = origin.z();
-  ray.dir_x = direction.x();
-  ray.dir_y = direction.y();
-  ray.dir_z = direction.z();
-  ray.tnear = near;
-  ray.tfar = far;
-  ray.mask = 0xffffffffU;
-  ray.id = key;
-  return ray;
-}
-
 /// Where a way to a ray origin ends, so that what it lies on is not in the way.
 float shortened(float distance) {
   return distance * (1 - 1e-6F);

@@ -7,6 +7,7 @@
 
 #include "mesh/zones/zone_mesh.h"
 #include "scenes/model/work_watch.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/light_spread.h"
 #include "solver/progressive_solver.h"

@@ -13,6 +13,7 @@
 
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/progressive_solver.h"

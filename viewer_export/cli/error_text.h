@@ -19,6 +19,11 @@ void add_zones(nlohmann::ordered_json& json, const std::optional<ZoneBias>& zone
 inline constexpr const char* kZonesTooNoisy =
     "the noise of the zone solution keeps the error above the target; solve to a lower --error";
 
+/// The same where light over mirrors and glass may be the cause.
+inline constexpr const char* kPhotonsTooNoisy =
+    "the noise of light over mirrors and glass, or of the zone solution, keeps the error above the target; "
+    "means of several points have less of the first, solving to a lower --error takes off the second";
+
 /// Says so, and what helps, where the zones alone miss an error target > 0; empty where they do not or it is
 /// not known. `what`: whose target, "the picture".
 std::string missed_by_zones(const std::string& what, double target, const std::optional<ZoneBias>& zones);

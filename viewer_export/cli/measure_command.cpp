@@ -113,20 +113,9 @@ std::string dark_points(const MeasuredLight& light) {
       dark, first->x(), first->y(), first->z());
 }
 
-/// What makes the values themselves too small.
-std::vector<std::string> warnings_of(const MeasuredLight& light) {
-  if (light.missed_over_mirrors == 0) return {};
-  return {fmt::format(
-      "{} of the light on the surfaces of this room comes over mirrors, gloss or glass, and what of it comes "
-      "straight from there to the points is not in their values, unless a luminous surface sent it: that of "
-      "points, spots, measured luminaires and the sun is missing. Surfaces (info) and vertices (export) have "
-      "it, a clear sheet in the place of the points as well (docs/export_formats.md)",
-      percent_text(light.missed_over_mirrors))};
-}
-
 void print_notes(const MeasuredLight& light, double error_target) {
   if (const std::string dark = dark_points(light); !dark.empty()) print_note(dark);
-  if (light.limited_by_zones) print_note(kZonesTooNoisy);
+  if (light.limited_by_zones) print_note(light.has_photons ? kPhotonsTooNoisy : kZonesTooNoisy);
   if (const std::string missed = missed_by_zones("the points", error_target, light.info.zones);
       !missed.empty())
     print_note(missed);
@@ -160,8 +149,6 @@ nlohmann::ordered_json json_of(const MeasuredLight& light) {
   }
   nlohmann::ordered_json json{{"sets", sets}, {"error", known_error(light.info)}};
   add_zones(json, light.info.zones);
-  json["missed_over_mirrors"] = light.missed_over_mirrors;
-  json["warnings"] = warnings_of(light);
   return json;
 }
 
@@ -185,10 +172,7 @@ ExitCode run_measure(const MeasureOptions& options) {
       interrupt.requested());
   progress.finish();
   if (options.output) write_output([&] { write_points_csv(light, *options.output); });
-  if (!options.style.quiet) {
-    print_warnings(warnings_of(light));
-    print_notes(light, options.settings.error_target);
-  }
+  if (!options.style.quiet) print_notes(light, options.settings.error_target);
   const double seconds = seconds_since(start);
   if (options.style.json) {
     nlohmann::ordered_json json = json_of(light);
@@ -197,10 +181,9 @@ ExitCode run_measure(const MeasureOptions& options) {
     print_json(json);
   } else {
     print_result(text_of(light));
-    print_result(fmt::format(
-        "{}noise {}, zones {}{}, {:.2f} s\n", options.output ? options.output->string() + ": " : "",
-        percent_text(known_error(light.info)), zones_text(light.info.zones),
-        light.missed_over_mirrors > 0 ? ", light straight from mirrors missing" : "", seconds));
+    print_result(fmt::format("{}noise {}, zones {}, {:.2f} s\n",
+                             options.output ? options.output->string() + ": " : "",
+                             percent_text(known_error(light.info)), zones_text(light.info.zones), seconds));
   }
   return ExitCode::kDone;
 }

@@ -14,8 +14,11 @@
 
 #include "scenes/model/error.h"
 #include "scenes/model/interrupted.h"
+#include "scenes/model/limits.h"
 #include "scenes/model/memory.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/replicate_gather.h"
+#include "solver/solution/room_of_solution.h"
 #include "solver/solution/thread_count.h"
 #include "solver/tally/replicates.h"
 #include "viewer_export/output/refinement.h"
@@ -28,6 +31,22 @@ constexpr std::size_t kReplicates = ZoneSums::kGroups;
 /// Fixed, so that packets of rays are the same for any number of threads.
 constexpr std::size_t kPointsOfTask = 16;
 constexpr int kMostPlaces = 1 << 14;
+
+void check(const PointSet& set) {
+  const auto fail = [&](const std::string& problem, const char* advice) {
+    throw InputError(set.name.empty() ? "measure" : set.name, problem, advice);
+  };
+  if (set.size() == 0) fail("no points", "Leave the set out, or give it points.");
+  if (set.normals.size() != set.size())
+    fail(fmt::format("{} points and {} normals", set.size(), set.normals.size()),
+         "Give one normal for each.");
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (const std::string problem = place_problem(set.places[i]); !problem.empty())
+      fail(fmt::format("point {}: {}", i + 1, problem), kLengthAdvice);
+    if (!(std::abs(set.normals[i].squaredNorm() - 1) < 1e-6))
+      fail(fmt::format("point {}: its normal is not of length 1", i + 1), "Divide it by its length.");
+  }
+}
 
 void check(const MeasureSettings& s, std::size_t points) {
   const auto require = [](bool good, const char* problem, const char* advice) {
@@ -43,18 +62,32 @@ void check(const MeasureSettings& s, std::size_t points) {
   require(s.threads >= 0, "number of threads is out of range", "Choose 0 (all cores) or more.");
 }
 
+/// Of all sets, in their order.
+std::vector<MeasuringPoint> points_of(const RayTracer& rays, const std::vector<PointSet>& sets) {
+  std::vector<MeasuringPoint> points;
+  for (const PointSet& set : sets)
+    for (std::size_t i = 0; i < set.size(); ++i)
+      points.push_back(
+          measuring_point(rays, set.places[i], set.normals[i], static_cast<std::uint32_t>(points.size())));
+  return points;
+}
+
 /// Gathers at points and keeps what each replicate of each has brought.
 class Measurer {
  public:
-  Measurer(const Room& room, const Solution& solution, const MeasureSettings& settings, const StopToken& stop)
+  Measurer(const Room& room, const Solution& solution, const std::vector<PointSet>& sets,
+           const MeasureSettings& settings, const StopToken& stop)
       : room_(room),
         settings_(settings),
         stop_(stop),
         field_(room, solution, kReplicates),
         direct_(room),
-        gather_(field_, direct_,
-                GatherSettings{.caustics = true, .seed = settings.seed, .plan = &solution.gather_plan},
-                &stop_),
+        points_(points_of(room.rays(), sets)),
+        gather_(
+            field_, direct_,
+            GatherSettings{
+                .caustics = true, .in_air = points_, .seed = settings.seed, .plan = &solution.gather_plan},
+            &stop_),
         bands_(room.band_count()) {}
 
   void gather_all(const std::vector<PointSet>& sets, const MeasureProgress& progress);
@@ -96,9 +129,9 @@ class Measurer {
   StopToken stop_;
   RadianceField field_;
   DirectLight direct_;
+  std::vector<MeasuringPoint> points_;
   HemisphereGather gather_;
   std::size_t bands_;
-  std::vector<MeasuringPoint> points_;
   std::vector<float> means_;  // by point, replicate, direct and indirect, band
   bool limited_by_zones_ = false;
 };
@@ -115,6 +148,7 @@ void Measurer::gather(std::size_t first, std::size_t last, int first_place, int 
   GatherBatch batch(gather_, effort().gathers);
   const ReplicateEffort of_replicate{places, effort().gathers, first_place};
   const int log2_places = std::countr_zero(static_cast<unsigned>(most_places()));
+  const std::vector<float> over_pi(bands_, std::numbers::inv_pi_v<float>);  // to mean radiance
   float* next = found.data();
   for (std::size_t i = first; i < last; ++i)
     for (std::size_t r = 0; r < kReplicates; ++r, next += values) {
@@ -125,6 +159,7 @@ void Measurer::gather(std::size_t first, std::size_t last, int first_place, int 
       add_replicate(
           direct_, sampler, of_replicate, key, [&](const std::array<float, 2>&) { return points_[i]; }, batch,
           next, next + bands_);
+      gather_.caustics().add_irradiance(points_[i], key.part, over_pi.data(), next + bands_);
     }
   batch.flush();
   const float share = static_cast<float>(places) / static_cast<float>(first_place + places);
@@ -133,9 +168,6 @@ void Measurer::gather(std::size_t first, std::size_t last, int first_place, int 
 }
 
 void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgress& progress) {
-  for (const PointSet& set : sets)
-    for (std::size_t i = 0; i < set.size(); ++i)
-      points_.push_back(measuring_point(room_.rays(), set.places[i], set.normals[i]));
   const std::size_t values = points_.size() * kReplicates * 2 * bands_;
   check_memory(fmt::format("{} points", points_.size()), static_cast<double>(values * sizeof(float)),
                available_memory());
@@ -239,7 +271,7 @@ MeasuredLight Measurer::result(std::vector<PointSet> sets) const {
   }
   light.sets = std::move(sets);
   light.limited_by_zones = limited_by_zones_;
-  if (field_.has_light_that_rays_miss()) light.missed_over_mirrors = field_.share_that_rays_miss();
+  light.has_photons = gather_.caustics().exists();
   return light;
 }
 
@@ -247,10 +279,7 @@ void describe(const Scene& scene, const Solution& solution, const MeasureSetting
               MeasuredLight& light) {
   ExportInfo& info = light.info;
   state_origin(scene, solution, info);
-  if (light.missed_over_mirrors == 0)
-    info.zones = solution.record.gather_bias;
-  else
-    info.settings.emplace_back("missing in part: share over mirrors and glass", light.missed_over_mirrors);
+  info.zones = solution.record.gather_bias;
   if (scene.sky) info.settings.emplace_back("sky", scene.sky->description);
   if (settings.error_target == 0) {
     info.settings.emplace_back("gather rays", static_cast<std::uint64_t>(settings.gather_rays));
@@ -270,10 +299,13 @@ MeasuredLight measure_light(const Room& room, const Solution& solution, std::vec
   std::size_t points = 0;
   for (const PointSet& set : sets) points += set.size();
   check(settings, points);
+  for (const PointSet& set : sets) check(set);
+  check_is_room_of(solution, room.scene(), room.mesh());
   MeasuredLight light;
   tbb::task_arena arena(thread_count(settings.threads));
   arena.execute([&] {
-    Measurer measurer(room, solution, settings, StopToken(interrupt));
+    if (progress) progress(0);  // photons may take a while
+    Measurer measurer(room, solution, sets, settings, StopToken(interrupt));
     measurer.gather_all(sets, progress);
     light = measurer.result(std::move(sets));
   });

@@ -48,21 +48,19 @@ struct MeasuredLight {
   std::vector<SetSummary> summaries;    ///< By set.
   std::vector<Irradiance> irradiance;   ///< [W/m2]; index point * bands + band.
   std::vector<Irradiance> illuminance;  ///< [lx], by point; the error is that of the sum over bands.
-  bool limited_by_zones = false;        ///< An error target was missed because of the noise of the zones.
-  /// Of the light on all surfaces of the room, the share that comes over mirrors and glass and of which
-  /// points miss what comes to them straight from there (measure_light); 0 where it is less than 0.5 %.
-  double missed_over_mirrors = 0;
+  /// An error target was missed because of the noise of the zones or, with has_photons, of photons.
+  bool limited_by_zones = false;
+  bool has_photons = false;  ///< Light over mirrors and glass comes by photons (CausticMap).
 };
 
 /// Gets the finished share of the work [0,1], from one thread at a time.
 using MeasureProgress = std::function<void(double)>;
 
 /// Irradiance at points that are no part of the room, by direct light and final gather there as at vertices
-/// (gather_vertices), but for photons, which only surfaces have: what comes to a point straight from mirrors
-/// and glass is found where rays meet the luminaire behind them, so that of lights without area is missed
-/// (missed_over_mirrors), as is nearly always that of the sun. `progress` may be empty. Throws
-/// InputError for settings out of range or no points at all and for a room that is not the one solved,
-/// ResourceError for more points than memory holds, Interrupted when `interrupt` becomes true.
+/// (gather_vertices), with photons of light over mirrors and glass that pass them. `progress` may be empty.
+/// Throws InputError for settings out of range, for sets without points or with points that are no places or
+/// normals that are not unit, and for a room that is not the one solved; ResourceError for more points than
+/// memory holds, Interrupted when `interrupt` becomes true.
 MeasuredLight measure_light(const Room& room, const Solution& solution, std::vector<PointSet> sets,
                             const MeasureSettings& settings, const MeasureProgress& progress,
                             const std::atomic<bool>& interrupt);

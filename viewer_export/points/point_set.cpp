@@ -60,6 +60,8 @@ PointSet grid_points(const std::string& name, const PointGrid& grid, const Vec3&
     throw InputError(name, "the sides of the grid span no area",
                      "Give the corner, the two sides from there and the number of fields, as "
                      "0.5,0.85,0.5 4,0,0 0,0,5 8x10.");
+  if (grid.columns < 1 || grid.rows < 1)
+    throw InputError(name, "the grid has no fields", "Give one at least along each of its sides.");
   const double fields = static_cast<double>(grid.columns) * static_cast<double>(grid.rows);
   check_memory(fmt::format("{}: {:.3g} points", name, fields), 2 * sizeof(Vec3) * fields, available_memory());
   Vec3 normal = area.normalized();

@@ -27,8 +27,8 @@ struct PointGrid {
 };
 
 /// The middles of its fields, row by row. They face along x across, or the other way where that leads down:
-/// grids that do not stand upright are lit from above. Throws InputError where the sides span no area,
-/// ResourceError for more points than memory holds.
+/// grids that do not stand upright are lit from above. Throws InputError where the sides span no
+/// area or there are no fields, ResourceError for more points than memory holds.
 PointSet grid_points(const std::string& name, const PointGrid& grid, const Vec3& up);
 
 /// Points of a text file: in each line x, y, z [m] and the way the point faces, three numbers each of any

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/reflect/lambert.h"
 #include "viewer_export/still/pixel_groups.h"

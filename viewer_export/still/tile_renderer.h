@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "solver/gather/hemisphere_gather.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/point_sampler.h"
 #include "solver/solution/zone_bias.h"
 #include "viewer_export/still/camera.h"

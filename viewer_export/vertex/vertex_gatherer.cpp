@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/reflect/lambert.h"
 #include "solver/tally/replicates.h"

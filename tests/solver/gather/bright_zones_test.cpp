@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/replicate_gather.h"
 #include "tests/support/contour_irradiance.h"
 #include "tests/support/hand_made_solution.h"

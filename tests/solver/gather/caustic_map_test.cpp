@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/gather/direct_light.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/radiance_field.h"

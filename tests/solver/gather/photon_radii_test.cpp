@@ -31,6 +31,7 @@ CausticPhotons random_photons(double share, unsigned seed) {
     for (int i = 0; i < static_cast<int>(count); ++i) {
       photons.places.emplace_back(sign * kHalf * uniform(random), kHalf * (2 * uniform(random) - 1), 0.3F);
       photons.normals.push_back(Vec3f::UnitZ());
+      photons.triangles.emplace_back(0U);
     }
   };
   add(of_thin, -1);
@@ -104,6 +105,22 @@ TEST(PhotonRadii, do_not_count_photons_of_another_face) {
   PhotonRadii(random_photons(kShare, 1), kShare).set(parts, nullptr);
   ASSERT_GT(parts[3].size(), first + 10);
   for (std::size_t i = first; i < parts[3].size(); ++i) EXPECT_EQ(parts[3].radius_codes[i], 0) << i;
+}
+
+// Sheets in the air are told apart however close they lie.
+TEST(PhotonRadii, do_not_count_photons_of_another_sheet) {
+  std::array<CausticPhotons, kParts> parts = random_parts();
+  CausticPhotons pilot = random_photons(kShare, 1);
+  CausticPhotons other = random_photons(1e-4, 3);
+  for (TriangleId& sheet : other.triangles) sheet = TriangleId(7U);
+  const std::size_t first = parts[3].size();
+  parts[3].append(other);
+  pilot.in_air = true;
+  for (CausticPhotons& part : parts) part.in_air = true;
+  PhotonRadii(pilot, kShare).set(parts, nullptr);
+  ASSERT_GT(parts[3].size(), first + 10);
+  for (std::size_t i = first; i < parts[3].size(); ++i) EXPECT_EQ(parts[3].radius_codes[i], 0) << i;
+  EXPECT_GT(parts[3].radius_codes[0], 0);
 }
 
 TEST(PhotonRadii, do_not_depend_on_threads) {

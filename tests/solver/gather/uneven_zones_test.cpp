@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/progressive_solver.h"

@@ -9,6 +9,7 @@
 
 #include "solver/gather/direct_audit.h"
 #include "solver/gather/direct_light.h"
+#include "solver/gather/gather_batch.h"
 #include "solver/gather/hemisphere_gather.h"
 #include "solver/gather/path_tracer.h"
 #include "solver/gather/radiance_field.h"

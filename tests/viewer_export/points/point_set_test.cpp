@@ -36,6 +36,10 @@ TEST(PointSet, GridsFaceUpwardsHoweverTheirSidesAreGiven) {
 TEST(PointSet, GridWithoutAreaIsRefused) {
   EXPECT_THROW(grid_points("grid", {Vec3::Zero(), Vec3(1, 1, 0), Vec3(2, 2, 0), 2, 2}, kUp), InputError);
   EXPECT_THROW(grid_points("grid", {Vec3::Zero(), Vec3::Zero(), Vec3(2, 2, 0), 2, 2}, kUp), InputError);
+  for (const int none : {0, -1}) {
+    EXPECT_THROW(grid_points("grid", {Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0), none, 2}, kUp), InputError);
+    EXPECT_THROW(grid_points("grid", {Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0), 2, none}, kUp), InputError);
+  }
 }
 
 TEST(PointSet, GridsThatMemoryWillNotHoldAreRefused) {

@@ -11,7 +11,7 @@ namespace reemit {
 namespace {
 
 const std::array<Vec3, 3> kTriangle{Vec3(-0.6, -0.5, 0), Vec3(0.7, -0.2, 0), Vec3(0.1, 0.8, 0)};
-const Vec3 kFront(0, 0, 1);
+const Vec3 kUpwards(0, 0, 1);
 
 /// A shape of size 1 or so about the origin, planar ones in z = 0 with their front up, made for a shading
 /// point and a density; `check` gets a name and the sampler.
@@ -19,12 +19,12 @@ template <class Check>
 void for_all_shapes(const Vec3& x, const Vec3& n, Density d, const Check& check) {
   check("sphere", SphereSampler({{0, 0, 0}, 0.5}, x, n, d));
   check("inward sphere", SphereSampler({{0, 0, 0}, 0.5, true}, x, n, d));
-  check("disk", DiskSampler({{0, 0, 0}, kFront, 0.5}, x, n, d));
+  check("disk", DiskSampler({{0, 0, 0}, kUpwards, 0.5}, x, n, d));
   check("cylinder", CylinderSampler({{0, 0, -0.5}, {0, 0, 0.5}, 0.5}, x, n, d));
   check("inward cylinder", CylinderSampler({{0, 0, -0.5}, {0, 0, 0.5}, 0.5, true}, x, n, d));
   check("thin cylinder", CylinderSampler({{0, 0, -0.5}, {0, 0, 0.5}, 0.001}, x, n, d));
-  check("rectangle", RectangleSampler({-0.5, -0.5, 0}, {1, 0, 0}, {0, 1, 0}, kFront, x, n, d));
-  check("triangle", TriangleSampler(kTriangle, kFront, x, n, d));
+  check("rectangle", RectangleSampler({-0.5, -0.5, 0}, {1, 0, 0}, {0, 1, 0}, kUpwards, x, n, d));
+  check("triangle", TriangleSampler(kTriangle, kUpwards, x, n, d));
 }
 
 /// Nothing that is not finite, and no weight beyond what a density can be asked for.
@@ -121,8 +121,8 @@ TEST(DegeneratePositions, WhatIsCalledDarkGetsNothingByArea) {
     const Vec3 x(normal(random), normal(random), normal(random));
     const Vec3 n = Vec3(normal(random), normal(random), normal(random)).normalized();
     for (const Density d : test::kDensities) {
-      if (!DiskSampler({{0, 0, 0}, kFront, 0.5}, x, n, d).lights()) {
-        const DiskSampler all({{0, 0, 0}, kFront, 0.5}, x, n, Density::kArea);
+      if (!DiskSampler({{0, 0, 0}, kUpwards, 0.5}, x, n, d).lights()) {
+        const DiskSampler all({{0, 0, 0}, kUpwards, 0.5}, x, n, Density::kArea);
         EXPECT_EQ(test::statistics(all, x, n, 50).largest, 0);
       }
       // A sampler that lights agrees with area samples that something arrives.
@@ -139,11 +139,11 @@ TEST(DegeneratePositions, ShapesWithoutSizeLightNothing) {
   const Vec3 n(0, 0, -1);
   for (const Density d : test::kDensities) {
     const std::array<Vec3, 3> line{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)};
-    EXPECT_FALSE(TriangleSampler(line, kFront, x, n, d).lights()) << test::name_of(d);
-    EXPECT_FALSE(RectangleSampler({0, 0, 0}, {1, 0, 0}, {0, 0, 0}, kFront, x, n, d).lights());
-    EXPECT_FALSE(RectangleSampler({0, 0, 0}, {0, 0, 0}, {0, 0, 0}, kFront, x, n, d).lights());
+    EXPECT_FALSE(TriangleSampler(line, kUpwards, x, n, d).lights()) << test::name_of(d);
+    EXPECT_FALSE(RectangleSampler({0, 0, 0}, {1, 0, 0}, {0, 0, 0}, kUpwards, x, n, d).lights());
+    EXPECT_FALSE(RectangleSampler({0, 0, 0}, {0, 0, 0}, {0, 0, 0}, kUpwards, x, n, d).lights());
     const std::vector<Vec3> two{Vec3(0, 0, 0), Vec3(1, 0, 0)};
-    EXPECT_FALSE(ConvexPolygonSampler(two, kFront, x, n, d).lights());
+    EXPECT_FALSE(ConvexPolygonSampler(two, kUpwards, x, n, d).lights());
   }
 }
 
