@@ -29,7 +29,10 @@ else()
   target_compile_options(reemit_flags INTERFACE "$<INSTALL_INTERFACE:${flags}>")
 endif()
 
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The manual page and messages point to the pages by name.
+file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/*.md ${PROJECT_SOURCE_DIR}/docs/*.bib)
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
 
 # Left out: the command line, and headers that show libraries which only our own code links (the test install.example
 # notices one more of them).

@@ -18,6 +18,7 @@
 #include "solver/run/prepared_room.h"
 #include "solver/run/schedule.h"
 #include "solver/shoot/batches_ahead.h"
+#include "solver/solution/room_of_solution.h"
 #include "solver/solution/thread_count.h"
 #include "solver/tally/batch_statistics.h"
 #include "solver/tally/stop_rule.h"
@@ -92,6 +93,8 @@ void examine(const PreparedRoom& room, const Schedule& schedule, const ProgressC
 Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& watch,
                       const std::atomic<bool>& interrupt, Examination examination) {
   const auto start = Clock::now();
+  check(solution.settings);
+  check_is_room_of(solution, scene, solution.mesh);
   const PreparedRoom room(scene, solution, watch.preparing);
   if (room.room.surfaces().any_specular() || room.room.surfaces().any_cut_outs())
     throw InputError(
@@ -118,8 +121,10 @@ Solution solve_matrix(const Scene& scene, Solution solution, const SolveWatch& w
 }  // namespace
 
 Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings) {
+  check(settings);
   Solution solution;
   solution.program_version = kProgramVersion;
+  solution.room_path = scene.source;
   solution.room_hash = content_hash(scene);
   solution.settings = settings;
   solution.bands = scene.bands;
@@ -136,7 +141,7 @@ class ProgressiveSolver::Run {
  public:
   Run(const Scene& scene, Solution start, const std::atomic<bool>& interrupt, const WorkWatch& preparing)
       : interrupt_(interrupt),
-        solution_(prepared_to_go_on(std::move(start))),
+        solution_(prepared_to_go_on(scene, std::move(start))),
         begin_(seconds_ago(solution_.record.seconds)),
         room_(scene, solution_, preparing),
         arena_(thread_count(solution_.settings.threads)),
@@ -214,7 +219,9 @@ class ProgressiveSolver::Run {
   SolveRecord& record() { return solution_.record; }
 
   /// Takes out what followed the last batch when the solution was finished before.
-  static Solution prepared_to_go_on(Solution start) {
+  static Solution prepared_to_go_on(const Scene& scene, Solution start) {
+    check(start.settings);
+    check_is_room_of(start, scene, start.mesh);
     SolveRecord& record = start.record;
     if (record.cut_off) {
       // A part of a batch is no independent estimate; it starts again.

@@ -38,7 +38,8 @@ enum class Examination {
 };
 
 /// A solution of this room without any batch: where a run starts. Everything in it is filled but what only
-/// the caller knows: room_path, more_room_paths, read_options and mesh_settings.
+/// the caller knows: more_room_paths, read_options and mesh_settings where they are not the defaults, and
+/// room_path where the room was not read from Scene::source. Throws InputError for settings out of range.
 Solution new_solution(const Scene& scene, MeshResult mesh, const SolverSettings& settings);
 
 /// A run by shooting or walks, batch by batch, that can be looked at and saved between batches and resumed
@@ -53,9 +54,12 @@ class ProgressiveSolver {
   /// it is the first: then it is the solution, low by what BandAudit::unshot says, its error unknown.
   /// `preparing` is told 0 before the tree for rays is built and 1 at the end. Throws InputError when a
   /// luminaire shines into a sealed part of the room that reflects everything in some band: it has no
-  /// solution. The scene and `interrupt` must outlive the solver. Pre: the method is not the matrix.
+  /// solution; for settings out of range, and when `start` is of another room. The scene and `interrupt` must
+  /// outlive the solver. Pre: the method is not the matrix.
   ProgressiveSolver(const Scene& scene, Solution start, const std::atomic<bool>& interrupt,
                     const WorkWatch& preparing = {});
+  ProgressiveSolver(const Scene&&, Solution, const std::atomic<bool>&, const WorkWatch& = {}) = delete;
+  ProgressiveSolver(const Scene&, Solution, std::atomic<bool>&&, const WorkWatch& = {}) = delete;
   ~ProgressiveSolver();
   ProgressiveSolver(const ProgressiveSolver&) = delete;
   ProgressiveSolver& operator=(const ProgressiveSolver&) = delete;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -186,9 +188,25 @@ void check_shape(const CurvedShape& shape, const std::string& where) {
   const auto [low, high] = shape_bounds(shape);
   check_place(low, "it", where);
   check_place(high, "it", where);
-  if (!(shape_area(shape) > 0))
-    throw InputError(where, "it has no area: a radius or length is zero or negative",
-                     "Give a positive radius and length, or remove the shape.");
+  // In this order: areas of what has negative radii may be positive.
+  const bool is_sound = std::visit(
+      [](const auto& s) {
+        using Shape = std::decay_t<decltype(s)>;
+        if constexpr (std::is_same_v<Shape, Disk>)
+          return s.inner_radius >= 0 && s.inner_radius < s.radius &&
+                 std::abs(s.normal.squaredNorm() - 1) < 1e-9;
+        else if constexpr (std::is_same_v<Shape, Cone>)
+          return s.base_radius >= 0 && s.top_radius >= 0;
+        else
+          return s.radius > 0;
+      },
+      shape);
+  if (!is_sound || !(shape_area(shape) > 0))
+    throw InputError(
+        where,
+        "it has no area: a radius or length is zero or negative, a hole as wide as its disk, or a "
+        "normal not of length 1",
+        "Give a positive radius and length, or remove the shape.");
 }
 
 void check_direction(Vec3& direction, const std::string& where) {

@@ -15,6 +15,8 @@ class StopToken {
   explicit StopToken(const std::atomic<bool>& interrupt) : interrupt_(&interrupt) {}
   StopToken(const std::atomic<bool>& interrupt, Clock::time_point deadline)
       : interrupt_(&interrupt), deadline_(deadline) {}
+  explicit StopToken(std::atomic<bool>&&) = delete;
+  StopToken(std::atomic<bool>&&, Clock::time_point) = delete;
 
   /// The same for work that may become needless before the rest: requested also once `needless` is true,
   /// which must outlive the token too.

@@ -38,6 +38,8 @@ void check_coordinates(const Scene& scene, const Surface& surface, std::size_t f
       for (const double x : uv)
         if (!(std::abs(x) <= kFarthest))
           fail(fmt::format("the texture coordinate {:g}", x), "Give finite ones of at most 100000.");
+    for (const float share : surface.texture_points[index].colour)
+      if (!(share >= 0 && share <= 1)) fail(fmt::format("the vertex colour {:g}", share), "Give 0 to 1.");
   }
 }
 

@@ -24,10 +24,11 @@ struct SolverSettings {
   DirectSource direct = DirectSource::kBest;
   double error_target = 0;  ///< Relative rms standard error of radiosity, worst band, as a fraction [0,1).
   double time_limit_s = 0;  ///< Wall time of all sittings of the solve [s], >= 0.
+  // Without any of error, time and packets it goes on until it is interrupted.
   /// Packets of all batches together, into which the power of luminaires is dealt out equally. Where direct
   /// light is sampled several of them travel together at first (BatchTask::first_together).
   std::uint64_t packets = 0;
-  std::uint64_t batch_packets = 0;  ///< Packets of one batch; 0 = from the number of zones.
+  std::uint64_t batch_packets = 0;  ///< Packets of one batch, below 2^32; 0 = from the number of zones.
   int smallest_batch_count = 16;    ///< Batches before an error is believed [2, 65536].
   double stop_share = 1e-5;  ///< Shooting: walks take over when unshot/emitted falls below this (0, 0.1].
   /// Zones too small to meet enough packets get their light by gathering when the packets are done.
@@ -35,6 +36,9 @@ struct SolverSettings {
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = all cores; more than there are cores means all.
 };
+
+/// Throws InputError for a number out of its range, with the range.
+void check(const SolverSettings& settings);
 
 std::string to_string(SolveMethod method);     ///< "shooting", "walk" or "matrix".
 std::string to_string(SamplingKind sampling);  ///< "random" or "sobol".

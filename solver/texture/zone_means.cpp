@@ -52,7 +52,8 @@ class CellReader {
   CellReader(const RoomTextures& textures, const ZoneMesh& mesh, std::size_t bands)
       : textures_(textures), mesh_(mesh), bands_(bands) {}
 
-  CellMeans means_of(const SideCell& cell) {
+  /// `cells`: of its zone.
+  CellMeans means_of(const SideCell& cell, std::uint32_t cells) {
     const SurfaceId surface = mesh_.triangle(cell.triangle).surface;
     const bool varies =
         textures_.varies_reflectance(surface) && (cell.front || textures_.varies_back(surface));
@@ -60,7 +61,9 @@ class CellReader {
     const bool is_cut_out = textures_.is_cut_out(surface) && !mesh_.triangle(cell.triangle).is_curved();
     const double edge = longest_edge(mesh_, cell);
     const double texel = textures_.texel_size(cell.triangle);
-    const int n = static_cast<int>(std::clamp<double>(std::ceil(8 * edge / texel), 4, kMostMeanDivisions));
+    const double shared = is_cut_out ? 1 : std::sqrt(static_cast<double>(cells));
+    const int n =
+        static_cast<int>(std::ceil(std::clamp<double>(8 * edge / texel, 4, kMostMeanDivisions) / shared));
     // What each point stands for, where there are too few of them.
     const auto spot = static_cast<float>(edge / n > 0.5 * texel ? edge / n : 0);
     CellMeans sum;
@@ -128,10 +131,14 @@ ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh
     cut = cut || textures.is_cut_out(s);
   }
   const ZoneCells cells(mesh);
-  std::vector<std::size_t> textured;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (is_textured(mesh.triangle(cells.cell(i).triangle).surface)) textured.push_back(i);
   const std::size_t zones = mesh.zone_count();
+  std::vector<std::size_t> textured;
+  std::vector<std::uint32_t> cells_of_zone(zones, 0);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!is_textured(mesh.triangle(cells.cell(i).triangle).surface)) continue;
+    textured.push_back(i);
+    ++cells_of_zone[cells.zone(i).index()];
+  }
   std::vector<double> area(zones, 0.0);
   std::vector<double> solid(zones, 0.0);
   std::vector<double> reflectance(varies ? zones * bands : 0, 0.0);
@@ -142,8 +149,10 @@ ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh
     std::vector<CellMeans> means(std::min(kCellsInTurn, textured.size() - first));
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, means.size(), 64), [&](const auto& range) {
       CellReader reader(textures, mesh, bands);
-      for (std::size_t k = range.begin(); k != range.end(); ++k)
-        means[k] = reader.means_of(cells.cell(textured[first + k]));
+      for (std::size_t k = range.begin(); k != range.end(); ++k) {
+        const std::size_t i = textured[first + k];
+        means[k] = reader.means_of(cells.cell(i), cells_of_zone[cells.zone(i).index()]);
+      }
     });
     for (std::size_t k = 0; k < means.size(); ++k) {
       const std::size_t z = cells.zone(textured[first + k]).index();

@@ -22,7 +22,8 @@ inline constexpr int kMostMeanDivisions = 32;
 
 /// By the midpoint rule over the parts of each cell, which are an eighth of a texel across where
 /// kMostMeanDivisions are enough for that; where they are larger than half a texel, over copies of the images
-/// with larger texels.
+/// with larger texels. A zone of many cells has as many parts as one of a single cell would, unless cut-outs
+/// decide how large it is.
 ZoneTextureMeans zone_texture_means(const RoomTextures& textures, const ZoneMesh& mesh, std::size_t bands);
 
 /// Makes zones of cut-outs as large as what is there of them, unless the mesh has such shares already.

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/model/error.h"
 #include "solver/progressive_solver.h"
 #include "solver/solution/solution_file.h"
 #include "tests/support/never.h"
@@ -91,6 +92,18 @@ TEST_F(Resume, AnyNumberOfBreaksLeavesNoTrace) {
       ASSERT_EQ(whole.sums.batches, 20);
       expect_same_result(whole, in_sittings(room, settings, batches));
     }
+}
+
+TEST_F(Resume, GoesOnInTheSameRoomAlone) {
+  const VariableFurnace furnace = furnace_with_small_zones();
+  const RoomBuilder& room = furnace.room();
+  const Solution whole = solve(room.scene(), mesh_of(room), twenty_batches(), {}, test::kNever);
+  Scene darker = room.scene();
+  for (Material& m : darker.materials) m.reflectance *= 0.3;
+  const VariableFurnace other(3);
+  for (const Scene* scene : {&std::as_const(darker), &other.room().scene()})
+    EXPECT_THROW(ProgressiveSolver(*scene, whole, test::kNever), InputError);
+  EXPECT_THROW(ProgressiveSolver(room.scene(), Solution(), test::kNever), InputError);
 }
 
 // After the last batch small zones are gathered and the zones looked at: a solution that lacks it is not

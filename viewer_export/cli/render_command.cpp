@@ -108,8 +108,8 @@ class Renderer {
 
   void render(const Job& job) {
     const auto start = std::chrono::steady_clock::now();
-    const StepNote note(fmt::format("rendering {} ({} x {} pixels)", job.camera.name, options_.still.width,
-                                    options_.still.height),
+    const auto [width, height] = picture_size(options_.still, job.camera);
+    const StepNote note(fmt::format("rendering {} ({} x {} pixels)", job.camera.name, width, height),
                         options_.style);
     if (!options_.style.quiet) warn_of_eye(job.camera);
     Progress progress("rendering " + job.camera.name,

@@ -10,6 +10,7 @@
 
 #include "scenes/io/common/text_parse.h"
 #include "scenes/model/error.h"
+#include "scenes/model/interrupted.h"
 #include "solver/progressive_solver.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/solution_file.h"
@@ -279,6 +280,11 @@ ExitCode run_solve(const SolveOptions& options) {
   const SolveRecord before = start.solution.record;
   Solution solution = solve_with_progress(start, options, log, interrupt);
   if (log) log->finish(solution);
+  // A part of a batch, of unknown error, is better than nothing, but not than what is there.
+  std::error_code code;
+  if (solution.record.stopped == StopReason::kInterrupted && solution.record.cut_off &&
+      (solution.record.rays == 0 || fs::exists(options.output, code)))
+    throw Interrupted("interrupted in the first batch");
   if (!options.resume.empty() && has_ended(before) && !before.cut_off &&
       solution.record.packets == before.packets) {
     // What follows the last batch was taken out to go on, and there was no time to do it again.

@@ -272,8 +272,7 @@ StillImage render_still(const StillLight& light, const Camera& camera, const Sti
                         const std::atomic<bool>& interrupt) {
   const StillSettings& settings = light.settings();
   const Room& room = light.room();
-  const int width = settings.width != 0 ? settings.width : camera.width;
-  const int height = settings.height != 0 ? settings.height : camera.height;
+  const auto [width, height] = picture_size(settings, camera);
   const PinholeCamera pinhole(camera, width, height, room.rays());
   tbb::task_arena arena(thread_count(settings.threads));
   StillImage image;

@@ -5,6 +5,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "solver/solution/room_of_solution.h"
 #include "solver/solution/thread_count.h"
 #include "viewer_export/still/film.h"
 
@@ -22,6 +23,7 @@ std::unique_ptr<StillLight> StillLight::prepare(const Room& room, const Solution
                                                 const StillSettings& settings,
                                                 const std::atomic<bool>& interrupt) {
   check(settings);
+  check_is_room_of(solution, room.scene(), room.mesh());
   tbb::task_arena arena(thread_count(settings.threads));
   return arena.execute([&] {
     const StopToken stop(interrupt);

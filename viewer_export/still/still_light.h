@@ -25,6 +25,10 @@ class StillLight {
   static std::unique_ptr<StillLight> prepare(const Room& room, const Solution& solution,
                                              const StillSettings& settings,
                                              const std::atomic<bool>& interrupt);
+  static std::unique_ptr<StillLight> prepare(const Room&&, const Solution&, const StillSettings&,
+                                             const std::atomic<bool>&) = delete;
+  static std::unique_ptr<StillLight> prepare(const Room&, const Solution&&, const StillSettings&,
+                                             const std::atomic<bool>&) = delete;
   StillLight(const StillLight&) = delete;
   StillLight& operator=(const StillLight&) = delete;
 

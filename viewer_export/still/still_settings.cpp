@@ -18,6 +18,11 @@ std::string to_string(Integrator integrator) {
   return "";
 }
 
+std::pair<int, int> picture_size(const StillSettings& settings, const Camera& camera) {
+  return {settings.width != 0 ? settings.width : camera.width,
+          settings.height != 0 ? settings.height : camera.height};
+}
+
 void check(const StillSettings& s) {
   const auto require = [](bool good, const char* name, const char* range) {
     if (!good)
@@ -29,6 +34,8 @@ void check(const StillSettings& s) {
   require(s.light_samples >= 1 && s.light_samples <= 1024, "light samples", "1 to 1024.");
   require(s.error_target >= 0 && s.error_target < 1, "error", "a share below 1, such as 2%.");
   require(s.error_floor >= 0 && s.error_floor <= 1, "error floor", "a share of at most 1, such as 1%.");
+  require(s.most_mean_spp >= 0 && std::isfinite(s.most_mean_spp), "mean number of samples per pixel",
+          "0 for no limit, or more.");
   require(s.close_hit >= 0 && std::isfinite(s.close_hit), "close-hit distance", "0 or more zone sizes.");
   require(s.threads >= 0, "number of threads", "0 (all cores) or more.");
 }

@@ -2,7 +2,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "scenes/model/camera.h"
 #include "solver/emit/selection.h"
 #include "viewer_export/still/film.h"
 
@@ -44,6 +46,9 @@ struct StillSettings {
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = all cores. The picture does not depend on it.
 };
+
+/// Width and height [pixels]: those of the settings, or of the camera where they are 0.
+std::pair<int, int> picture_size(const StillSettings& settings, const Camera& camera);
 
 /// Throws InputError for settings out of range.
 void check(const StillSettings& settings);

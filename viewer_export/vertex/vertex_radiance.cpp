@@ -12,6 +12,7 @@
 #include "scenes/io/common/up_direction.h"
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
+#include "solver/solution/room_of_solution.h"
 #include "solver/solution/thread_count.h"
 #include "solver/tally/replicates.h"
 #include "viewer_export/vertex/vertex_gatherer.h"
@@ -160,6 +161,7 @@ VertexData gather_vertices(const Room& room, const Solution& solution, const Ver
                            const VertexProgressCallback& progress, const std::atomic<bool>& interrupt) {
   check(settings);
   const Scene& scene = room.scene();
+  check_is_room_of(solution, scene, room.mesh());
   tbb::task_arena arena(thread_count(settings.threads));
   const VertexRings rings = arena.execute(
       [&] { return VertexRings(room.surfaces(), solution, settings.all_zones, settings.only); });

@@ -155,17 +155,18 @@ void NativeObjects::read_box_with_materials(const JsonCursor& at, Surface shape,
 
 void NativeObjects::read_group(const JsonCursor& name, const Placement& placement) {
   const std::string& wanted = name.string();
-  std::vector<std::string> known;
-  if (groups_) {
-    for (const auto& [key, value] : groups_->members()) known.push_back(key);
-  }
-  if (std::find(known.begin(), known.end(), wanted) == known.end()) {
+  const std::optional<JsonCursor> group = groups_ ? groups_->find(wanted.c_str()) : std::nullopt;
+  if (!group) {
+    std::vector<std::string> known;
+    if (groups_) {
+      for (const auto& [key, value] : groups_->members()) known.push_back(key);
+    }
     name.fail(fmt::format("there is no group \"{}\"", wanted), known_names(wanted, known));
   }
   if (!open_groups_.insert(wanted).second) {
     name.fail(fmt::format("the group \"{}\" contains itself", wanted), "Break the cycle.");
   }
-  read_list(groups_->at(wanted.c_str()), placement);
+  read_list(*group, placement);
   open_groups_.erase(wanted);
 }
 

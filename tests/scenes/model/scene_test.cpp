@@ -13,6 +13,7 @@
 namespace reemit {
 namespace {
 
+using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -69,10 +70,22 @@ TEST(FinishScene, RefusesALuminaireWithoutAnArea) {
             }),
             "accepted")
       << "what does not emit may be degenerate: the mesher reports it";
-  EXPECT_THAT(refusal([](Scene& s) {
-                s.surfaces[1].shapes = {Sphere{{0, 0, 0}, 0, false}};
-              }),
-              HasSubstr("no area"));
+}
+
+TEST(FinishScene, RefusesRoundShapesThatAreNone) {
+  const auto of = [](const CurvedShape& shape) {
+    return refusal([&](Scene& s) { s.surfaces[1].shapes = {shape}; });
+  };
+  const Vec3 up(0, 0, 1);
+  EXPECT_EQ(of(Sphere{{0, 0, 0}, 0.5}), "accepted");
+  EXPECT_EQ(of(Disk{{0, 0, 0}, up, 0.5, 0.2}), "accepted");
+  EXPECT_EQ(of(Cone{{0, 0, 0}, up, 0.5, 0}), "accepted");
+  for (const CurvedShape& shape : std::initializer_list<CurvedShape>{
+           Sphere{{0, 0, 0}, 0}, Sphere{{0, 0, 0}, -0.5}, Disk{{0, 0, 0}, up, 0.5, -0.3},
+           Disk{{0, 0, 0}, up, 0.5, 0.5}, Disk{{0, 0, 0}, up, 0.5, 0.9}, Disk{{0, 0, 0}, Vec3::Zero(), 0.5},
+           Disk{{0, 0, 0}, 2 * up, 0.5}, Cylinder{{0, 0, 0}, up, -1}, Cylinder{up, up, 1},
+           Cone{{0, 0, 0}, up, 0.5, -0.2}, Cone{{0, 0, 0}, up, 0, 0}})
+    EXPECT_THAT(of(shape), AnyOf(HasSubstr("no area"), HasSubstr("not a number")));
 }
 
 TEST(FinishScene, NamesTheMaterialWithBadValues) {

@@ -39,6 +39,8 @@ TEST(Interrupt, FirstSignalKeepsTheSolutionSoFar) {
     folder.write("room.json", small_json_room());
     RunningProgram program = start_endless_solve(folder);
     wait_for_progress(program);
+    // A ray at least, or there is nothing to keep.
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
     program.send(signal);
     const ProgramRun run = program.wait();
     EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -64,6 +66,27 @@ TEST(Interrupt, SecondSignalLeavesNoHalfFile) {
   if (std::filesystem::exists(folder / "room.h5")) {
     EXPECT_EQ(run_reemit({"audit", (folder / "room.h5").string()}).exit_code, 0);
   }
+}
+
+/// In a room where light goes round some million times, so that a first batch takes long.
+TEST(Interrupt, PartOfAFirstBatchReplacesNoSolution) {
+  const TempFolder folder;
+  folder.write("room.json", R"({"format": "reemit-room", "version": 1, "bands": "grey",
+    "materials": {"white": {"reflectance": 0.999999}, "lamp": {"reflectance": 0.5, "exitance": 1}},
+    "objects": [{"material": "white", "box": {"min": [0, 0, 0], "max": [1, 1, 1], "inward": true}},
+                {"material": "lamp", "quad": {"corner": [0.5, 0.5, 0.5], "u": [0.001, 0, 0], "v": [0, 0.001, 0]}}]})");
+  const std::string room = (folder / "room.json").string();
+  const std::string output = (folder / "room.h5").string();
+  ASSERT_EQ(run_reemit({"solve", room, "-o", output, "--zones", "200", "--time", "0.2s"}).exit_code, 0);
+  const std::string previous = read_bytes(output);
+  RunningProgram program(
+      {"solve", room, "-o", output, "--zones", "200", "--packets", "1000000000", "--verbose"});
+  wait_for_progress(program);
+  program.send(SIGINT);
+  const ProgramRun run = program.wait();
+  EXPECT_EQ(run.exit_code, 130);
+  EXPECT_THAT(run.err, HasSubstr("interrupted in the first batch; nothing was written"));
+  EXPECT_TRUE(read_bytes(output) == previous);
 }
 
 TEST(Interrupt, KilledRunKeepsThePreviousSolution) {

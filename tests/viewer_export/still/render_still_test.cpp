@@ -469,6 +469,28 @@ TEST(RenderStill, refuses_nonsense) {
   settings = good;
   settings.error_target = 1;
   refused(inside(), settings);
+  settings = good;
+  settings.most_mean_spp = std::nan("");
+  refused(inside(), settings);
+}
+
+/// Neither one with other zones nor one that is darker than when it was solved.
+TEST(RenderStill, RefusesAnotherRoom) {
+  const RoomBuilder room = furnace(2, 0.5, 1);
+  SolverSettings solver;
+  solver.packets = 1000;
+  const Solution solution = solve_zones(room.scene(), room.mesh(), solver, {}, test::kNever);
+  const StillSettings settings = small_still(Integrator::kZones, 1);
+  EXPECT_NO_THROW(render(room, solution, inside(), settings));
+  const auto with = [&](const Scene& scene, const ZoneMesh& mesh) {
+    const Room walls(scene, mesh);
+    render_still(walls, solution, inside(), settings, {}, test::kNever);
+  };
+  const ZoneMesh finer = furnace(3, 0.5, 1).mesh().mesh;
+  EXPECT_THROW(with(room.scene(), finer), InputError);
+  Scene darker = room.scene();
+  for (Material& m : darker.materials) m.reflectance *= 0.3;
+  EXPECT_THROW(with(darker, solution.mesh), InputError);
 }
 
 }  // namespace
