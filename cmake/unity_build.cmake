@@ -2,7 +2,7 @@
 # is most of the time that a single file takes. So names in anonymous namespaces differ within a library or program. What is
 # large is split, so that all cores have work; the preset dev compiles each file alone and so notices what a file forgets
 # to include.
-set(REEMIT_UNITY_FILES 25 CACHE STRING "Files that are compiled as one, at most")
+set(REEMIT_UNITY_FILES 45 CACHE STRING "Files that are compiled as one, at most")
 
 function(reemit_unite target)
   get_target_property(files ${target} SOURCES)

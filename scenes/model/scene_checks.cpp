@@ -191,11 +191,11 @@ void check_shape(const CurvedShape& shape, const std::string& where) {
   // In this order: areas of what has negative radii may be positive.
   const bool is_sound = std::visit(
       [](const auto& s) {
-        using Shape = std::decay_t<decltype(s)>;
-        if constexpr (std::is_same_v<Shape, Disk>)
+        using Kind = std::decay_t<decltype(s)>;
+        if constexpr (std::is_same_v<Kind, Disk>)
           return s.inner_radius >= 0 && s.inner_radius < s.radius &&
                  std::abs(s.normal.squaredNorm() - 1) < 1e-9;
-        else if constexpr (std::is_same_v<Shape, Cone>)
+        else if constexpr (std::is_same_v<Kind, Cone>)
           return s.base_radius >= 0 && s.top_radius >= 0;
         else
           return s.radius > 0;

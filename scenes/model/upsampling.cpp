@@ -52,9 +52,9 @@ Spectrum widths(const BandSet& bands) {
 }
 
 bool shows_white_as_neutral(const BandSet& bands) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kGreyRounding = 1e-9;
   const Eigen::Array3d white = bands.to_rgb(widths(bands));
-  return white.minCoeff() > 0 && white.maxCoeff() - white.minCoeff() <= kRounding * white.maxCoeff();
+  return white.minCoeff() > 0 && white.maxCoeff() - white.minCoeff() <= kGreyRounding * white.maxCoeff();
 }
 
 const BandSet& whole_visible_range() {
@@ -81,8 +81,8 @@ Eigen::Matrix3Xd colour_of_reflectance(const BandSet& bands, const Spectrum& lig
 }
 
 bool is_neutral(const Eigen::Array3d& rgb) {
-  constexpr double kRounding = 1e-9;
-  return rgb.maxCoeff() - rgb.minCoeff() <= kRounding * rgb.maxCoeff();
+  constexpr double kGreyRounding = 1e-9;
+  return rgb.maxCoeff() - rgb.minCoeff() <= kGreyRounding * rgb.maxCoeff();
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64
   flight.batch->weight = weight;
   flight.done = std::async(std::launch::async, [this, number, packets, batch = flight.batch.get(),
                                                 token = stop.or_when(needless_), direct = std::move(direct)] {
-    using Clock = StopToken::Clock;
-    const Clock::time_point begin = Clock::now();
+    using BatchClock = StopToken::Clock;
+    const BatchClock::time_point begin = BatchClock::now();
     batch->books.clear();
     BatchTask task{transport_, emission_, settings_, number, packets, &token};
     task.first_together = direct.first_together;
@@ -72,7 +72,7 @@ void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64
                                                                 : walk_batch(task, batch->books);
       if (batch->whole && direct.put) direct.put(batch->books);
     });
-    batch->seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    batch->seconds = std::chrono::duration<double>(BatchClock::now() - begin).count();
   });
   flights_.push_back(std::move(flight));
 }

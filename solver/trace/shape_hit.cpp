@@ -32,9 +32,9 @@ ShapeTarget::ShapeTarget(const CurvedShape& shape) : is_sphere_(std::holds_alter
     frustum_ = frustum_of(shape);
   }
   const auto [low, high] = shape_bounds(shape);
-  constexpr double kMargin = 1e-6;
-  low_ = low - Vec3::Constant(kMargin);
-  high_ = high + Vec3::Constant(kMargin);
+  constexpr double kBoxMargin = 1e-6;
+  low_ = low - Vec3::Constant(kBoxMargin);
+  high_ = high + Vec3::Constant(kBoxMargin);
 }
 
 double ShapeTarget::nearest(const Vec3& origin, const Vec3& d, double near, double far) const {

@@ -272,7 +272,9 @@ StillImage render_still(const StillLight& light, const Camera& camera, const Sti
                         const std::atomic<bool>& interrupt) {
   const StillSettings& settings = light.settings();
   const Room& room = light.room();
-  const auto [width, height] = picture_size(settings, camera);
+  const std::pair<int, int> size = picture_size(settings, camera);
+  const int width = size.first;
+  const int height = size.second;
   const PinholeCamera pinhole(camera, width, height, room.rays());
   tbb::task_arena arena(thread_count(settings.threads));
   StillImage image;

@@ -12,19 +12,19 @@
 namespace reemit {
 namespace {
 
-constexpr double kShortest = 1, kLongest = 1e6;  // [nm]
-constexpr double kRounding = 1e-9;               // of a step
+constexpr double kShortestWave = 1, kLongestWave = 1e6;  // [nm]
+constexpr double kOfAStep = 1e-9;                        // of a step
 
 double steps_of(const SpectralBands& bands) {
-  return std::floor((bands.last_nm - bands.first_nm) / bands.step_nm + kRounding);
+  return std::floor((bands.last_nm - bands.first_nm) / bands.step_nm + kOfAStep);
 }
 
 }  // namespace
 
 std::string SpectralBands::problem() const {
   for (const double nm : {first_nm, last_nm})
-    if (!(nm >= kShortest && nm <= kLongest))
-      return fmt::format("a wavelength of {} nm is not between {} and {}", nm, kShortest, kLongest);
+    if (!(nm >= kShortestWave && nm <= kLongestWave))
+      return fmt::format("a wavelength of {} nm is not between {} and {}", nm, kShortestWave, kLongestWave);
   if (!(step_nm > 0)) return fmt::format("a step of {} nm", step_nm);
   const double steps = steps_of(*this);
   if (!(steps >= 1)) return "less than two bands";

@@ -19,11 +19,11 @@ namespace {
 ZoneBias estimate_of(double factor) {
   constexpr double kRho = 0.5;
   constexpr double kExitance = 2;
-  constexpr double kIrradiance = kExitance / (1 - kRho);
+  constexpr double kIrradianceOfWalls = kExitance / (1 - kRho);
   test::RoomBuilder room;
   const MaterialId wall = room.material("wall", kRho, kExitance);
   room.box({0, 0, 0}, {1, 2, 3}, {wall, wall, wall, wall, wall, wall}, 4);
-  const Solution solution = test::uniform_solution(room, 0, factor * kIrradiance);
+  const Solution solution = test::uniform_solution(room, 0, factor * kIrradianceOfWalls);
   const Room walls(room.scene(), solution.mesh);
   const RadianceField field(walls, solution);
   const DirectLight direct(walls);
@@ -34,7 +34,7 @@ ZoneBias estimate_of(double factor) {
     points.push_back(
         surface_point(walls.rays(), TriangleId(i % walls.rays().mesh().triangle_count()), 0.3F, 0.3F, true));
   // Over the radiance rho^2 E/pi that is there after at least two reflections.
-  const std::vector<double> scale(points.size(), std::numbers::pi / (kRho * kRho * kIrradiance));
+  const std::vector<double> scale(points.size(), std::numbers::pi / (kRho * kRho * kIrradianceOfWalls));
   return estimate_zone_bias(gather, path, points, scale, {256}, 1).value();
 }
 

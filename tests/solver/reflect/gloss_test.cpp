@@ -92,21 +92,21 @@ TEST(Gloss, IsTheSameSeenFromEitherEnd) {
 double chi_square(const GlossModel& lobe, const GlossModel& drawn, const Vec3f& from) {
   constexpr std::size_t kRings = 20, kSectors = 16, kFine = 40;
   constexpr std::uint32_t kDraws = 200'000;
-  constexpr double kPi = std::numbers::pi;
+  constexpr double kHalfTurn = std::numbers::pi;
   const Frame frame(Vec3f(-from.x(), -from.y(), from.z()));
   std::vector<double> expected(kRings * kSectors + 1, 0.0);
   double seen = 0;
-  const double cell = kPi / static_cast<double>(kRings * kFine);
+  const double cell = kHalfTurn / static_cast<double>(kRings * kFine);
   for (std::size_t i = 0; i < kRings * kFine; ++i)
     for (std::size_t j = 0; j < kSectors * kFine; ++j) {
       const double s = (static_cast<double>(i) + 0.5) / (kRings * kFine);
-      const double theta = kPi * s * s * s;
-      const double phi = 2 * kPi * (static_cast<double>(j) + 0.5) / (kSectors * kFine);
+      const double theta = kHalfTurn * s * s * s;
+      const double phi = 2 * kHalfTurn * (static_cast<double>(j) + 0.5) / (kSectors * kFine);
       const Vec3f to = frame.to_world(
           Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta))
               .cast<float>());
       const double share = static_cast<double>(lobe.value(from, to).pdf_per_sr) * std::sin(theta) * 3 * s *
-                           s * cell * 2 * kPi / (kSectors * kFine);
+                           s * cell * 2 * kHalfTurn / (kSectors * kFine);
       expected[i / kFine * kSectors + j / kFine] += kDraws * share;
       seen += share;
     }
@@ -122,11 +122,11 @@ double chi_square(const GlossModel& lobe, const GlossModel& drawn, const Vec3f& 
     }
     const Vec3f local = frame.to_local(to);
     const auto z = static_cast<double>(std::min(1.0F, std::max(-1.0F, local.z())));
-    const double s = std::cbrt(std::acos(z) / kPi);
+    const double s = std::cbrt(std::acos(z) / kHalfTurn);
     double phi = std::atan2(static_cast<double>(local.y()), static_cast<double>(local.x()));
-    if (phi < 0) phi += 2 * kPi;
+    if (phi < 0) phi += 2 * kHalfTurn;
     const auto ring = std::min(kRings - 1, static_cast<std::size_t>(s * kRings));
-    const auto sector = std::min(kSectors - 1, static_cast<std::size_t>(phi / (2 * kPi) * kSectors));
+    const auto sector = std::min(kSectors - 1, static_cast<std::size_t>(phi / (2 * kHalfTurn) * kSectors));
     ++counts[ring * kSectors + sector];
   }
   return test::chi_square_of_counts(counts, expected);
