@@ -12,7 +12,8 @@ std::string text(const Vec3& place) {
 }  // namespace
 
 std::string place_problem(const Vec3& place) {
-  if (place.cwiseAbs().maxCoeff() <= limits::kFarthest) return "";
+  // The largest of coordinates need not be the one that is not a number.
+  if (place.allFinite() && place.cwiseAbs().maxCoeff() <= limits::kFarthest) return "";
   return fmt::format("{} is farther out than {:g} m", text(place), limits::kFarthest);
 }
 

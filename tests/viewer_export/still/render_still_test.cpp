@@ -476,7 +476,7 @@ TEST(RenderStill, refuses_nonsense) {
 
 /// Neither one with other zones nor one that is darker than when it was solved.
 TEST(RenderStill, RefusesAnotherRoom) {
-  const RoomBuilder room = furnace(2, 0.5, 1);
+  const RoomBuilder room = furnace(1, 0.5, 2);
   SolverSettings solver;
   solver.packets = 1000;
   const Solution solution = solve_zones(room.scene(), room.mesh(), solver, {}, test::kNever);
@@ -486,7 +486,7 @@ TEST(RenderStill, RefusesAnotherRoom) {
     const Room walls(scene, mesh);
     render_still(walls, solution, inside(), settings, {}, test::kNever);
   };
-  const ZoneMesh finer = furnace(3, 0.5, 1).mesh().mesh;
+  const ZoneMesh finer = furnace(1, 0.5, 3).mesh().mesh;
   EXPECT_THROW(with(room.scene(), finer), InputError);
   Scene darker = room.scene();
   for (Material& m : darker.materials) m.reflectance *= 0.3;
