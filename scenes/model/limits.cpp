@@ -12,8 +12,10 @@ std::string text(const Vec3& place) {
 }  // namespace
 
 std::string place_problem(const Vec3& place) {
-  // The largest of coordinates need not be the one that is not a number.
-  if (place.allFinite() && place.cwiseAbs().maxCoeff() <= limits::kFarthest) return "";
+  // First, for the largest of coordinates need not be the one that is not a number.
+  if (!place.allFinite())
+    return fmt::format("{} has a coordinate that is infinite or not a number", text(place));
+  if (place.cwiseAbs().maxCoeff() <= limits::kFarthest) return "";
   return fmt::format("{} is farther out than {:g} m", text(place), limits::kFarthest);
 }
 

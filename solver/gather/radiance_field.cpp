@@ -11,6 +11,7 @@
 #include "scenes/model/error.h"
 #include "solver/reflect/lambert.h"
 #include "solver/solution/opposite_zones.h"
+#include "solver/solution/room_of_solution.h"
 
 namespace reemit {
 namespace {
@@ -27,11 +28,7 @@ float mean_irradiance(const ZoneSums& sums, const std::vector<double>& of_part, 
 
 RadianceField::RadianceField(const Room& room, const Solution& solution, std::size_t parts)
     : room_(&room), bands_(room.band_count()), parts_(parts), zero_(bands_, 0.0F) {
-  const Scene& scene = room.scene();
-  if (!(scene.bands == solution.bands) || scene.surfaces.size() != solution.surface_names.size() ||
-      room.mesh().zone_count() != solution.mesh.zone_count())
-    throw InputError(scene.source, "the room is not the one that was solved",
-                     "Solve it again: its surfaces, zones or bands have changed since.");
+  check_has_zones_of(solution, room.scene(), room.mesh());
   read_zones(solution);
 }
 

@@ -54,14 +54,19 @@ bool fits(const Solution& solution, const Scene& scene) {
 
 }  // namespace
 
-void check_is_room_of(const Solution& solution, const Scene& scene, const ZoneMesh& mesh) {
-  const bool fits_zones = solution.mesh.zone_count() == mesh.zone_count() &&
-                          solution.mesh.triangle_count() == mesh.triangle_count() &&
-                          solution.bands == scene.bands &&
-                          solution.surface_names.size() == scene.surfaces.size();
-  if (!fits_zones || (!solution.room_hash.empty() && content_hash(scene) != solution.room_hash))
+void check_has_zones_of(const Solution& solution, const Scene& scene, const ZoneMesh& mesh) {
+  if (solution.mesh.zone_count() != mesh.zone_count() ||
+      solution.mesh.triangle_count() != mesh.triangle_count() || !(solution.bands == scene.bands) ||
+      solution.surface_names.size() != scene.surfaces.size())
     throw InputError(scene.source, "the room is not the one that was solved",
-                     "Solve it again: something of it or its zones has changed since.");
+                     "Solve it again: its surfaces, zones or bands have changed since.");
+}
+
+void check_is_room_of(const Solution& solution, const Scene& scene, const ZoneMesh& mesh) {
+  check_has_zones_of(solution, scene, mesh);
+  if (!solution.room_hash.empty() && content_hash(scene) != solution.room_hash)
+    throw InputError(scene.source, "the room is not the one that was solved",
+                     "Solve it again: something of it has changed since.");
 }
 
 Scene read_room_of(const Solution& solution, const fs::path& solution_file,

@@ -7,8 +7,11 @@
 
 namespace reemit {
 
-/// Throws InputError unless a room and its zones are what a solution was made from. Its zones are looked at
-/// alone where it does not know what it was made from (Solution::room_hash is empty).
+/// Throws InputError unless a room has the bands, surfaces and zones that a solution holds values of.
+void check_has_zones_of(const Solution& solution, const Scene& scene, const ZoneMesh& mesh);
+
+/// The same unless a room is what a solution was made from, in all that its hash counts; where the solution
+/// does not know that (Solution::room_hash is empty) it is check_has_zones_of.
 void check_is_room_of(const Solution& solution, const Scene& scene, const ZoneMesh& mesh);
 
 /// Reads the room that a solution was made from, with the options of then. Takes the files of `override` if
