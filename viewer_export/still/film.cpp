@@ -37,8 +37,8 @@ double sample_filter(PixelFilter filter, double u) {
 
 std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates, bool caustics) {
   // Finishing turns three of the replicates into layers.
-  const std::size_t layers = (caustics ? 3 : 2) + std::max<std::size_t>(replicates, 3);
-  return (layers * bands + 7) * sizeof(float) + 1;
+  const std::size_t layers = (caustics ? 4 : 3) + std::max<std::size_t>(replicates, 3);
+  return (layers * bands + 8) * sizeof(float) + 1;
 }
 
 Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts,
@@ -49,7 +49,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
   image_.height = height;
   const std::size_t pixels = image_.pixel_count();
   try {
-    std::vector<std::vector<float>*> by_band{&image_.direct, &image_.albedo};
+    std::vector<std::vector<float>*> by_band{&image_.direct, &image_.albedo, &image_.albedo_stderr};
     if (caustics) by_band.push_back(&image_.caustic);
     for (std::size_t r = 0; r < replicates_; ++r) by_band.push_back(&means_[r]);
     allocate_planes(by_band, pixels * bands_);
@@ -59,6 +59,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
     image_.normal.assign(3 * pixels, 0.0F);
     seen_.assign(pixels, 0.0F);
     begun_.assign(pixels, 0);
+    blocks_.assign(pixels, 0);
   } catch (const std::bad_alloc&) {
     throw ResourceError("still",
                         "out of memory for " + std::to_string(pixels) + " pixels of " +
@@ -82,8 +83,12 @@ void Film::add(std::size_t pixel, std::size_t replicate, const PixelBlock& block
     }
     mean += share * (radiance - mean);
     image_.direct[k] += share_of_all * (block.direct[b] - image_.direct[k]);
-    image_.albedo[k] += share_of_all * (block.albedo[b] - image_.albedo[k]);
+    // As [WES79] updates variances: no difference of large numbers.
+    const float off = block.albedo[b] - image_.albedo[k];
+    image_.albedo[k] += share_of_all * off;
+    image_.albedo_stderr[k] += samples * off * (block.albedo[b] - image_.albedo[k]);
   }
+  ++blocks_[pixel];
   image_.samples[pixel] += samples;
   image_.luminous[pixel] += static_cast<float>(block.luminous);
   image_.depth[pixel] += static_cast<float>(block.depth);
@@ -141,7 +146,12 @@ void Film::complete_geometry(StillImage& image, std::size_t pixel) const {
   Eigen::Map<Vec3f> normal(&image.normal[3 * pixel]);
   const float length = normal.norm();
   if (length > 0) normal /= length;
-  if (image.samples[pixel] > 0) image.luminous[pixel] /= image.samples[pixel];
+  const float samples = image.samples[pixel];
+  if (samples > 0) image.luminous[pixel] /= samples;
+  // The variance of a block's mean falls as its samples, or faster.
+  const float of_mean = blocks_[pixel] > 1 ? 1 / (samples * static_cast<float>(blocks_[pixel] - 1)) : 0.0F;
+  for (std::size_t k = pixel * bands_; k < (pixel + 1) * bands_; ++k)
+    image.albedo_stderr[k] = std::sqrt(of_mean * image.albedo_stderr[k]);
 }
 
 StillImage Film::snapshot() const {

@@ -82,16 +82,19 @@ class Film {
  private:
   ReplicateMean mean_so_far(std::size_t pixel, std::size_t band) const;
   float indirect(std::size_t pixel, std::size_t band, float radiance) const;
-  /// From sums to means, of a pixel of a picture that has the layers of this one.
+  /// From sums to means and errors, of a pixel of a picture that has the layers of this one.
   void complete_geometry(StillImage& image, std::size_t pixel) const;
 
   std::size_t bands_;
   std::size_t replicates_;
   std::size_t parts_;
-  StillImage image_;  // depth, normal: sums over samples that saw something; luminous: their number
+  // depth, normal: sums over samples that saw something; luminous: their number; albedo_stderr: squared
+  // deviations of blocks from their mean, each as often as it has samples.
+  StillImage image_;
   std::array<std::vector<float>, kReplicates> means_;
   std::vector<float> seen_;
-  std::vector<std::uint8_t> begun_;  // replicates, by pixel
+  std::vector<std::uint8_t> begun_;    // replicates, by pixel
+  std::vector<std::uint32_t> blocks_;  // by pixel
 };
 
 }  // namespace reemit

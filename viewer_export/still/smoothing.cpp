@@ -32,6 +32,7 @@ struct SmoothedLayers {
                                              &radiance.covariance};
     if (!planes.caustic.empty()) by_band.push_back(&caustic);
     allocate_planes(by_band, planes.direct.size());
+    own_share.resize(planes.pixels());
   }
 
   void take(const SimilarPixels& means, const StillPlanes& planes, const StillImage& image, int first,
@@ -40,6 +41,7 @@ struct SmoothedLayers {
     const std::size_t start = planes.at(0, first);
     const std::size_t count = planes.at(0, last) - start;
     for (std::size_t p = 0; p < count; ++p) {
+      own_share[start + p] = means.own_share(p);
       for (std::size_t b = 0; b < planes.bands; ++b) {
         const std::size_t at = b * n + start + p;
         const std::size_t k = (start + p) * planes.bands + b;
@@ -48,7 +50,7 @@ struct SmoothedLayers {
         direct[at] = means.mean_of_both(1, b, p);
         if (!caustic.empty()) caustic[at] = means.mean_of_both(2, b, p);
         radiance.variance[k] = scale * scale * means.variance(b, p);
-        radiance.covariance[k] = means.own_share(p) * image.radiance_stderr[k] * image.radiance_stderr[k];
+        radiance.covariance[k] = own_share[start + p] * image.radiance_stderr[k] * image.radiance_stderr[k];
       }
     }
   }
@@ -56,6 +58,7 @@ struct SmoothedLayers {
   /// By band, as those of StillPlanes.
   std::array<std::vector<float>, 2> irradiance;
   std::vector<float> direct, caustic;
+  std::vector<float> own_share;  ///< Of a pixel's own value in its mean.
   SmoothedValues radiance{0};  ///< In the layout of StillImage; of the values take() finds the errors alone.
 };
 
@@ -101,12 +104,29 @@ std::vector<std::size_t> pixels_of_block(const StillImage& image, int x0, int y0
   return pixels;
 }
 
+/// A mean takes irradiance from other pixels, but reflectance from this one alone, with the noise of which
+/// parts of edges and textures its samples met. Of its own radiance, whose share in the mean is s, that noise
+/// is counted already, and reflectance and radiance share it: (1-s)^2 + 2 s (1-s) = 1 - s^2 is left.
+void add_noise_of_albedo(const StillPlanes& planes, const StillImage& image,
+                         const std::vector<float>& own_share, std::size_t band, SmoothedValues& smoothed) {
+  for (std::size_t p = 0; p < planes.pixels(); ++p) {
+    const std::size_t k = p * planes.bands + band;
+    const float scale = planes.scale[band * planes.pixels() + p];
+    if (image.albedo[k] < scale) continue;  // divided by something else
+    const float noise = smoothed.value[k] * image.albedo_stderr[k] / scale;
+    smoothed.variance[k] += (1 - own_share[p] * own_share[p]) * noise * noise;
+    smoothed.covariance[k] += (1 - own_share[p]) * noise * noise;
+  }
+}
+
 /// Completes the variances of a band; returns the relative error, rms over the picture.
-double complete_errors(const StillImage& image, SmoothedValues& smoothed, std::size_t band,
-                       double error_floor) {
+double complete_errors(const StillPlanes& planes, const StillImage& image, SmoothedLayers& layers,
+                       std::size_t band, double error_floor) {
+  SmoothedValues& smoothed = layers.radiance;
   const std::size_t bands = image.bands.count();
   const std::vector<double> scales = relative_scales(smoothed.value, bands, band, error_floor);
   SmoothingErrors errors(smoothed, image.radiance, image.radiance_stderr, bands, band, scales);
+  add_noise_of_albedo(planes, image, layers.own_share, band, smoothed);
   for (int y0 = 0; y0 < image.height; y0 += kBlock)
     for (int x0 = 0; x0 < image.width; x0 += kBlock) errors.complete(pixels_of_block(image, x0, y0));
   double squares = 0;
@@ -140,7 +160,7 @@ void smooth_still(StillImage& image, const StillHalves& halves, double error_flo
     put_radiance(planes, smoothed.radiance);
     std::vector<double> errors(image.bands.count());  // by band
     tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t b) {
-      errors[b] = complete_errors(image, smoothed.radiance, b, error_floor);
+      errors[b] = complete_errors(planes, image, smoothed, b, error_floor);
     });
     image.info.error = *std::max_element(errors.begin(), errors.end());
     std::transform(smoothed.radiance.variance.begin(), smoothed.radiance.variance.end(),

@@ -13,8 +13,8 @@ void check_consistent(const StillImage& image) {
       throw std::invalid_argument("still image with a layer of the wrong size");
   };
   check(image.radiance, values, false);
-  for (const auto* layer :
-       {&image.direct, &image.indirect, &image.caustic, &image.radiance_stderr, &image.albedo})
+  for (const auto* layer : {&image.direct, &image.indirect, &image.caustic, &image.radiance_stderr,
+                            &image.albedo, &image.albedo_stderr})
     check(*layer, values, true);
   check(image.samples, pixels, true);
   check(image.luminous, pixels, true);

@@ -30,6 +30,8 @@ struct StillImage {
   std::vector<float> caustic;
   std::vector<float> radiance_stderr;  ///< Standard error of `radiance` [W/(m2 sr)].
   std::vector<float> albedo;           ///< Reflectance of what is seen, over smooth mirrors and panes too.
+  /// Standard error of `albedo`: by chance samples meet more or less of what a pixel shows besides.
+  std::vector<float> albedo_stderr;
 
   std::vector<float> samples;  ///< One per pixel: camera rays.
   /// One per pixel: the share of them that saw a luminaire, straight or over smooth mirrors and panes.

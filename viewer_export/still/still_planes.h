@@ -11,7 +11,7 @@ namespace reemit {
 /// A still taken apart for comparing pixels: planes of one value per pixel, by band where so said
 /// (index band * pixels + pixel).
 struct StillPlanes {
-  /// Pre: the still has standard errors, and halves of its layout.
+  /// Pre: the still has standard errors of radiance and albedo, and halves of its layout.
   StillPlanes(const StillImage& image, const StillHalves& halves);
   /// Means over squares of `side` x `side` pixels, those at the right and lower rim smaller. `variance` is
   /// left empty: noise that pixels share does not fall as that of theirs. Squares that hold more than one

@@ -56,6 +56,24 @@ TEST(Film, mean_and_error_of_replicates_that_grow_by_blocks) {
   EXPECT_TRUE(std::isinf(image.depth[0]));
 }
 
+TEST(Film, error_of_the_albedo_is_that_of_blocks_weighed_by_their_samples) {
+  Film film(BandSet::grey(), 1, 1, 4);
+  const auto add = [&](std::size_t replicate, float albedo, int earlier, int samples) {
+    const float light = 1;
+    film.add(
+        0, replicate,
+        {.direct = &light, .indirect = &light, .albedo = &albedo, .samples = samples, .earlier = earlier});
+  };
+  // Mean 0.3 of 24 samples; squares off it, by samples: 2 (0.04 + 0.01 + 0 + 0.09) + 4 (4 * 0.01) = 0.44.
+  const float first[] = {0.1F, 0.2F, 0.3F, 0.6F};
+  for (std::size_t r = 0; r < 4; ++r) add(r, first[r], 0, 2);
+  EXPECT_NEAR(film.snapshot().albedo_stderr[0], std::sqrt(0.28 / (3 * 8)), 1e-6);
+  for (std::size_t r = 0; r < 4; ++r) add(r, r % 2 == 0 ? 0.2F : 0.4F, 2, 4);
+  const StillImage image = film.finish();
+  EXPECT_NEAR(image.albedo[0], 0.3, 1e-6);
+  EXPECT_NEAR(image.albedo_stderr[0], std::sqrt(0.44 / (7 * 24)), 1e-6);
+}
+
 TEST(Film, a_snapshot_is_the_picture_that_would_be_handed_over) {
   Film film(BandSet::grey(), 3, 2, 4, 1, true);
   for (std::size_t pixel = 0; pixel < 6; ++pixel)
@@ -77,6 +95,7 @@ TEST(Film, a_snapshot_is_the_picture_that_would_be_handed_over) {
   const StillImage end = film.finish();
   EXPECT_EQ(now.radiance, end.radiance);
   EXPECT_EQ(now.radiance_stderr, end.radiance_stderr);
+  EXPECT_EQ(now.albedo_stderr, end.albedo_stderr);
   EXPECT_EQ(now.direct, end.direct);
   EXPECT_EQ(now.indirect, end.indirect);
   EXPECT_EQ(now.caustic, end.caustic);

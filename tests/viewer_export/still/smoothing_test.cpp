@@ -364,6 +364,38 @@ TEST(Smoothing, small_lamps_leave_no_disks_around_them) {
     }
 }
 
+// Along an edge each sample meets the dark or the light side, under the same light. Of what a smoothed pixel
+// is off there, nearly all is how many met which. 4 standard errors of the mean square of 512 pixels: a false
+// alarm once in 16,000 seeds. Without that noise the stated error is a fortieth of the true one.
+TEST(Smoothing, errors_hold_what_side_of_an_edge_samples_met) {
+  Film film(BandSet::grey(), kWidth, kHeight, Film::kReplicates);
+  std::mt19937 random(13);
+  std::normal_distribution<double> normal;
+  constexpr int kPeriod = 12;
+  const auto is_on_edge = [](int x) { return x % kPeriod == 6; };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (std::size_t r = 0; r < Film::kReplicates; ++r) {
+        const bool dark = is_on_edge(x) ? random() % 2 == 0 : x / (kPeriod / 2) % 2 == 0;
+        const Seen seen{.albedo = dark ? 0.2 : 0.6};
+        const auto radiance = static_cast<float>(seen.albedo * std::max(0.0, 1 + 0.1 * normal(random)));
+        add(film, x, y, r, seen, {.direct = radiance / 2, .indirect = radiance / 2});
+      }
+  Noisy noisy = finished(film);
+  smooth(noisy);
+  double off = 0;
+  double stated = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      if (!is_on_edge(x)) continue;
+      const auto p = static_cast<std::size_t>(y * kWidth + x);
+      off += std::pow(static_cast<double>(noisy.image.radiance[p]) - 0.4, 2);
+      stated += std::pow(static_cast<double>(noisy.image.radiance_stderr[p]), 2);
+    }
+  RecordProperty("ratio", std::to_string(off / stated));
+  EXPECT_NEAR(off / stated, 1, 4 * std::sqrt(2.0 / 512));
+}
+
 TEST(Smoothing, layers_add_up) {
   Noisy noisy = noisy_picture(checkered);
   smooth(noisy);
