@@ -125,7 +125,7 @@ float SkyLight::expected_from_sun(const Vec3f& normal) const {
 
 double SkyLight::pdf_per_sr(std::uint32_t place, const Vec3& way) const {
   const double blind = table_.pdf_per_sr(table_.cell_of(way));
-  if (place == SkyView::kUnknown || !survey().view.sees_sky(place)) return blind;
+  if (!survey().view.sees_sky()) return blind;
   return kBlind * blind + (1 - kBlind) * survey().view.pdf_per_sr(place, way);
 }
 
@@ -134,7 +134,7 @@ SkyLight::Sample SkyLight::sample_sky(const Vec3f& x, const Vec3f& normal, float
   const std::uint32_t place = view.place_of(x, normal);
   auto u = static_cast<double>(u0);
   Vec3 way;
-  if (place == SkyView::kUnknown || !view.sees_sky(place))
+  if (!view.sees_sky())
     way = table_.sample(u, static_cast<double>(u1));
   else if (u < kBlind)
     way = table_.sample(u / kBlind, static_cast<double>(u1));

@@ -20,6 +20,9 @@ constexpr std::uint32_t kRaysOfFirst = 2;
 constexpr std::uint32_t kSecondPoints = 1U << 15;
 constexpr int kMostRays = 64;
 constexpr std::uint32_t kSunPoints = 1U << 18;
+/// Rays from the air of a cell, and from the air of one that sees little of the sky.
+constexpr std::uint32_t kRaysInAir = 512;
+constexpr std::uint32_t kMostRaysInAir = 2560;
 /// Rays go through so much that lets light through.
 constexpr int kMostCrossed = 16;
 
@@ -91,16 +94,41 @@ void look_out(const RayTracer& rays, const SurfaceModel& surfaces, const Surface
   }
 }
 
+/// From random points of a cell each way: a ray is of all ways to face from which it is drawn by cosine.
+void look_from_air(const RayTracer& rays, const SurfaceModel& surfaces, const Eigen::Matrix3d& to_local,
+                   const std::function<float(const Vec3f&)>& brightness, std::size_t cell, SkyView& view) {
+  const CounterRng rng(kSeed, RngPurpose::kSkySurvey);
+  constexpr std::uint32_t kBatch = 3;
+  constexpr float kEdge = 2.0F / static_cast<float>(SkyView::kCells);
+  const auto index = static_cast<std::uint32_t>(cell);
+  std::uint32_t left = 0;
+  for (std::uint32_t i = 0; i < kMostRaysInAir; ++i) {
+    if (i == kRaysInAir && left > kRaysInAir / 20) return;
+    const std::array<float, 4> u = rng.uniform4(index, kBatch, 2 * i);
+    const std::array<float, 4> v = rng.uniform4(index, kBatch, 2 * i + 1);
+    const Vec3f towards = sample_sphere(v[0], v[1]);
+    const bool leaves_room =
+        leaves(rays, surfaces, SkyView::corner_of(cell) + kEdge * Vec3f(u[0], u[1], u[2]), towards);
+    if (leaves_room) ++left;
+    const float bright = leaves_room ? brightness(towards) : 0;
+    for (std::size_t facing = 0; facing < SkyView::kFacings; ++facing) {
+      if (!(SkyView::normal_of(facing).dot(towards) > v[2])) continue;
+      const std::uint32_t place = view.place_in_air(cell, facing);
+      view.add_ray(place);
+      if (leaves_room) view.add_escape(place, to_local * towards.cast<double>(), bright);
+    }
+  }
+}
+
 }  // namespace
 
 void survey_sky(const ZoneMesh& mesh, const RayTracer& rays, const SurfaceModel& surfaces,
                 const Eigen::Matrix3d& to_local, const std::function<float(const Vec3f&)>& brightness,
                 SkyView& view, std::vector<SkySight>& sights) {
   const PointsOfRoom points(mesh, rays);
-  if (points.empty()) return;
   const CounterRng rng(kSeed, RngPurpose::kSkySurvey);
   for (const std::uint32_t batch : {0U, 1U}) {
-    const std::uint32_t count = batch == 0 ? kFirstPoints : kSecondPoints;
+    const std::uint32_t count = points.empty() ? 0 : batch == 0 ? kFirstPoints : kSecondPoints;
     std::vector<SurveyLook> looks(count);
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 1024), [&](const auto& range) {
       for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
@@ -129,6 +157,11 @@ void survey_sky(const ZoneMesh& mesh, const RayTracer& rays, const SurfaceModel&
       }
     }
   }
+  view.add_air();
+  constexpr std::size_t kCells = SkyView::kCells * SkyView::kCells * SkyView::kCells;
+  tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
+    look_from_air(rays, surfaces, to_local, brightness, cell, view);
+  });
 }
 
 void survey_sun(const ZoneMesh& mesh, const RayTracer& rays, const SurfaceModel& surfaces,

@@ -18,9 +18,9 @@ struct SkySight {
 };
 
 /// Rays from all sides with zones into their hemispheres, by cosine: from deep inside, where few get out, up
-/// to 64 of each point. Panes, bodies of glass and opal sheets do not stop them. Fills `view` and shows every
-/// ray that leaves the room. `brightness` of a direction (unit, room) in the sky; `to_local`: to its frame.
-/// The same on any number of threads.
+/// to 64 of each point; then from the air all over. Panes, bodies of glass and opal sheets do not stop them.
+/// Fills `view` and shows every ray that leaves the room. `brightness` of a direction (unit, room) in the
+/// sky; `to_local`: to its frame. The same on any number of threads.
 void survey_sky(const ZoneMesh& mesh, const RayTracer& rays, const SurfaceModel& surfaces,
                 const Eigen::Matrix3d& to_local, const std::function<float(const Vec3f&)>& brightness,
                 SkyView& view, std::vector<SkySight>& sights);

@@ -69,9 +69,14 @@ RoomBuilder room_with_window(const Sky& sky, double reflectance = 0.5) {
   return room;
 }
 
-/// Of a point that faces up, through the opening, by midpoints over it.
+/// Of an overcast sky that sends 1 W/m2 to a level plane.
+double overcast_radiance(const Vec3& towards) {
+  return 9 / (7 * pi) * (1 + 2 * towards.z()) / 3;
+}
+
+/// Of a point, through the opening, by midpoints over it. No light comes from below the horizon.
 template <class Radiance>
-double through_window(const Vec3& x, Radiance&& radiance) {
+double through_window(const Vec3& x, Radiance&& radiance, const Vec3& normal = Vec3::UnitZ()) {
   constexpr int kSteps = 400;
   double sum = 0;
   for (int i = 0; i < kSteps; ++i)
@@ -80,7 +85,8 @@ double through_window(const Vec3& x, Radiance&& radiance) {
                     kSill + (j + 0.5) / kSteps * (kHead - kSill));
       const Vec3 way = at - x;
       const double r = way.norm();
-      if (way.z() > 0) sum += radiance(Vec3(way / r)) * (way.z() / r) * (-way.y() / r) / (r * r);
+      if (way.z() > 0 && way.dot(normal) > 0)
+        sum += radiance(Vec3(way / r)) * (way.dot(normal) / r) * (-way.y() / r) / (r * r);
     }
   return sum * (kRight - kLeft) * (kHead - kSill) / (kSteps * kSteps);
 }
@@ -142,7 +148,6 @@ TEST(SkyLight, packets_fill_a_plane_outside_and_the_books_balance) {
 }
 
 TEST(SkyLight, points_deep_inside_see_the_sky_through_the_window) {
-  const auto overcast = [](const Vec3& d) { return 9 / (7 * pi) * (1 + 2 * d.z()) / 3; };
   const Sky clear = cie_sky_over_z(12, 1);
   const auto relative = [&](const Vec3& d) {
     const double to_sun = std::acos(std::clamp(d.dot(clear.towards_sun()), -1.0, 1.0));
@@ -164,7 +169,7 @@ TEST(SkyLight, points_deep_inside_see_the_sky_through_the_window) {
     const Room room(builder.scene(), mesh);
     for (const double depth : {0.5, 1.5, 3.0, 5.5}) {
       const Vec3 x(1.7, depth, 0);
-      const double expected = is_clear ? through_window(x, by_formula) : through_window(x, overcast);
+      const double expected = is_clear ? through_window(x, by_formula) : through_window(x, overcast_radiance);
       const MeanTest e = direct_irradiance(room, floor_point(room, x.x(), x.y()), 8192);
       // Cells of the sky are one degree high, and the quadrature has steps of half of one.
       EXPECT_NEAR(e.mean(), expected, 5 * e.standard_error() + 1e-3 * expected) << depth;
@@ -180,6 +185,58 @@ TEST(SkyLight, survey_makes_shadow_rays_through_the_window_quiet) {
   const Room room(builder.scene(), mesh);
   const MeanTest e = direct_irradiance(room, floor_point(room, 2, 5.5), 256);
   EXPECT_LT(e.standard_error() * std::sqrt(32.0), 0.1 * e.mean());
+}
+
+// No surface is there that rays of the survey could have started from. What they meet is told by the opening
+// itself. 16 shadow rays of a replicate by brightness alone would often miss it altogether.
+TEST(SkyLight, shadow_rays_from_the_air_find_the_window) {
+  const RoomBuilder builder = room_with_window(sky_over_z(SkyKind::kOvercast, 1));
+  const ZoneMesh mesh = builder.mesh().mesh;
+  const Room room(builder.scene(), mesh);
+  const auto passes_window = [](const Vec3& x, const Vec3& towards) {
+    if (!(towards.y() < 0)) return false;
+    const Vec3 at = x - x.y() / towards.y() * towards;
+    return at.x() > kLeft && at.x() < kRight && at.z() > kSill && at.z() < kHead;
+  };
+  for (const Vec3& x : {Vec3(1.7, 2.5, 0.85), Vec3(0.4, 4, 0.85), Vec3(3.1, 5.4, 1.2)})
+    for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, -1, 0), Vec3(0.6, 0, 0.8)}) {
+      MeanTest e;
+      const Vec3f from = room.rays().normalised(x);
+      for (std::uint64_t replicate = 0; replicate < 32; ++replicate) {
+        const SobolSequence points(500 + replicate);
+        constexpr int kRays = 256;
+        double sum = 0;
+        for (std::uint32_t i = 0; i < kRays; ++i) {
+          const std::array<float, 2> u{points.sample(i, 0), points.sample(i, 1)};
+          const SkyLight::Sample sample = room.sky()->sample_sky(from, normal.cast<float>(), u[0], u[1]);
+          if (passes_window(x, sample.towards.cast<double>())) sum += static_cast<double>(sample.factor);
+        }
+        e.add(sum / kRays * room.sky()->sky_strength()[0]);
+      }
+      const double expected = through_window(x, overcast_radiance, normal);
+      EXPECT_NEAR(e.mean(), expected, 5 * e.standard_error() + 2e-3 * expected) << x.transpose();
+      EXPECT_LT(e.standard_error() * std::sqrt(32.0), 0.3 * expected) << x.transpose();
+    }
+}
+
+// Few rays of the survey start from what is small. The errors of replicates without a hit would be 0.
+TEST(SkyLight, shadow_rays_from_a_thin_leg_find_the_window) {
+  RoomBuilder builder = room_with_window(sky_over_z(SkyKind::kOvercast, 1));
+  const auto leg = static_cast<std::uint32_t>(builder.scene().surfaces.size());
+  builder.quad(builder.material("leg", 0.3),
+               {Vec3(2.03, 4.6, 0), Vec3(2.04, 4.6, 0), Vec3(2.04, 4.6, 0.02), Vec3(2.03, 4.6, 0.02)}, 1);
+  const ZoneMesh mesh = builder.mesh().mesh;
+  const Room room(builder.scene(), mesh);
+  for (std::size_t t = 0; t < mesh.flat_count(); ++t) {
+    if (mesh.triangle(TriangleId(t)).surface != SurfaceId(leg)) continue;
+    const SurfacePoint x = surface_point(room.rays(), TriangleId(t), 0.3F, 0.3F, true);
+    ASSERT_LT(x.normal.y(), -0.99F);
+    const MeanTest e = direct_irradiance(room, x, 256);
+    const Vec3 at(2.035, 4.6, 0.01);
+    const double expected = through_window(at, overcast_radiance, Vec3(0, -1, 0));
+    EXPECT_NEAR(e.mean(), expected, 5 * e.standard_error() + 0.01 * expected);
+    EXPECT_LT(e.standard_error() * std::sqrt(32.0), 0.25 * expected);
+  }
 }
 
 TEST(SkyLight, packets_and_shadow_rays_find_the_same_light_inside) {
