@@ -232,7 +232,7 @@ void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission,
                       !is_lit_from_outside(transport.scene());
   if (!by_gaps && !closed) return;
   std::string text =
-      fmt::format("{} of the light leaves the room, although its faces close", share_text(share));
+      fmt::format("{} of the light leaves the room, whose faces nearly close", share_text(share));
   // Probes find places, but know the share less well than the books do.
   double lost = 0;
   for (const LightLoss& place : found.places) lost += place.share;

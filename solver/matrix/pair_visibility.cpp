@@ -148,6 +148,13 @@ VisibleShare share_of_parts(std::span<const Tally> parts) {
   return result;
 }
 
+/// Of a share of which `rays` rays met no blocker. One that takes 1 / rays of the view may stand there, but
+/// in most pairs none does.
+double unseen_variance(std::uint32_t rays) {
+  constexpr double kChance = 1.0 / 8;
+  return kChance / (static_cast<double>(rays) * static_cast<double>(rays));
+}
+
 /// Share of a pair that first looks found uniform. Its rays count one by one, as if they were independent.
 VisibleShare checked_share(const RayTracer& rays, const Fan& a, const Fan& b, std::uint64_t seed,
                            std::uint32_t count) {
@@ -161,7 +168,8 @@ VisibleShare checked_share(const RayTracer& rays, const Fan& a, const Fan& b, st
     any_arrived = any_arrived || (ray.weight > 0 && ray.arrived);
     any_blocked = any_blocked || (ray.weight > 0 && !ray.arrived);
   }
-  if (!any_arrived || !any_blocked) return {any_arrived ? 1.0 : 0.0, 0, false, count};
+  if (!any_arrived) return {0, 0, false, count};
+  if (!any_blocked) return {1, unseen_variance(count), false, count};
   VisibleShare result = share_of_parts(std::span(tallies).first(count));
   result.sampled = true;
   result.rays = count;

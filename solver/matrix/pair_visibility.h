@@ -9,7 +9,7 @@ namespace reemit {
 /// Share of an unoccluded form factor that really arrives.
 struct VisibleShare {
   double share = 1;      ///< [0,1]
-  double variance = 0;   ///< Of the share; 0 if all rays that count agreed.
+  double variance = 0;   ///< Of the share; 0 if none of the rays that count arrived.
   bool sampled = false;  ///< Some rays were blocked and some were not.
   std::uint32_t rays = 0;
 };

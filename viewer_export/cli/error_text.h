@@ -19,6 +19,12 @@ void add_zones(nlohmann::ordered_json& json, const std::optional<ZoneBias>& zone
 inline constexpr const char* kZonesTooNoisy =
     "the noise of the zone solution keeps the error above the target; solve to a lower --error";
 
+/// What to say where a path-traced still misses its target: rare samples carry much of the light.
+inline constexpr const char* kPathsTooNoisy =
+    "more samples hardly lessen the error, as a few of them bring much of the light, and the error stated "
+    "may "
+    "be too small; give it more --spp, or gather (--integrator gather), which needs far fewer";
+
 /// The same where light over mirrors and glass may be the cause.
 inline constexpr const char* kPhotonsTooNoisy =
     "the noise of light over mirrors and glass, or of the zone solution, keeps the error above the target; "

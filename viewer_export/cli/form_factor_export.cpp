@@ -9,6 +9,7 @@
 
 #include "scenes/model/error.h"
 #include "solver/run/schedule.h"
+#include "solver/solution/file_seal.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/interrupt.h"
 #include "viewer_export/cli/messages.h"
@@ -21,6 +22,7 @@
 #include "reemit/version.h"
 
 namespace reemit::cli {
+namespace fs = std::filesystem;
 namespace {
 
 std::vector<std::pair<std::string, std::string>> notes_of(const Solution& solution,
@@ -48,6 +50,9 @@ std::vector<std::pair<std::string, std::string>> notes_of(const Solution& soluti
 ExitCode export_form_factors(const FormFactorExport& options) {
   form_factor_format_of(options.output);  // refuses an unknown one before the work
   check_output_file(options.output, options.solution);
+  if (fs::exists(options.output) && ends_in_seal(options.output))
+    throw InputError(options.output.string(), "is a solution, which form factors would replace",
+                     "choose another output with -o");
   const Solution solution = reemit::load_solution(options.solution);
   if (!solution.mesh.solid_shares().empty())
     throw InputError(options.solution.string(),
@@ -72,6 +77,7 @@ ExitCode export_form_factors(const FormFactorExport& options) {
                        options.output);
   });
 
+  if (!options.style.quiet) print_warnings(form_factor_warnings(report));
   const double seconds = seconds_since(start);
   if (options.style.json) {
     nlohmann::ordered_json json = form_factor_json(report);

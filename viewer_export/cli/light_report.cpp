@@ -37,7 +37,8 @@ void add_cells(std::vector<std::string>& cells, const MeanLight& light, double p
                                times(light.area, light.illuminance)};
   if (percent > 0) values.push_back(times(percent, light.illuminance));
   // A side that no ray found lit may still get a little.
-  const bool unlit = light.illuminance.mean == 0;
+  const bool unlit = std::all_of(light.irradiance.begin(), light.irradiance.end(),
+                                 [](const Estimate& e) { return e.mean == 0; });
   for (const Estimate& value : values) {
     const auto [mean, error] = estimate_texts(value.mean, value.stderr_of_mean);
     cells.push_back(mean);

@@ -148,7 +148,8 @@ class Renderer {
           "{}: {}", job.camera.name,
           image.smoothed ? "more samples hardly lessen what smoothing leaves; solve to a lower --error, or "
                            "give render an --error, which samples until it holds"
-                         : kZonesTooNoisy));
+          : options_.still.integrator == Integrator::kPath ? kPathsTooNoisy
+                                                           : kZonesTooNoisy));
     // The rest is for those who named a target.
     if (options_.still.error_target == 0 || options_.still.most_mean_spp > 0) return;
     if (!image.limited_by_zones && image.info.error > options_.still.error_target && !interrupted())

@@ -113,6 +113,19 @@ Json form_factor_json(const FormFactorReport& report) {
           {"row_sums", row_sums_json(report.after)}};
 }
 
+std::vector<std::string> form_factor_warnings(const FormFactorReport& report) {
+  constexpr double kMostOff = 1e-3;
+  const RowSums& sums = report.after;
+  if (!(sums.rms_deviation > kMostOff || sums.highest > 1 + kMostOff)) return {};
+  return {
+      fmt::format("form factors of zones in closed rooms do not add up to 1 (rms deviation {}, highest sum "
+                  "{:.4g}): light is "
+                  "lost or made. Things far smaller than the zones that see them, or than the room, do that; "
+                  "more --zones "
+                  "or --method shooting help",
+                  percent_text(sums.rms_deviation), sums.highest)};
+}
+
 std::vector<std::string> solve_warnings(const Solution& solution) {
   std::vector<std::string> warnings;
   if (lacks_unshot_power(solution))
@@ -121,6 +134,9 @@ std::vector<std::string> solve_warnings(const Solution& solution) {
         "about that. "
         "Give it more time; light in sealed parts of high reflectance needs 1/(1 - reflectance) bounces.",
         percent_text(solution.audit.worst_unshot_share()), to_string(solution.record.stopped)));
+  if (solution.form_factors)
+    for (std::string& warning : form_factor_warnings(*solution.form_factors))
+      warnings.push_back(std::move(warning));
   if (solution.sums.batches == 1)
     warnings.push_back(
         "the run stopped after one batch: how large its error is, is not known. Give it more time, or more "

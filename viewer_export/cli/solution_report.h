@@ -18,6 +18,9 @@ nlohmann::ordered_json form_factor_json(const FormFactorReport& report);
 /// error that is not known because there was one batch only.
 std::vector<std::string> solve_warnings(const Solution& solution);
 
+/// Where the rows of form factors do not add up.
+std::vector<std::string> form_factor_warnings(const FormFactorReport& report);
+
 /// The line `solve` ends with: why it stopped, packets, rays, seconds, error; for the matrix method more
 /// about the form factors.
 std::string solve_line(const Solution& solution);

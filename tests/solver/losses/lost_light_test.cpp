@@ -70,7 +70,7 @@ TEST_F(LostLight, AGapIsNamedWithItsPlaceAndShare) {
   EXPECT_GT(share, 2e-4);
   EXPECT_LT(share, 4e-3);
   EXPECT_THAT(solution.light_warnings,
-              ElementsAre(AllOf(HasSubstr("leaves the room, although its faces close"),
+              ElementsAre(AllOf(HasSubstr("leaves the room, whose faces nearly close"),
                                 HasSubstr("gap of about"), HasSubstr("'quad5' and 'quad6'"))));
   const Room walls(room_.scene(), solution.mesh);
   const PacketRoom transport(walls);

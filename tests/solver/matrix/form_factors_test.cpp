@@ -139,6 +139,33 @@ TEST(FormFactors, ClosureIsEnforcedAndExactPairsStay) {
   EXPECT_LT(changed / static_cast<double>(sampled), 2) << "changes of the order of the standard errors";
 }
 
+// Two plates of 1 cm stand in a box of 1 m, whose zones see each other past them: what those rows lack must
+// not be asked of the few pairs with the plates. The factor between these has a closed form.
+TEST(FormFactors, ClosureLeavesThePairsOfSmallThingsInALargeRoom) {
+  RoomBuilder room;
+  const MaterialId black = room.material("black", 0);
+  const MaterialId plate = room.material("plate", 0, 0, true);
+  room.box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {black, black, black, black, black, black}, 5);
+  const double h = 0.005;
+  room.quad(plate, {Vec3(-h, -h, -h), Vec3(h, -h, -h), Vec3(h, h, -h), Vec3(-h, h, -h)}, 1);
+  room.quad(plate, {Vec3(-h, -h, h), Vec3(-h, h, h), Vec3(h, h, h), Vec3(h, -h, h)}, 1);
+  const ZoneMesh mesh = room.mesh().mesh;
+  const FormFactors f = factors_of(room, true);
+  EXPECT_LT(f.report().after.rms_deviation, f.report().before.rms_deviation);
+  for (std::size_t i = 0; i < f.zones(); ++i) {
+    const auto is_of_plate = [&](std::size_t zone) { return mesh.zone_area(ZoneId(zone)) < 1e-3; };
+    double sum = 0;
+    double to_plates = 0;
+    for (std::size_t j = 0; j < f.zones(); ++j) {
+      sum += f.factor(i, j);
+      if (is_of_plate(j)) to_plates += f.factor(i, j);
+    }
+    EXPECT_NEAR(sum, 1, 1e-3) << i;
+    if (!is_of_plate(i)) continue;
+    EXPECT_NEAR(to_plates, mesh.zone_is_front(ZoneId(i)) ? 0.199825 : 0, 1e-3) << i;
+  }
+}
+
 TEST(FormFactors, ReciprocityHoldsToTheBit) {
   const FormFactors f = factors_of(box_with_block(3));
   for (std::size_t i = 0; i < f.zones(); ++i)

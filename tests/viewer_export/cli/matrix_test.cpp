@@ -1,6 +1,7 @@
 // The matrix method and the form factors on the command line.
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -117,6 +118,24 @@ TEST(Matrix, FormFactorsAreExportedFromAnySolution) {
       run_reemit({"export", "--form-factors", solution, "-o", (folder / "factors.h5").string()});
   EXPECT_EQ(hdf5.exit_code, 0) << hdf5.err;
   EXPECT_EQ(read_bytes(folder / "factors.h5").substr(1, 3), "HDF");
+}
+
+TEST(Matrix, FormFactorsDoNotReplaceASolution) {
+  const TempFolder folder;
+  ASSERT_EQ(solve_matrix(folder).exit_code, 0);
+  const std::string solution = (folder / "room.h5").string();
+  std::filesystem::copy_file(folder / "room.h5", folder / "other.h5");
+  const std::string before = read_bytes(folder / "other.h5");
+  const ProgramRun run =
+      run_reemit({"export", "--form-factors", solution, "-o", (folder / "other.h5").string()});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("is a solution"));
+  EXPECT_EQ(read_bytes(folder / "other.h5"), before);
+  // Form factors themselves may be replaced.
+  for (int time = 0; time < 2; ++time)
+    EXPECT_EQ(
+        run_reemit({"export", "--form-factors", solution, "-o", (folder / "factors.h5").string()}).exit_code,
+        0);
 }
 
 // Zones that fit the light are cut unevenly, and sides that no light reaches share one.
