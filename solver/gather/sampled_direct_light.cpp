@@ -40,6 +40,10 @@ constexpr std::size_t kMostWeights = std::size_t{1} << 22;
 constexpr double kMostLeftOut = 0.02;
 /// What pilot and packets may differ by, both being noisy.
 constexpr double kMostDifference = 0.05;
+/// Where lit surfaces are small or far, few packets meet any: standard errors of their light, and packets on
+/// other zones, that say nothing against the pilot.
+constexpr double kMostErrors = 3;
+constexpr double kMostPacketsLeftOut = 3;
 /// Work of a shadow ray, and of weighing a luminaire for it, in rays of packets.
 constexpr double kShadowRayCost = 2.5;
 constexpr double kWeighingCost = 0.5;
@@ -58,7 +62,12 @@ void for_zones(std::size_t count, const Visit& visit) {
 
 SampledDirectLight::SampledDirectLight(const Room& room, std::uint64_t seed, double watts,
                                        std::uint32_t unit_packets)
-    : room_(&room), light_(room), seed_(seed), unit_packets_(unit_packets), bands_(room.band_count()) {
+    : room_(&room),
+      light_(room),
+      seed_(seed),
+      watts_(watts),
+      unit_packets_(unit_packets),
+      bands_(room.band_count()) {
   const std::size_t zones = room.mesh().zone_count();
   weighed_ = light_.is_weighed_by_point() && zones * light_.luminaires_weighed() <= kMostWeights
                  ? light_.luminaires_weighed()
@@ -213,7 +222,11 @@ bool SampledDirectLight::finds_what_packets_find(const std::vector<double>& watt
     for (std::size_t b = 0; b < bands_; ++b)
       (samples_[z] > 0 ? lit : others) +=
           static_cast<double>(books.direct[z * bands_ + b]) * watts_per_quantum[b];
-  return others <= kMostLeftOut * (lit + others) && std::abs(lit - lit_watts_) <= kMostDifference * lit;
+  const double packet = watts_ / unit_packets_;
+  const double most_left_out = std::max(kMostLeftOut * (lit + others), kMostPacketsLeftOut * packet);
+  const double error = std::sqrt(std::max(lit, lit_watts_) * packet);
+  return others <= most_left_out &&
+         std::abs(lit - lit_watts_) <= std::max(kMostDifference * lit, kMostErrors * error);
 }
 
 std::optional<SampledDirectLight> sampled_direct_light(const PacketRoom& transport,

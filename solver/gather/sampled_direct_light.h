@@ -47,8 +47,8 @@ class SampledDirectLight {
   void look_at_all();
   bool has_looked_at_all() const { return !samples_.empty(); }
   /// Whether it would leave nothing out: of the direct light that packets brought, nearly all fell on zones
-  /// that the pilot found lit, and as much as it found there. Beams that miss the points of the pilot are
-  /// left to packets, which are few then. Pre: has_looked_at_all().
+  /// that the pilot found lit, and as much as it found there, as far as their number can tell. Beams that
+  /// miss the points of the pilot are left to packets, which are few then. Pre: has_looked_at_all().
   bool finds_what_packets_find(const std::vector<double>& watts_per_quantum, const BatchBooks& books) const;
 
   /// Replaces books.direct of the zones that the pilot found lit by an estimate that is independent of those
@@ -85,6 +85,7 @@ class SampledDirectLight {
   const Room* room_;
   DirectLight light_;
   std::uint64_t seed_;
+  double watts_;
   std::uint32_t unit_packets_;
   std::size_t bands_;
   std::size_t weighed_;  // luminaires that are weighed once for a zone; 0: anew for every sample
