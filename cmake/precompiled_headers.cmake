@@ -38,5 +38,6 @@ reemit_add_headers(reemit_headers
 reemit_reuse_headers(reemit_headers scenes solver viewer_export EXCEPT reemit_cli)
 target_precompile_headers(reemit_mesh PRIVATE ${REEMIT_COMMON_HEADERS})
 if(REEMIT_BENCH)
-  reemit_reuse_headers(reemit_headers bench bench/validation bench/hit_paths EXCEPT reemit_bench_curve reemit_bench_options)
+  reemit_reuse_headers(reemit_headers bench bench/validation bench/hit_paths
+                       EXCEPT reemit_bench_curve reemit_bench_options reemit_validation)
 endif()

@@ -28,9 +28,9 @@ inline ComparisonSettings quick(bool by_path) {
 
 /// Gathered and path-traced stills of the first camera show the picture of the reference, whose relative
 /// standard error has to stay below `most_error`.
-inline void expect_same_picture(const Scene& scene, const std::string& name, double most_error) {
+inline void expect_same_picture(const Scene& scene, const std::string& name, double most_error,
+                                const std::vector<BlockSums>& reference) {
   const Camera& camera = scene.cameras.at(0);
-  const std::vector<BlockSums> reference = trace_reference(scene, camera, quick(false));
   for (const bool by_path : {false, true}) {
     const Comparison c = compare_blocks(scene, camera, quick(by_path), reference);
     const std::string what = name + (by_path ? ", path traced" : ", gathered");
@@ -40,6 +40,10 @@ inline void expect_same_picture(const Scene& scene, const std::string& name, dou
         << what << ": " << c.mean_deviation << " +- " << c.mean_error;
     EXPECT_LT(c.mean_error, most_error) << what << ": too weak to tell";
   }
+}
+
+inline void expect_same_picture(const Scene& scene, const std::string& name, double most_error) {
+  expect_same_picture(scene, name, most_error, trace_reference(scene, scene.cameras.at(0), quick(false)));
 }
 
 }  // namespace reemit::hit_paths

@@ -34,9 +34,10 @@ VariableFurnace room_of_many_sizes(int cells = 5) {
   return furnace;
 }
 
-Solution run(const VariableFurnace& furnace, bool gather, std::uint64_t seed = 1) {
+Solution run(const VariableFurnace& furnace, bool gather, std::uint64_t seed = 1,
+             std::uint64_t packets = 5'000'000) {
   SolverSettings settings;
-  settings.packets = 5'000'000;
+  settings.packets = packets;
   settings.gather_small_zones = gather;
   settings.seed = seed;
   return solve_zones(furnace.room().scene(), furnace.room().mesh(), settings, {}, kNever);
@@ -82,7 +83,7 @@ std::vector<test::Measured> independent_zones() {
   std::vector<test::Measured> measured;
   const VariableFurnace furnace = room_of_many_sizes(1);
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Solution s = run(furnace, true, seed);
+    const Solution s = run(furnace, true, seed, 1'200'000);
     std::set<std::pair<SurfaceId, bool>> seen;
     for (std::size_t z = 0; z < s.mesh.zone_count(); ++z) {
       if (!is_small(s, z)) continue;
