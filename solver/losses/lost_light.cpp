@@ -19,6 +19,7 @@ namespace {
 constexpr double kLeastShareLost = 1e-5;      // of the emitted power; less is below any error target
 constexpr double kClosedShare = 0.01;         // a room that loses less through openings counts as closed
 constexpr double kMostlyClosedShare = 0.05;   // the same where most of the loss goes through gaps
+constexpr double kAllButNothing = 1 - 1e-9;   // leaves a room whose luminaires look away from it
 constexpr double kOutdoorShare = 0.3;         // a room that loses more from places outside is meant to
 constexpr double kLuminaireBackShare = 0.01;  // on backs of one luminaire; less is no mistake
 constexpr double kDarkShare = 0.5;            // of the space enclosed; walls and furniture have less in them
@@ -222,6 +223,12 @@ void warn_of_escapes(const PacketRoom& transport, const PacketSources& emission,
   double escaped = 0;
   for (const BandAudit& band : audit.bands) escaped += audit.watts(band, band.total_escaped());
   double share = escaped / audit.emitted_watts();
+  if (share > kAllButNothing) {
+    warnings.emplace_back(
+        "no light meets a surface, all of it leaves the room: do its luminaires look away from it? "
+        "Turn their faces, or solve with --two-sided");
+    return;
+  }
   if (!(share > kLeastShareLost)) return;
   const EscapedLight found = find_escapes(transport, emission, solution, stop);
   // The books do not know what went out through windows.

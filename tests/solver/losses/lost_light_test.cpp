@@ -61,6 +61,13 @@ TEST_F(LostLight, ATightRoomLosesNothing) {
   EXPECT_THAT(warnings(), IsEmpty());
 }
 
+TEST_F(LostLight, LuminairesThatLookAwayFromAllAreNamed) {
+  // Over a floor that is open to all sides, a lamp that faces up.
+  room_.quad(sides_[0], {Vec3(0, 0, 0), Vec3(0, 0, 4), Vec3(4, 0, 4), Vec3(4, 0, 0)}, 4);
+  room_.quad(sides_[2], {Vec3(1, 1, 1), Vec3(1, 1, 2), Vec3(2, 1, 2), Vec3(2, 1, 1)}, 2);
+  EXPECT_THAT(warnings(), ElementsAre(HasSubstr("no light meets a surface")));
+}
+
 TEST_F(LostLight, AGapIsNamedWithItsPlaceAndShare) {
   box(false);
   ceiling(0, 1);
