@@ -158,8 +158,8 @@ void survey_sky(const ZoneMesh& mesh, const RayTracer& rays, const SurfaceModel&
     }
   }
   view.add_air();
-  constexpr std::size_t kCells = SkyView::kCells * SkyView::kCells * SkyView::kCells;
-  tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
+  constexpr std::size_t kAirCells = SkyView::kCells * SkyView::kCells * SkyView::kCells;
+  tbb::parallel_for(std::size_t{0}, kAirCells, [&](std::size_t cell) {
     look_from_air(rays, surfaces, to_local, brightness, cell, view);
   });
 }

@@ -99,17 +99,17 @@ TEST(SkyView, SharesOfDirectionsAreThoseOfSamples) {
   // The mean of 1 / density over samples is the solid angle of all that can be drawn: at most the sphere.
   double sum = 0;
   int east = 0;
-  constexpr int kSamples = 4000;
-  for (int i = 0; i < kSamples; ++i) {
-    const Vec3 way = view.sample(place, (i + 0.5) / kSamples, 0.5);
+  constexpr int kDraws = 4000;
+  for (int i = 0; i < kDraws; ++i) {
+    const Vec3 way = view.sample(place, (i + 0.5) / kDraws, 0.5);
     const double pdf = view.pdf_per_sr(place, way);
     ASSERT_GT(pdf, 0);
-    sum += 1 / pdf / kSamples;
+    sum += 1 / pdf / kDraws;
     if (way.dot(kEast) > 0) ++east;
   }
   EXPECT_LT(sum, 4 * 3.1416);
-  EXPECT_GT(east, kSamples / 2);
-  EXPECT_LT(east, kSamples);
+  EXPECT_GT(east, kDraws / 2);
+  EXPECT_LT(east, kDraws);
 }
 
 TEST(SkyView, SeesNothingWhereNoRayMetLight) {
