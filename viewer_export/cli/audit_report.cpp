@@ -142,9 +142,8 @@ std::string audit_text(const EnergyAudit& audit, const std::vector<std::string>&
          fmt::format("{} over {} batch{}\n",
                      audit.balanced() ? "The books balance exactly" : "THE BOOKS DO NOT BALANCE",
                      audit.batches, audit.batches == 1 ? "" : "es") +
-         "Packets are counted here; what 'reemit info' says of surfaces has standard errors, and less noise "
-         "where "
-         "shadow rays bring direct light\n" +
+         "Packets are counted here; what 'reemit info' says of surfaces has standard errors, and less noise\n"
+         "where shadow rays bring direct light\n" +
          fmt::format(
              "Rays traced twice because they met an edge, a back or nothing: {}; packets that ended on "
              "backs: {}, outside: {}\n"

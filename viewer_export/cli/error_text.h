@@ -21,9 +21,8 @@ inline constexpr const char* kZonesTooNoisy =
 
 /// What to say where a path-traced still misses its target: rare samples carry much of the light.
 inline constexpr const char* kPathsTooNoisy =
-    "more samples hardly lessen the error, as a few of them bring much of the light, and the error stated "
-    "may "
-    "be too small; give it more --spp, or gather (--integrator gather), which needs far fewer";
+    "more samples hardly lessen the error, as a few of them bring much of the light, and what is stated may "
+    "be too little; give it more --spp, or gather (--integrator gather), which needs far fewer";
 
 /// The same where light over mirrors and glass may be the cause.
 inline constexpr const char* kPhotonsTooNoisy =

@@ -23,57 +23,83 @@ double percent_per_lux(const std::optional<LightOutside>& outside) {
   return outside && outside->sky_lx > 0 ? 100 / outside->sky_lx : 0;
 }
 
-void add_head(std::vector<std::string>& cells, double percent) {
-  for (const char* quantity : {"area [m2]", "E [lx]", "+-", "M [lm/m2]", "+-", "received [lm]", "+-"})
-    cells.emplace_back(quantity);
-  if (!(percent > 0)) return;
-  cells.emplace_back("DF [%]");
-  cells.emplace_back("+-");
-}
+/// Columns about a surface or material: in lux, or in watts where no eye sees the bands.
+class LightColumns {
+ public:
+  LightColumns(const BandSet& bands, double percent_per_lux)
+      : names_(bands.names()),
+        percent_(percent_per_lux),
+        is_visible_((bands.efficacy_lm_per_w() > 0).any()) {}
 
-void add_cells(std::vector<std::string>& cells, const MeanLight& light, double percent) {
-  cells.push_back(number_text(light.area));
-  std::vector<Estimate> values{light.illuminance, light.luminous_exitance,
-                               times(light.area, light.illuminance)};
-  if (percent > 0) values.push_back(times(percent, light.illuminance));
-  // A side that no ray found lit may still get a little.
-  const bool unlit = std::all_of(light.irradiance.begin(), light.irradiance.end(),
-                                 [](const Estimate& e) { return e.mean == 0; });
-  for (const Estimate& value : values) {
-    const auto [mean, error] = estimate_texts(value.mean, value.stderr_of_mean);
-    cells.push_back(mean);
-    cells.push_back(unlit && value.mean == 0 ? "none met" : error);
+  const char* what_arrives() const { return is_visible_ ? "illuminance" : "irradiance"; }
+  bool lack_bands() const { return !is_visible_ && names_.size() > kMostBands; }
+
+  std::vector<std::string> head(const std::string& of) const {
+    std::vector<std::string> cells{of, "area [m2]"};
+    const auto add = [&cells](const std::string& quantity) {
+      cells.push_back(quantity);
+      cells.emplace_back("+-");
+    };
+    if (is_visible_)
+      for (const char* quantity : {"E [lx]", "M [lm/m2]", "received [lm]"}) add(quantity);
+    else
+      for (std::size_t b = 0; b < std::min(kMostBands, names_.size()); ++b)
+        for (const char quantity : {'E', 'M'}) add(fmt::format("{} {} [W/m2]", quantity, names_[b]));
+    if (percent_ > 0) add("DF [%]");
+    return cells;
   }
-}
 
-std::string sides_text(const Solution& solution, const RoomLight& room, double percent) {
+  void add(std::vector<std::string>& cells, const MeanLight& light) const {
+    cells.push_back(number_text(light.area));
+    std::vector<Estimate> values;
+    if (is_visible_)
+      values = {light.illuminance, light.luminous_exitance, times(light.area, light.illuminance)};
+    else
+      for (std::size_t b = 0; b < std::min(kMostBands, names_.size()); ++b)
+        values.insert(values.end(), {light.irradiance[b], light.exitance[b]});
+    if (percent_ > 0) values.push_back(times(percent_, light.illuminance));
+    // A side that no ray found lit may still get a little.
+    const bool unlit = std::all_of(light.irradiance.begin(), light.irradiance.end(),
+                                   [](const Estimate& e) { return e.mean == 0; });
+    for (const Estimate& value : values) {
+      const auto [mean, error] = estimate_texts(value.mean, value.stderr_of_mean);
+      cells.push_back(mean);
+      cells.push_back(unlit && value.mean == 0 ? "none met" : error);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostBands = 4;
+
+  std::vector<std::string> names_;
+  double percent_;
+  bool is_visible_;
+};
+
+std::string sides_text(const Solution& solution, const RoomLight& room, const LightColumns& columns) {
   std::vector<const SideLight*> shown;
   for (const SideLight& side : room.sides)
     if (side.counts) shown.push_back(&side);
   TextTable table;
-  std::vector<std::string> head{"surface"};
-  add_head(head, percent);
-  table.row(std::move(head));
+  table.row(columns.head("surface"));
   for (std::size_t i = 0; i < std::min(kMostRows, shown.size()); ++i) {
     const SideLight& side = *shown[i];
     std::vector<std::string> cells{"  " + solution.surface_names[side.surface.index()] +
                                    (side.front ? "" : " (back)")};
-    add_cells(cells, side.light, percent);
+    columns.add(cells, side.light);
     table.row(std::move(cells));
   }
   return table.text() + rest_text(shown.size(), "surfaces");
 }
 
-std::string materials_text(const Solution& solution, const RoomLight& room, double percent) {
+std::string materials_text(const Solution& solution, const RoomLight& room, const LightColumns& columns) {
   TextTable table;
-  std::vector<std::string> head{"material"};
-  add_head(head, percent);
-  table.row(std::move(head));
+  table.row(columns.head("material"));
   std::size_t used = 0;
   for (std::size_t m = 0; m < room.materials.size(); ++m) {
     if (!(room.materials[m].area > 0) || ++used > kMostRows) continue;
     std::vector<std::string> cells{"  " + solution.materials[m].name};
-    add_cells(cells, room.materials[m], percent);
+    columns.add(cells, room.materials[m]);
     table.row(std::move(cells));
   }
   return table.text() + rest_text(used, "materials");
@@ -114,10 +140,14 @@ std::string light_text(const Solution& solution, const std::vector<LuminaireRow>
                        const std::optional<LightOutside>& outside) {
   const RoomLight room = mean_light(solution);
   const double percent = percent_per_lux(outside);
+  const LightColumns columns(solution.bands, percent);
   std::string text =
-      "Light: area means of illuminance E and of exitance M, reflected and emitted; +- one standard error\n" +
-      sides_text(solution, room, percent) + '\n' + materials_text(solution, room, percent) + '\n' +
+      fmt::format(
+          "Light: area means of {} E and of exitance M, reflected and emitted; +- one standard error\n",
+          columns.what_arrives()) +
+      sides_text(solution, room, columns) + '\n' + materials_text(solution, room, columns) + '\n' +
       luminaires_text(luminaires, solution.bands);
+  if (columns.lack_bands()) text += "\nOf the bands, the first four are in these tables; --json has all\n";
   if (outside)
     text += fmt::format("\nOutside, on a horizontal plane: {:.4g} lx of the sky{}\n", outside->sky_lx,
                         outside->sun_lx > 0 ? fmt::format(" and {:.4g} lx of the sun", outside->sun_lx) : "");

@@ -521,6 +521,27 @@ TEST_F(Pipeline, InfoGivesTheLightOfEverySurfaceAndMaterialWithItsError) {
   EXPECT_EQ(without["luminaires"], info["luminaires"]) << "luminous surfaces are in the solution";
 }
 
+TEST_F(Pipeline, LightThatNoEyeSeesIsReportedInWatts) {
+  folder_.write("heat.json", R"({"format": "reemit-room", "version": 1, "name": "heat",
+    "bands": {"wavelengths_nm": [5000, 10000]},
+    "materials": {"hot": {"reflectance": 0, "exitance": [1, 2]}, "cold": {"reflectance": 0}},
+    "objects": [
+      {"name": "source", "material": "hot", "quad": {"corner": [0, 0, 0], "u": [0, 1, 0], "v": [0, 0, 1]}},
+      {"name": "plate", "material": "cold", "quad": {"corner": [1, 0, 0], "u": [0, 0, 1], "v": [0, 1, 0]}}]})");
+  ASSERT_EQ(run_reemit({"solve", path("heat.json"), "-o", path("heat.h5"), "--packets", "20000"}).exit_code,
+            0);
+  const std::string info = output_of({"info", path("heat.h5")});
+  EXPECT_THAT(info, HasSubstr("E 5000 [W/m2]"));
+  EXPECT_THAT(info, HasSubstr("M 10000 [W/m2]"));
+  EXPECT_THAT(info, Not(HasSubstr("[lx]")));
+  const json surfaces = json::parse(output_of({"info", path("heat.h5"), "--json"}))["surfaces"];
+  const auto plate = std::find_if(surfaces.begin(), surfaces.end(), [](const json& surface) {
+    return surface["name"] == "plate" && surface["side"] == "front";
+  });
+  ASSERT_NE(plate, surfaces.end());
+  EXPECT_NEAR((*plate)["irradiance_W_m2"][1].get<double>(), 2 * 0.199825, 0.02);
+}
+
 TEST_F(Pipeline, VerboseTellsWhatEachStepTookInTimeAndMemory) {
   const auto err_of = [&](const std::string& option) {
     return run_reemit({"solve", path("room.json"), "-o", path("v.h5"), "--packets", "1000", option}).err;
