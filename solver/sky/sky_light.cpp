@@ -111,9 +111,8 @@ float SkyLight::sun_found_by_lobe(float pdf_per_sr) const {
 }
 
 float SkyLight::expected_from_sky(const Vec3f& x, const Vec3f& normal) const {
-  double open = 1;
-  const std::uint32_t place = survey().view.place_of(x, normal);
-  if (place != SkyView::kUnknown) open = std::min(1.0, 2 * open_or_least(survey().view.open_share(place)));
+  const SkyView& view = survey().view;
+  const double open = std::min(1.0, 2 * open_or_least(view.open_share(view.place_of(x, normal))));
   return static_cast<float>(open * table_.irradiance(local(normal)));
 }
 
@@ -191,8 +190,8 @@ SkyRay SkyLight::start(std::size_t cell, float u0, float u1, float u2, float u3)
 }
 
 std::uint8_t SkyLight::need(const Vec3f& x, const Vec3f& normal) const {
-  const std::uint32_t place = survey().view.place_of(x, normal);
-  const double open = place == SkyView::kUnknown ? 0 : survey().view.open_share(place);
+  const SkyView& view = survey().view;
+  const double open = view.open_share(view.place_of(x, normal));
   return static_cast<std::uint8_t>(
       std::clamp(0.5 / std::max(1e-3, open), 1.0, static_cast<double>(kMostNeed)));
 }
@@ -264,8 +263,7 @@ std::vector<UsefulLight> SkyLight::useful_sun() const {
       survey_.view, sights);
   std::vector<UsefulLight> useful;
   for (const SkySight& sight : sights) {
-    const double open =
-        sight.place == SkyView::kUnknown ? 1 : open_or_least(survey_.view.open_share(sight.place));
+    const double open = open_or_least(survey_.view.open_share(sight.place));
     UsefulLight light{};
     beam_->invert(sight.point.cast<double>(), sight.towards.cast<double>(), light.u);
     light.worth = static_cast<float>(square_metres(sight) * sun_irradiance_.sum() / open);

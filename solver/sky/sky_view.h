@@ -25,7 +25,8 @@ class SkyView {
   static double solid_angle();
 
   static constexpr std::uint32_t kUnknown = 0xffffffff;
-  /// The place of what is there and faces so (unit). kUnknown where no ray has been sent from.
+  /// The place of what is there and faces so (unit). kUnknown where no ray has been sent
+  /// from; after finish() nowhere.
   std::uint32_t place_of(const Vec3f& x, const Vec3f& normal) const { return places_[key_of(x, normal)]; }
   /// Share of the view that is sky, of a place [0,1].
   double open_share(std::uint32_t place) const {
