@@ -38,6 +38,9 @@ std::string load_file(const fs::path& file, std::uintmax_t largest) {
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.gcount() != static_cast<std::streamsize>(text.size()))
     throw InputError(file.string(), "the file cannot be read to its end", "Is it still being written?");
+  // No binary format that comes this way begins with either mark.
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(file.string(), "its text is UTF-16", "Save it as UTF-8 or as plain text (ASCII).");
   return text;
 }
 

@@ -12,7 +12,8 @@ inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{4} << 30;
 /// `largest` bytes. Adds it to FilesRead.
 void check_readable_file(const std::filesystem::path& file, std::uintmax_t largest = kLargestFile);
 
-/// The bytes of a file after check_readable_file; throws InputError when it cannot be opened or read.
+/// The bytes of a file after check_readable_file; throws InputError when it cannot be opened or read,
+/// or is UTF-16.
 std::string load_file(const std::filesystem::path& file, std::uintmax_t largest = kLargestFile);
 
 }  // namespace reemit

@@ -94,12 +94,11 @@ class ObjChecker {
     std::size_t corners = 0;
     clean_ += 'f';
     for (std::size_t i = 1; i < line.words.size() && line.words[i][0] != '#'; ++i, ++corners) {
-      check_corner(line.words[i]);
-      clean_ += fmt::format(" {}", line.words[i]);
+      clean_ += fmt::format(" {}", checked_corner(line.words[i]));
     }
     clean_ += '\n';
-    if (corners < 3)
-      throw InputError(where_, fmt::format("a face with {} corners", corners), "A face needs at least 3.");
+    if (corners == 0)
+      throw InputError(where_, "a face without corners", "Was the file cut off? A face needs at least 3.");
     if (!material_) material_ = materials_.index_of("", where_);
     ObjFace face;
     face.group = group_;
@@ -108,8 +107,10 @@ class ObjChecker {
     geometry_.faces.push_back(std::move(face));
   }
 
-  // v, v/vt, v//vn or v/vt/vn; indices from 1 or, from the end, from -1.
-  void check_corner(std::string_view corner) {
+  // v, v/vt, v//vn or v/vt/vn; indices from 1 or, from the end, from -1. Some programs leave the slashes of
+  // what a corner has not. Returns the corner without those.
+  std::string_view checked_corner(std::string_view word) const {
+    const std::string_view corner = word.substr(0, word.find_last_not_of('/') + 1);
     std::array<std::string_view, 3> parts;
     std::size_t count = 0;
     for (std::string_view rest = corner;; ++count) {
@@ -126,8 +127,9 @@ class ObjChecker {
       good = index && *index != 0 && *index <= kMost && *index >= -kMost;
     }
     if (!good)
-      throw InputError(where_, fmt::format("'{}' is not a corner of a face", corner),
+      throw InputError(where_, fmt::format("'{}' is not a corner of a face", word),
                        "Write v, v/vt, v//vn or v/vt/vn with indices from 1 (or from -1, backwards).");
+    return corner;
   }
 
   void use_material(const TextLine& line) { material_ = materials_.index_of(rest_of(line, 1), where_); }

@@ -51,8 +51,33 @@ std::vector<std::string_view> words_of_numbers(const TextLine& line) {
 
 // What single precision makes of a 1 on its way from program to program.
 constexpr double kRounding = 1e-5;
+// Shares above it are no strengths of a highlight that somebody turned up, but numbers of another scale.
+constexpr double kMostShare = 10;
 
-std::string checked_numbers(const NumberRule& rule, const TextLine& line, const std::string& where) {
+// Numbers that were brought into their range, of one file.
+struct CorrectedNumbers {
+  std::size_t count = 0;
+  std::string first;  // with its place and what was taken
+
+  void add(const NumberRule& rule, std::string_view word, double taken, const std::string& where) {
+    if (count++ == 0) first = fmt::format("{}: '{} {}' is taken as {}", where, rule.keyword, word, taken);
+  }
+  std::string warning() const {
+    return fmt::format("{}, which is the end of its range{}.", first,
+                       count > 1 ? fmt::format(", as are {} more numbers of the file", count - 1) : "");
+  }
+};
+
+// The number nearest to `value` that a statement may have; none if `value` is no error of a known kind.
+std::optional<double> within_range(const NumberRule& rule, double value) {
+  if (value >= rule.low && value <= rule.high) return value;
+  if (rule.high == 1 && value > 1 && value <= kMostShare) return 1;
+  if (rule.keyword == "Ns" && value < 0) return 0;  // as exporters write of surfaces without a highlight
+  return std::nullopt;
+}
+
+std::string checked_numbers(const NumberRule& rule, const TextLine& line, const std::string& where,
+                            CorrectedNumbers& corrected) {
   const std::vector<std::string_view> words = words_of_numbers(line);
   const std::size_t count = words.size() - 1;
   if (count > 0 && (words[1] == "spectral" || words[1] == "xyz"))
@@ -64,15 +89,16 @@ std::string checked_numbers(const NumberRule& rule, const TextLine& line, const 
   std::vector<std::string> numbers;
   Spectrum values = Spectrum::Zero(static_cast<Eigen::Index>(count));
   for (std::size_t i = 1; i <= count; ++i) {
-    auto value = parse_number(words[i]);
-    const bool is_rounded = value && *value > rule.high && *value <= rule.high + kRounding;
-    if (is_rounded) value = rule.high;
-    if (!value || *value < rule.low || *value > rule.high)
-      throw InputError(
-          where, fmt::format("'{} {}' is not a number in its range", rule.keyword, words[i]),
-          rule.high == 1 ? "Give a fraction from 0 to 1." : "Give a finite number of 0 or more.");
+    const auto written = parse_number(words[i]);
+    const auto value = written ? within_range(rule, *written) : std::nullopt;
+    if (!value)
+      throw InputError(where, fmt::format("'{} {}' is not a number in its range", rule.keyword, words[i]),
+                       rule.high != 1                     ? "Give a finite number of 0 or more."
+                       : written && *written > kMostShare ? "Give a fraction from 0 to 1: 255 is 1 there."
+                                                          : "Give a fraction from 0 to 1.");
+    if (std::abs(*value - *written) > kRounding) corrected.add(rule, words[i], *value, where);
     values[static_cast<Eigen::Index>(i - 1)] = *value;
-    numbers.push_back(is_rounded ? fmt::format("{}", rule.high) : std::string(words[i]));
+    numbers.push_back(*value != *written ? fmt::format("{}", *value) : std::string(words[i]));
   }
   if (rule.keyword == "Ke") {
     const std::string problem = strength_problem(values, "the radiance Ke [W/(m2 sr)]");
@@ -97,10 +123,12 @@ struct EmissionStatements {
 };
 
 // What tinyobjloader gets to read: checked, one statement per line, numbers without comments.
-std::string checked_text(const std::string& text, const std::string& name, std::vector<std::string>& notes) {
+std::string checked_text(const std::string& text, const std::string& name, std::vector<std::string>& notes,
+                         std::vector<std::string>& warnings) {
   std::string clean;
-  bool in_material = false;
+  bool in_material = false, has_stray = false;
   EmissionStatements emission;
+  CorrectedNumbers corrected;
   for (const TextLine& line : split_lines(text)) {
     if (line.words[0][0] == '#') continue;
     const std::string where = at_line(name, line.number);
@@ -110,18 +138,22 @@ std::string checked_text(const std::string& text, const std::string& name, std::
       clean += emission.completed(name, notes);
       emission = {rest_of(line, 1)};
     } else if (!in_material) {
-      throw InputError(where, fmt::format("'{}' before the first 'newmtl'", line.words[0]),
-                       "Is this a MTL file, and is it complete?");
+      if (!has_stray)
+        warnings.push_back(
+            fmt::format("{}: '{}' is ignored, as is all before the first 'newmtl'.", where, line.words[0]));
+      has_stray = true;
+      continue;
     }
     emission.has_factor = emission.has_factor || line.words[0] == "Ke";
     emission.has_map = emission.has_map || line.words[0] == "map_Ke";
     const auto* rule = std::find_if(kObjRules.begin(), kObjRules.end(),
                                     [&](const NumberRule& r) { return r.keyword == line.words[0]; });
     if (rule != kObjRules.end())
-      clean += checked_numbers(*rule, line, where);
+      clean += checked_numbers(*rule, line, where, corrected);
     else
       clean += fmt::format("{} {}\n", line.words[0], rest_of(line, 1));
   }
+  if (corrected.count > 0) warnings.push_back(corrected.warning());
   return clean + emission.completed(name, notes);
 }
 
@@ -304,7 +336,7 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
                     error.what()));
     return;
   }
-  std::istringstream stream(checked_text(text, file.string(), notes));
+  std::istringstream stream(checked_text(text, file.string(), notes, warnings_));
   std::map<std::string, int> names;
   std::vector<tinyobj::material_t> loaded;
   std::string ignored_warning, ignored_error;  // about what checked_text has refused

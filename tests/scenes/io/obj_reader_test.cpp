@@ -119,8 +119,8 @@ TEST_F(ObjReader, NamesMayHaveBlanksAndLinesMayEndOddly) {
 
 TEST_F(ObjReader, NamesFileAndLineOfEveryMistake) {
   for (const char* bad :
-       {"f 1 2",      "f",         "f 1 2 9",       "f 1 2 0",           "f 1 2 -5",  "f 1 2 x",
-        "f 1 2 3/",   "f 1 2 3//", "f 1 2 3/1/1/1", "f 1 2 3//9",        "f 1 2 1.5", "f 1 2 99999999999",
+       {"f",          "f 1 2 9",   "f 1 2 0",       "f 1 2 -5",          "f 1 2 x",   "f 1 2 /",
+        "f 1 2 /3",   "f 1 9",     "f 1 2 3/1/1/1", "f 1 2 3//9",        "f 1 2 1.5", "f 1 2 99999999999",
         "v 1 2",      "v 1 2 nan", "v 1 2 1e999",   "v 1 2 3 4 5 6 7 8", "v",         "vn 0 0",
         "vn 0 0 1 1", "mtllib"})
     EXPECT_THAT(refusal(kSquare + bad + "\n"), HasSubstr("room.obj:7: ")) << bad;
@@ -138,12 +138,41 @@ TEST_F(ObjReader, IgnoredStatementsAreNamedOnce) {
 
 TEST_F(ObjReader, MtlMistakesAreNamedWithTheirLine) {
   for (const char* bad :
-       {"Kd 0.5 0.5", "Kd", "Kd 1.5 0 0", "Kd -0.1 0 0", "Kd x 0 0", "Ks 2 0 0", "Ke -1 0 0", "Ke nan 0 0",
-        "Ns", "Ns -2", "Ni inf", "d 1.5", "Kd spectral file.rfl", "Kd 0 0 0 0", "newmtl"})
+       {"Kd 0.5 0.5", "Kd", "Kd 255 0 0", "Kd -0.1 0 0", "Kd x 0 0", "Ks 11 0 0", "Ke -1 0 0", "Ke nan 0 0",
+        "Ns", "Ns x", "Ni -1", "Ni inf", "d 100", "Kd spectral file.rfl", "Kd 0 0 0 0", "newmtl"})
     EXPECT_THAT(mtl_refusal(std::string("newmtl wall\n") + bad + "\n"), HasSubstr("room.mtl:2: ")) << bad;
-  EXPECT_THAT(mtl_refusal("Kd 0 0 0\nnewmtl wall\n"), HasSubstr("room.mtl:1: "));
   folder_.write("room.mtl", "newmtl wall\nKd 0.5 0.5 0.5\nnewmtl wall\nKd 1 1 1\n");
   EXPECT_THAT(read(kSquare + "f 1 2 3\n").warnings, Contains(HasSubstr("defined again")));
+}
+
+TEST_F(ObjReader, NumbersBeyondTheirRangeAreBroughtIntoItAndNamedOnce) {
+  const Scene scene = read_with("newmtl wall\nKd 1.5 0.5 0.5\nNs -1.960784\nd 1.2\n");
+  EXPECT_TRUE(scene.materials[0].reflectance.isApprox(Eigen::Array3d(1, 0.5, 0.5), 1e-15));
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("room.mtl:2: 'Kd 1.5' is taken as 1"),
+                                             HasSubstr("2 more numbers of the file"))));
+  EXPECT_THAT(mtl_refusal("newmtl wall\nKd 200 0 0\n"), HasSubstr("255 is 1 there"));
+}
+
+TEST_F(ObjReader, WhatStandsBeforeTheFirstMaterialIsIgnored) {
+  const Scene scene = read_with("Ka 0 0 0\nKd 0.1 0.1 0.1\nnewmtl wall\nKd 0.5 0.5 0.5\n");
+  EXPECT_TRUE(scene.materials[0].reflectance.isApproxToConstant(0.5, 1e-15));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("room.mtl:1: 'Ka' is ignored")));
+}
+
+TEST_F(ObjReader, SlashesOfWhatACornerHasNotArePassedOver) {
+  const Scene scene = read(kSquare + "f 1/ 2// 3/\n");
+  EXPECT_EQ(test::face_count(scene), 1U);
+}
+
+TEST_F(ObjReader, FacesOfTwoCornersAreLeftOut) {
+  const Scene scene = read(kSquare + "f 1 2 3\nf 1 2\nf 3\n");
+  EXPECT_EQ(test::face_count(scene), 1U);
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("2 face(s)"), HasSubstr("line 8"))));
+}
+
+TEST_F(ObjReader, Utf16IsNamed) {
+  using namespace std::string_literals;
+  EXPECT_THAT(refusal("\xFF\xFEv\0 \0"s), HasSubstr("its text is UTF-16"));
 }
 
 TEST_F(ObjReader, WhatProgramsWriteOfAOneIsAOne) {
