@@ -27,19 +27,7 @@ class ChangedExchange {
       : areas_(areas), closed_(closed), variance_(variance), exchange_(exchange) {}
 
   Eigen::VectorXd row_sums(const Eigen::VectorXd& multiplier) const {
-    const auto n = static_cast<Eigen::Index>(areas_.size());
-    constexpr std::size_t kParts = 16;  // whose sums have a fixed order
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(kParts));
-    tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t part) {
-      auto sum = sums.col(static_cast<Eigen::Index>(part));
-      for (std::size_t i = part; i < areas_.size(); i += kParts)
-        for (std::size_t k = 0; k < exchange_.row_length(i); ++k) {
-          const double value = changed(i, k, multiplier);
-          sum(static_cast<Eigen::Index>(i)) += value;
-          sum(static_cast<Eigen::Index>(i + 1 + k)) += value;
-        }
-    });
-    return sums.rowwise().sum();
+    return exchange_.row_sums([&](std::size_t i, std::size_t k) { return changed(i, k, multiplier); });
   }
 
   void keep(const Eigen::VectorXd& multiplier) {

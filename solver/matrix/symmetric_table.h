@@ -40,6 +40,10 @@ class SymmetricTable {
   Eigen::VectorXd times(const Eigen::VectorXd& x) const;
   /// The same for many vectors at once, one per column.
   RowMatrix times_columns(const RowMatrix& x) const;
+  /// Sums of rows of the symmetric table that has value(i, k) at the places (i, i + 1 + k) and (i + 1 + k,
+  /// i).
+  template <class Value>
+  Eigen::VectorXd row_sums(Value value) const;
 
  private:
   static constexpr std::size_t kParts = 16;
@@ -64,6 +68,23 @@ Eigen::VectorXd SymmetricTable<T>::times(const Eigen::VectorXd& x) const {
       sum(at) += values.dot(x.segment(at + 1, length));
       sum.segment(at + 1, length) += x(at) * values;
     }
+  });
+  return sums.rowwise().sum();
+}
+
+template <class T>
+template <class Value>
+Eigen::VectorXd SymmetricTable<T>::row_sums(Value value) const {
+  const auto n = static_cast<Eigen::Index>(size_);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(kParts));
+  tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t part) {
+    auto sum = sums.col(static_cast<Eigen::Index>(part));
+    for (std::size_t i = part; i + 1 < size_; i += kParts)
+      for (std::size_t k = 0; k < row_length(i); ++k) {
+        const double of_pair = value(i, k);
+        sum(static_cast<Eigen::Index>(i)) += of_pair;
+        sum(static_cast<Eigen::Index>(i + 1 + k)) += of_pair;
+      }
   });
   return sums.rowwise().sum();
 }

@@ -14,6 +14,7 @@
 #include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/thread_limit.h"
 
 namespace reemit::cli {
 namespace {
@@ -23,11 +24,13 @@ struct AuditOptions {
   std::vector<std::filesystem::path> room;
   bool direct = false;
   DirectAuditSettings settings;
+  int threads = 0;
   OutputStyle style;
 };
 
 /// Throws Interrupted.
 DirectAudit compare_direct_light(const AuditOptions& options, const Solution& solution) {
+  const ThreadLimit limit(options.threads);
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   const Room room = build_room(scene, solution.mesh, options.style);
   const InterruptGuard interrupt;
@@ -75,6 +78,8 @@ void add_audit_command(CLI::App& program, Action& action) {
   add_integer_option(audit, "--points", options->settings.points, 32, 1 << 20,
                      "Shadow rays per zone, rounded up")
       ->needs(direct);
+  add_seed_and_threads(audit, options->settings.seed, options->threads);
+  for (const char* name : {"--seed", "--threads"}) audit.get_option(name)->needs(direct);
   add_room_option(audit, options->room)->needs(direct);
   add_progress_options(audit, options->style);
   add_json_option(audit, options->style);

@@ -46,6 +46,19 @@ TEST(Threads, DoNotChangeTheGather) {
   EXPECT_TRUE(export_of(folder, "room.h5", "gather", "1") == export_of(folder, "room.h5", "gather", "2"));
 }
 
+TEST(Threads, DoNotChangeWhatTheAuditOfDirectLightFinds) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  solve_small_room(folder, "room.h5");
+  const auto found = [&](const std::string& threads) {
+    const ProgramRun run =
+        run_reemit({"audit", (folder / "room.h5").string(), "--direct", "--json", "--threads", threads});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.out;
+  };
+  EXPECT_EQ(found("1"), found("2"));
+}
+
 TEST(Threads, AnotherSeedChangesTheSolution) {
   const TempFolder folder;
   folder.write("room.json", small_json_room());
