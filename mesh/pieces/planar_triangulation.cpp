@@ -6,7 +6,10 @@
 #include <numbers>
 #include <utility>
 
+// It advises a class for many cascaded crossings, which here are too few to need it.
+#define CGAL_NO_CDT_2_WARNING
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
@@ -24,20 +27,32 @@ struct FaceInfo {
   bool inside = false;
 };
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<VertexInfo, Kernel>;
-using FaceBase =
-    CGAL::Constrained_triangulation_face_base_2<Kernel,
-                                                CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel>>;
-using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
-using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
-using FaceHandle = Cdt::Face_handle;
-using VertexHandle = Cdt::Vertex_handle;
+// Crossings of segments have rounded coordinates.
+struct RoundedCrossings {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Tag = CGAL::Exact_predicates_tag;
+};
 
-Vec2 to_vec(const Cdt::Point& p) {
-  return {p.x(), p.y()};
+// Crossings of segments have exact coordinates until the end.
+struct ExactCrossings {
+  using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+  using Tag = CGAL::Exact_intersections_tag;
+};
+
+template <class Policy, class Kernel = typename Policy::Kernel,
+          class Vertex = CGAL::Triangulation_vertex_base_with_info_2<VertexInfo, Kernel>,
+          class Face = CGAL::Constrained_triangulation_face_base_2<
+              Kernel, CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel>>>
+using CdtOf =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex, Face>,
+                                               typename Policy::Tag>;
+
+template <class Point>
+Vec2 to_vec(const Point& p) {
+  return {CGAL::to_double(p.x()), CGAL::to_double(p.y())};
 }
 
+template <class FaceHandle>
 std::array<Vec2, 3> corners(const FaceHandle& f) {
   return {to_vec(f->vertex(0)->point()), to_vec(f->vertex(1)->point()), to_vec(f->vertex(2)->point())};
 }
@@ -48,6 +63,7 @@ struct Shape {
   double area;
 };
 
+template <class FaceHandle>
 Shape shape_of(const FaceHandle& f) {
   const auto [a, b, c] = corners(f);
   const Vec2 ab = b - a;
@@ -60,14 +76,16 @@ Shape shape_of(const FaceHandle& f) {
 }
 
 // Connected parts of the triangulation between constrained edges.
+template <class Cdt>
 struct Regions {
-  std::vector<std::vector<FaceHandle>> faces;
+  std::vector<std::vector<typename Cdt::Face_handle>> faces;
   std::vector<Vec2> point;
 };
 
-template <class Admit>
-Regions find_regions(const Cdt& cdt, Admit admit) {
-  Regions regions;
+template <class Cdt, class Admit>
+Regions<Cdt> find_regions(const Cdt& cdt, Admit admit) {
+  using FaceHandle = typename Cdt::Face_handle;
+  Regions<Cdt> regions;
   CGAL::Unique_hash_map<FaceHandle, bool> seen(false);
   std::vector<FaceHandle> stack;
   for (auto it = cdt.finite_faces_begin(); it != cdt.finite_faces_end(); ++it) {
@@ -110,7 +128,12 @@ void silence_cgal() {
       once, [] { CGAL::set_error_handler([](const char*, const char*, const char*, int, const char*) {}); });
 }
 
+template <class Policy>
 class Triangulator {
+  using Cdt = CdtOf<Policy>;
+  using FaceHandle = typename Cdt::Face_handle;
+  using VertexHandle = typename Cdt::Vertex_handle;
+
  public:
   Triangulator(const std::vector<Vec2>& points, const std::vector<std::array<std::uint32_t, 2>>& segments,
                const std::function<bool(const Vec2&)>& inside)
@@ -143,10 +166,11 @@ class Triangulator {
   PlanarTriangulation out_;
 };
 
-void Triangulator::insert_input(const std::vector<std::array<std::uint32_t, 2>>& segments) {
+template <class Policy>
+void Triangulator<Policy>::insert_input(const std::vector<std::array<std::uint32_t, 2>>& segments) {
   FaceHandle hint;
   for (std::size_t i = 0; i < out_.points.size(); ++i) {
-    const VertexHandle v = cdt_.insert(Cdt::Point(out_.points[i].x(), out_.points[i].y()), hint);
+    const VertexHandle v = cdt_.insert(typename Cdt::Point(out_.points[i].x(), out_.points[i].y()), hint);
     if (v->info().index == kNone) v->info().index = static_cast<std::uint32_t>(i);
     hint = v->face();
     handle_.push_back(v);
@@ -155,7 +179,8 @@ void Triangulator::insert_input(const std::vector<std::array<std::uint32_t, 2>>&
     if (handle_[a] != handle_[b]) cdt_.insert_constraint(handle_[a], handle_[b]);
 }
 
-void Triangulator::number_crossings(std::size_t given) {
+template <class Policy>
+void Triangulator<Policy>::number_crossings(std::size_t given) {
   for (auto v = cdt_.finite_vertices_begin(); v != cdt_.finite_vertices_end(); ++v) {
     if (v->info().index != kNone) continue;
     v->info().index = static_cast<std::uint32_t>(out_.points.size());
@@ -165,17 +190,19 @@ void Triangulator::number_crossings(std::size_t given) {
   out_.on_segment.resize(out_.points.size() - given, {kNone, kNone});
 }
 
-void Triangulator::mark_inside() {
+template <class Policy>
+void Triangulator<Policy>::mark_inside() {
   if (cdt_.dimension() < 2) return;
   for (auto f = cdt_.all_faces_begin(); f != cdt_.all_faces_end(); ++f) f->info().inside = false;
-  const Regions all = find_regions(cdt_, [](const FaceHandle&) { return true; });
+  const Regions<Cdt> all = find_regions(cdt_, [](const FaceHandle&) { return true; });
   for (std::size_t r = 0; r < all.faces.size(); ++r) {
     const bool is_inside = inside_(all.point[r]);
     for (const FaceHandle& f : all.faces[r]) f->info().inside = is_inside;
   }
 }
 
-std::vector<Triangulator::LongSide> Triangulator::sides_to_split(const TriangleQuality& quality) const {
+template <class Policy>
+auto Triangulator<Policy>::sides_to_split(const TriangleQuality& quality) const -> std::vector<LongSide> {
   const double sine = std::sin(quality.smallest_angle_deg * std::numbers::pi / 180);
   // A triangle as thin as rounding cannot be improved.
   constexpr double kFlat = 1e-20;
@@ -206,13 +233,14 @@ std::vector<Triangulator::LongSide> Triangulator::sides_to_split(const TriangleQ
   return sides;
 }
 
-void Triangulator::split(const LongSide& side) {
+template <class Policy>
+void Triangulator<Policy>::split(const LongSide& side) {
   const auto [a, b] = side.ends;
   FaceHandle f;
   int i = 0;
   if (!cdt_.is_edge(handle_[a], handle_[b], f, i)) return;  // an earlier point of this round took it away
   const Vec2 middle = 0.5 * (out_.points[a] + out_.points[b]);
-  const Cdt::Point p(middle.x(), middle.y());
+  const typename Cdt::Point p(middle.x(), middle.y());
   const bool on_segment = f->is_constrained(i);
   const VertexHandle v = on_segment ? cdt_.insert(p, Cdt::EDGE, f, i) : cdt_.insert(p, f);
   if (v->info().index != kNone) return;
@@ -222,7 +250,8 @@ void Triangulator::split(const LongSide& side) {
   out_.on_segment.push_back(on_segment ? side.ends : std::array<std::uint32_t, 2>{kNone, kNone});
 }
 
-bool Triangulator::refine(const TriangleQuality& quality) {
+template <class Policy>
+bool Triangulator<Policy>::refine(const TriangleQuality& quality) {
   if (cdt_.dimension() < 2 || quality.smallest_angle_deg <= 0) return true;
   const std::size_t limit = out_.points.size() + quality.most_new_points;
   for (;;) {
@@ -236,9 +265,10 @@ bool Triangulator::refine(const TriangleQuality& quality) {
   }
 }
 
-PlanarTriangulation Triangulator::result() {
+template <class Policy>
+PlanarTriangulation Triangulator<Policy>::result() {
   if (cdt_.dimension() < 2) return std::move(out_);
-  const Regions kept = find_regions(cdt_, [](const FaceHandle& f) { return f->info().inside; });
+  const Regions<Cdt> kept = find_regions(cdt_, [](const FaceHandle& f) { return f->info().inside; });
   for (std::size_t r = 0; r < kept.faces.size(); ++r) {
     out_.region_point.push_back(kept.point[r]);
     for (const FaceHandle& f : kept.faces[r]) {
@@ -250,26 +280,35 @@ PlanarTriangulation Triangulator::result() {
   return std::move(out_);
 }
 
-}  // namespace
-
-PlanarTriangulation triangulate_planar(const std::vector<Vec2>& points,
-                                       const std::vector<std::array<std::uint32_t, 2>>& segments,
-                                       const std::function<bool(const Vec2&)>& inside,
-                                       const TriangleQuality& quality) {
-  silence_cgal();
+template <class Policy>
+PlanarTriangulation triangulate(const std::vector<Vec2>& points,
+                                const std::vector<std::array<std::uint32_t, 2>>& segments,
+                                const std::function<bool(const Vec2&)>& inside,
+                                const TriangleQuality& quality) {
   if (quality.most_new_points > 0) {
     try {
-      Triangulator refined(points, segments, inside);
+      Triangulator<Policy> refined(points, segments, inside);
       if (refined.refine(quality)) return refined.result();
     } catch (const CGAL::Failure_exception&) {
       // Something is thinner than rounding; without refinement it may still do.
     }
   }
   try {
-    return Triangulator(points, segments, inside).result();
+    return Triangulator<Policy>(points, segments, inside).result();
   } catch (const CGAL::Failure_exception&) {
     return {};
   }
+}
+
+}  // namespace
+
+PlanarTriangulation triangulate_planar(const std::vector<Vec2>& points,
+                                       const std::vector<std::array<std::uint32_t, 2>>& segments,
+                                       const std::function<bool(const Vec2&)>& inside,
+                                       const TriangleQuality& quality, Crossings crossings) {
+  silence_cgal();
+  return crossings == Crossings::kRounded ? triangulate<RoundedCrossings>(points, segments, inside, quality)
+                                          : triangulate<ExactCrossings>(points, segments, inside, quality);
 }
 
 }  // namespace reemit

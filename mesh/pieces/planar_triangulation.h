@@ -18,6 +18,10 @@ struct TriangleQuality {
   std::size_t most_new_points = 0;  ///< If more would be needed, none are added.
 };
 
+/// How crossings of segments are found. Where many cross almost in one point, rounding at every step can bend
+/// a segment to a point far away; rounding exact crossings hardly ever does, at ten times the cost.
+enum class Crossings { kRounded, kExact };
+
 /// A constrained Delaunay triangulation of the regions that count as inside.
 struct PlanarTriangulation {
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -39,6 +43,7 @@ struct PlanarTriangulation {
 PlanarTriangulation triangulate_planar(const std::vector<Vec2>& points,
                                        const std::vector<std::array<std::uint32_t, 2>>& segments,
                                        const std::function<bool(const Vec2&)>& inside,
-                                       const TriangleQuality& quality);
+                                       const TriangleQuality& quality,
+                                       Crossings crossings = Crossings::kRounded);
 
 }  // namespace reemit

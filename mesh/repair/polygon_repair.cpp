@@ -33,6 +33,16 @@ Vec3 vector_area_as_read(const std::vector<Corner>& loop) {
   return loop_area(loop, [](const Corner& corner) -> const Vec3& { return corner.read; });
 }
 
+double filled_area(const PlanarTriangulation& cut) {
+  double filled = 0;
+  for (const auto& [a, b, c] : cut.triangles) {
+    const Vec2 ab = cut.points[b] - cut.points[a];
+    const Vec2 ac = cut.points[c] - cut.points[a];
+    filled += 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
+  }
+  return filled;
+}
+
 class PolygonRepair {
  public:
   PolygonRepair(const Scene& scene, const MeshTolerances& tolerances, VertexTable& vertices,
@@ -55,7 +65,8 @@ class PolygonRepair {
     report_.changes.push_back({surface, face, change});
   }
   bool finish_plane(FacePiece& piece, const FaceLoops& polygon, double& deviation) const;
-  void refuse_if_crossed(const FacePiece& piece, const FaceLoops& polygon) const;
+  bool add_crossed_halves(const FacePiece& piece, const FaceLoops& polygon);
+  void add_new_corners(const FacePiece& piece, const PlanarTriangulation& cut, std::vector<Corner>& corners);
   void add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners);
   void add_polygon(FacePiece piece, const FaceLoops& polygon);
   void add_split(const FacePiece& piece, const FaceLoops& polygon);
@@ -219,8 +230,18 @@ PlanarTriangulation PolygonRepair::triangulate(const FacePiece& piece, const Fac
   return triangulate_planar(points, segments, [&](const Vec2& p) { return loops.contains(p); }, {});
 }
 
-// An outline like a figure 8 may enclose area twice in opposite senses, which leaves no front.
-void PolygonRepair::refuse_if_crossed(const FacePiece& piece, const FaceLoops& polygon) const {
+// Takes the points that a triangulation added into the corners of its face.
+void PolygonRepair::add_new_corners(const FacePiece& piece, const PlanarTriangulation& cut,
+                                    std::vector<Corner>& corners) {
+  for (std::size_t i = corners.size(); i < cut.points.size(); ++i) {
+    const Vec3 p = piece.plane.lift(cut.points[i]);
+    corners.push_back({p, vertices_.weld(p), Vec3::Zero()});
+  }
+}
+
+// An outline like a figure 8 may enclose as much area backwards as forwards, which leaves the whole no front:
+// each half has that of its own winding. False if there are no halves.
+bool PolygonRepair::add_crossed_halves(const FacePiece& piece, const FaceLoops& polygon) {
   const std::vector<Corner>& loop = polygon.loops[0];
   Vec3 widest = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
@@ -228,20 +249,22 @@ void PolygonRepair::refuse_if_crossed(const FacePiece& piece, const FaceLoops& p
     if (n.squaredNorm() > widest.squaredNorm()) widest = n;
   }
   const double size = tolerances_.weld * piece.diameter;
-  if (widest.norm() <= size) return;
+  if (widest.norm() <= size) return false;
   FacePiece flat = piece;
   flat.plane = PlaneFrame::make(vertices_[loop[0].vertex], widest.normalized());
   std::vector<Corner> corners;
   const PlanarTriangulation cut = triangulate(flat, polygon, corners);
-  double filled = 0;
-  for (const auto& t : cut.triangles) {
-    const Vec2 ab = cut.points[t[1]] - cut.points[t[0]];
-    const Vec2 ac = cut.points[t[2]] - cut.points[t[0]];
-    filled += 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
+  if (filled_area(cut) <= 2 * size) return false;
+  add_new_corners(flat, cut, corners);
+  const PlanarLoops loops(vertices_, flat, flat.plane);
+  for (auto [a, b, c] : cut.triangles) {
+    const Vec2 middle = (cut.points[a] + cut.points[b] + cut.points[c]) / 3;
+    if (winding_number(loops.loops[0], middle) < 0) std::swap(b, c);
+    add_triangle(flat, {corners[a], corners[b], corners[c]});
   }
-  if (filled > 2 * size)
-    throw bad_face(piece, "the outline crosses itself and encloses as much area backwards as forwards",
-                   "reorder its corners or split it at the crossing");
+  crossed_.add(scene_, piece.surface, piece.face);
+  note(FaceChange::kCrossed, piece.surface, piece.face);
+  return true;
 }
 
 void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner, 3>& corners) {
@@ -277,12 +300,7 @@ void PolygonRepair::add_polygon(FacePiece piece, const FaceLoops& polygon) {
   for (std::size_t i = 1; i < polygon.loops.size(); ++i) area -= vector_area_as_read(polygon.loops[i]).norm();
   std::vector<Corner> corners;
   const PlanarTriangulation cut = triangulate(piece, polygon, corners);
-  double filled = 0;
-  for (const auto& t : cut.triangles) {
-    const Vec2 ab = cut.points[t[1]] - cut.points[t[0]];
-    const Vec2 ac = cut.points[t[2]] - cut.points[t[0]];
-    filled += 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
-  }
+  const double filled = filled_area(cut);
   // Welding moves corners by less than the weld distance; a larger gap means crossing loops, whose area is
   // what they fill.
   const double slack = 8 * tolerances_.weld * piece.diameter * static_cast<double>(corners.size());
@@ -303,10 +321,7 @@ void PolygonRepair::add_polygon(FacePiece piece, const FaceLoops& polygon) {
 void PolygonRepair::add_split(const FacePiece& piece, const FaceLoops& polygon) {
   std::vector<Corner> corners;
   const PlanarTriangulation cut = triangulate(piece, polygon, corners);
-  for (std::size_t i = corners.size(); i < cut.points.size(); ++i) {
-    const Vec3 p = piece.plane.lift(cut.points[i]);
-    corners.push_back({p, vertices_.weld(p), Vec3::Zero()});
-  }
+  add_new_corners(piece, cut, corners);
   for (const auto& t : cut.triangles) add_triangle(piece, {corners[t[0]], corners[t[1]], corners[t[2]]});
 }
 
@@ -338,7 +353,7 @@ double PolygonRepair::repair_part(SurfaceId surface, std::uint32_t face, const F
                   !material.non_diffuse.transmits_specularly() && !material.non_diffuse.transmits_diffusely();
   double deviation = 0;
   if (!finish_plane(piece, part, deviation)) {
-    if (part.loops[0].size() > 3) refuse_if_crossed(piece, part);
+    if (part.loops[0].size() > 3 && add_crossed_halves(piece, part)) return 0;
     drop(piece, area_as_read);
     return 0;
   }

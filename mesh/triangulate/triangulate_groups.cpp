@@ -102,7 +102,8 @@ class GroupTriangulation {
 
  private:
   void triangulate(std::size_t g);
-  bool emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality, Lines lines);
+  bool emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality, Lines lines,
+            Crossings crossings = Crossings::kRounded);
   Drawing draw(const PieceGroup& group, const std::vector<Segment>& cuts, Lines lines) const;
   GroupRegions find_regions(const PieceGroup& group, const GroupOutlines& outlines,
                             const PlanarTriangulation& cut, Lines lines) const;
@@ -273,14 +274,15 @@ void GroupTriangulation::add_triangles(const PieceGroup& group, const PlanarTria
 
 // Triangulates a group; returns false, leaving no trace but unused vertices, if area was lost.
 bool GroupTriangulation::emit(std::size_t g, const std::vector<Segment>& cuts, const TriangleQuality& quality,
-                              Lines lines) {
+                              Lines lines, Crossings crossings) {
   const PieceGroup group = groups_[g];
   Drawing drawing = draw(group, cuts, lines);
   const GroupOutlines outlines(vertices_, pieces_, group);
   const auto inside = [&](const Vec2& p) { return outlines.cover(p); };
   TriangleQuality limited = quality;
   limited.most_new_points = std::min(quality.most_new_points, 1000 + 10 * drawing.points.size());
-  const PlanarTriangulation cut = triangulate_planar(drawing.points, drawing.segments, inside, limited);
+  const PlanarTriangulation cut =
+      triangulate_planar(drawing.points, drawing.segments, inside, limited, crossings);
   const std::vector<std::uint32_t> ids = lift(group, cut, std::move(drawing.ids));
 
   GroupRegions found = find_regions(group, outlines, cut, lines);
@@ -324,10 +326,12 @@ void GroupTriangulation::triangulate(std::size_t g) {
   const bool any_hidden = std::any_of(group.pieces.begin(), group.pieces.end(),
                                       [&](std::size_t p) { return groups_.hidden.any(p); });
   if (any_hidden && emit(g, cuts, quality_, Lines::kInSight)) return;  // where rounding does not defeat it
-  if (emit(g, cuts, quality_, Lines::kAll)) return;
   TriangleQuality plain = quality_;
   plain.most_new_points = 0;
-  if (emit(g, cuts, plain, Lines::kAll) || emit(g, {}, plain, Lines::kAll)) return;
+  for (const Crossings crossings : {Crossings::kRounded, Crossings::kExact})
+    if (emit(g, cuts, quality_, Lines::kAll, crossings) || emit(g, cuts, plain, Lines::kAll, crossings))
+      return;
+  if (emit(g, {}, plain, Lines::kAll, Crossings::kExact)) return;
   const auto lost = std::find_if(group.pieces.begin(), group.pieces.end(),
                                  [&](std::size_t p) { return !conserves_area(p); });
   const FacePiece& piece = pieces_[lost == group.pieces.end() ? group.pieces[0] : *lost];

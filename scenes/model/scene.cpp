@@ -115,7 +115,7 @@ void warn_if_dark(Scene& scene, const std::vector<bool>& used) {
   if (!scene.lights.empty() || scene.sky) return;
   scene.warnings.push_back(
       "The room has no luminaire: no surface and no light emits, so everything stays black. A room that "
-      "daylight is to come into needs a sky: --sky overcast:10000lx.");
+      "daylight is to come into needs a sky: solve --sky overcast:10000lx.");
 }
 
 void warn_of_units(Scene& scene) {

@@ -21,8 +21,10 @@ std::string place_of(const Scene& scene, const Surface& surface, std::size_t fac
                      line > 0 ? fmt::format(":{}", line) : "", surface.name, face + 1);
 }
 
-void check_coordinates(const Scene& scene, const Surface& surface, std::size_t f) {
+/// False if some lie too far out to tell texels apart: the face then has none.
+bool check_coordinates(const Scene& scene, const Surface& surface, std::size_t f) {
   const Face& face = surface.faces[f];
+  bool are_usable = true;
   const auto fail = [&](const std::string& problem, const char* advice) {
     throw InputError(place_of(scene, surface, f), problem, advice);
   };
@@ -36,11 +38,16 @@ void check_coordinates(const Scene& scene, const Surface& surface, std::size_t f
       fail(fmt::format("texture coordinate {} is out of range", index), "Refer to one that the surface has.");
     for (const auto& uv : surface.texture_points[index].uv)
       for (const double x : uv)
-        if (!(std::abs(x) <= kFarthest))
-          fail(fmt::format("the texture coordinate {:g}", x), "Give finite ones of at most 100000.");
+        if (!(std::abs(x) <= kFarthest)) {
+          // Beside them stand the colours of vertices, which the face would lose.
+          if (surface.has_vertex_colours)
+            fail(fmt::format("the texture coordinate {:g}", x), "Give finite ones of at most 100000.");
+          are_usable = false;
+        }
     for (const float share : surface.texture_points[index].colour)
       if (!(share >= 0 && share <= 1)) fail(fmt::format("the vertex colour {:g}", share), "Give 0 to 1.");
   }
+  return are_usable;
 }
 
 /// What the brightest texel reflects, as far as the other shares leave it. Spectra of dark colours may be as
@@ -65,8 +72,8 @@ void warn_of_unmapped(Scene& scene, std::size_t faces, std::size_t shapes, const
   if (faces + shapes == 0) return;
   scene.not_modelled["faces_without_texture_coordinates"] += faces + shapes;
   scene.warnings.push_back(
-      fmt::format("{} face(s) and {} round shape(s) have a texture but no texture coordinates; they count "
-                  "with the mean of the image. The first is {}",
+      fmt::format("{} face(s) and {} round shape(s) have a texture but no texture coordinates of at most "
+                  "100000; they count with the mean of the image. The first is {}",
                   faces, shapes, first));
 }
 
@@ -102,8 +109,8 @@ void check_textures(Scene& scene) {
     if (has_image) shapes += surface.shapes.size();
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
       if (!surface.faces[f].texture_points.empty()) {
-        check_coordinates(scene, surface, f);
-        continue;
+        if (check_coordinates(scene, surface, f)) continue;
+        surface.faces[f].texture_points.clear();
       }
       if (!has_image) continue;
       if (first.empty()) first = place_of(scene, surface, f);

@@ -41,6 +41,9 @@ std::string load_file(const fs::path& file, std::uintmax_t largest) {
   // No binary format that comes this way begins with either mark.
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw InputError(file.string(), "its text is UTF-16", "Save it as UTF-8 or as plain text (ASCII).");
+  if (text.starts_with("version https://git-lfs."))
+    throw InputError(file.string(), "it is a pointer that Git LFS left in the place of the file",
+                     "Fetch the file itself: git lfs pull.");
   return text;
 }
 

@@ -13,7 +13,7 @@ inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{4} << 30;
 void check_readable_file(const std::filesystem::path& file, std::uintmax_t largest = kLargestFile);
 
 /// The bytes of a file after check_readable_file; throws InputError when it cannot be opened or read,
-/// or is UTF-16.
+/// is UTF-16 or a pointer of Git LFS.
 std::string load_file(const std::filesystem::path& file, std::uintmax_t largest = kLargestFile);
 
 }  // namespace reemit

@@ -24,6 +24,7 @@ constexpr const char* kVolume = "KHR_materials_volume";
 constexpr const char* kIor = "KHR_materials_ior";
 constexpr const char* kSpecular = "KHR_materials_specular";
 constexpr const char* kClearCoat = "KHR_materials_clearcoat";
+constexpr const char* kUnlit = "KHR_materials_unlit";
 
 /// What a body of this index of refraction reflects at normal incidence.
 double normal_reflectance(double ior) {
@@ -38,6 +39,7 @@ class MaterialReader {
 
   void read_all() {
     std::set<std::string> ignored;
+    std::size_t unlit = 0;
     for (std::size_t i = 0; i < gltf_.model.materials.size(); ++i) {
       const tinygltf::Material& source = gltf_.model.materials[i];
       where_ = fmt::format("/materials/{}", i);
@@ -50,11 +52,18 @@ class MaterialReader {
                                                  kSpecular,
                                                  kClearCoat,
                                                  kVolume,
+                                                 kUnlit,
                                                  kSpecularGlossiness,
                                                  kDiffuseTransmission};
         if (!known.contains(name)) ignored.insert(name);
       }
+      if (source.extensions.contains(kUnlit)) ++unlit;
     }
+    if (unlit > 0)
+      scene_.warnings.push_back(fmt::format(
+          "{} material(s) are unlit (KHR_materials_unlit): their colours, which viewers show as they are, "
+          "count as diffuse reflectance",
+          unlit));
     if (!ignored.empty()) {
       scene_.not_modelled["material_extensions"] += ignored.size();
       scene_.warnings.push_back(fmt::format("material extensions are ignored: {}", fmt::join(ignored, ", ")));
@@ -188,6 +197,17 @@ class MaterialReader {
     material.textures.reflectance_factor = material.reflectance;
     material.reflectance *= mean_of(texture);
     material.textures.reflectance = std::move(texture);
+  }
+
+  /// What is unlit has a base colour and its opacity; all else of the model of light means nothing.
+  void read_unlit(const tinygltf::Material& source, Material& material) {
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    const std::string within = "pbrMetallicRoughness/";
+    material.reflectance = rgb(pbr.baseColorFactor, 1, within + "baseColorFactor");
+    Texture colour = texture(pbr.baseColorTexture, TextureEncoding::kSrgb, within + "baseColorTexture",
+                             "base colour", material.name);
+    read_opacity(source, pbr.baseColorFactor, colour, material);
+    vary_reflectance(std::move(colour), material);
   }
 
   void read_metallic_roughness(const tinygltf::Material& source, Material& material) {
@@ -370,7 +390,9 @@ class MaterialReader {
     Material material;
     material.name = source.name;
     material.two_sided = source.doubleSided;
-    if (extension(source, kSpecularGlossiness).IsObject()) {
+    if (source.extensions.contains(kUnlit)) {
+      read_unlit(source, material);
+    } else if (extension(source, kSpecularGlossiness).IsObject()) {
       read_specular_glossiness(source, material);
     } else {
       read_metallic_roughness(source, material);

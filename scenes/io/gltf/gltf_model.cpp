@@ -12,6 +12,7 @@
 
 #include "scenes/io/common/json_cursor.h"
 #include "scenes/io/common/text_file.h"
+#include "scenes/io/common/text_parse.h"
 #include "scenes/io/gltf/gltf_document.h"
 #include "scenes/io/gltf/gltf_draco.h"
 #include "scenes/io/gltf/gltf_extensions.h"
@@ -122,6 +123,21 @@ std::string tidy(const std::string& text) {
   return line;
 }
 
+/// Pre: the file is no GLB.
+void refuse_other_formats(const std::filesystem::path& file, const std::string& bytes) {
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  if (lower_case_extension(file) == ".glb" && (start == std::string::npos || bytes[start] != '{'))
+    throw InputError(file.string(), "it is no GLB file, which begins with 'glTF'",
+                     "Was it damaged on its way, or is it of another format?");
+}
+
+/// Of glTF before 2.0, where lists were objects.
+void refuse_earlier_versions(const nlohmann::json& document, const std::string& file) {
+  const auto buffers = document.find("buffers");
+  if (buffers == document.end() || !buffers->is_object()) return;
+  throw InputError(file, "it is glTF 1.0", "Export glTF 2.0, or convert the file: gltf-pipeline does.");
+}
+
 /// Names the file of a buffer that is not there; one whose name has escaped characters is left to others.
 void refuse_missing_buffers(const JsonCursor& document, const std::filesystem::path& folder) {
   const auto buffers = document.find("buffers");
@@ -144,9 +160,11 @@ GltfModel load_gltf_model(const std::filesystem::path& file) {
   loaded.file = file.string();
   std::string bytes = load_file(file, kLargestGltf);
   const bool binary = bytes.compare(0, 4, "glTF") == 0;
+  if (!binary) refuse_other_formats(file, bytes);
   // Strict parse first: it bounds the nesting, which the library follows recursively.
   const nlohmann::json document = parse_json(binary ? json_of_glb(bytes, loaded.file) : bytes, loaded.file);
   JsonCursor(document, loaded.file).expect_object();
+  refuse_earlier_versions(document, loaded.file);
   check_gltf_extensions(document, loaded.file);
   check_gltf_document(document, loaded.file);
   if (const auto simplified = simplified_for_parser(document, file.parent_path()))

@@ -98,12 +98,14 @@ void check_for_cycles(const GltfModel& gltf, const std::vector<int>& parents) {
                    "it is its own ancestor", "The nodes must form trees; export the file anew.");
 }
 
-std::vector<std::size_t> roots_to_read(const GltfModel& gltf, const std::vector<int>& parents, Scene& scene) {
+/// A node to begin with, and what its parents, which are not read, make of its place.
+std::vector<GltfPlacedNode> roots_to_read(const GltfModel& gltf, const std::vector<int>& parents,
+                                          Scene& scene) {
   const tinygltf::Model& model = gltf.model;
-  std::vector<std::size_t> roots;
+  std::vector<GltfPlacedNode> roots;
   if (model.scenes.empty()) {
     for (std::size_t i = 0; i < parents.size(); ++i) {
-      if (parents[i] == kNone) roots.push_back(i);
+      if (parents[i] == kNone) roots.push_back({i, Eigen::Affine3d::Identity()});
     }
     return roots;
   }
@@ -116,22 +118,37 @@ std::vector<std::size_t> roots_to_read(const GltfModel& gltf, const std::vector<
     scene.warnings.push_back(fmt::format("scene {} \"{}\" of {} is read, the others are not", chosen,
                                          source.name, model.scenes.size()));
   }
-  std::vector<bool> seen(parents.size(), false);
+  std::vector<bool> named(parents.size(), false);
   for (const int node : source.nodes) {
-    const auto index = static_cast<std::size_t>(node);
-    if (node < 0 || index >= parents.size()) {
+    if (node < 0 || static_cast<std::size_t>(node) >= parents.size()) {
       throw InputError(gltf.at(fmt::format("/scenes/{}/nodes", chosen)),
                        fmt::format("scene {} names node {}, which does not exist", chosen, node),
                        "Export the file anew.");
     }
-    if (parents[index] != kNone || seen[index]) {
-      throw InputError(node_place(gltf, index),
-                       "the scene names it, but it is the child of another node or named twice",
-                       "A scene may list each root node once; export the file anew.");
-    }
-    seen[index] = true;
-    roots.push_back(index);
+    named[static_cast<std::size_t>(node)] = true;
   }
+  // Some exporters name children of a node that the scene leaves out.
+  std::size_t children = 0;
+  std::string first;
+  std::vector<bool> read(parents.size(), false);
+  for (const int node : source.nodes) {
+    const auto index = static_cast<std::size_t>(node);
+    GltfPlacedNode root{index, Eigen::Affine3d::Identity()};
+    bool is_below_another = false;
+    for (int p = parents[index]; p != kNone; p = parents[static_cast<std::size_t>(p)]) {
+      root.to_world = local_transform(gltf, static_cast<std::size_t>(p)) * root.to_world;
+      is_below_another |= named[static_cast<std::size_t>(p)];
+    }
+    if ((parents[index] != kNone || read[index]) && children++ == 0) first = node_place(gltf, index);
+    if (!is_below_another && !read[index]) roots.push_back(root);
+    read[index] = true;
+  }
+  if (children > 0)
+    scene.warnings.push_back(
+        fmt::format("the scene names {} node(s) that are children of others or named before; each is read "
+                    "once, where its "
+                    "parents put it. The first is {}",
+                    children, first));
   return roots;
 }
 
@@ -148,9 +165,9 @@ bool is_hidden(const tinygltf::Node& node) {
 std::vector<GltfPlacedNode> place_gltf_nodes(const GltfModel& gltf, Scene& scene) {
   const std::vector<int> parents = parents_of(gltf);
   check_for_cycles(gltf, parents);
-  std::vector<GltfPlacedNode> open, placed;
-  std::vector<std::size_t> roots = roots_to_read(gltf, parents, scene);
-  for (auto it = roots.rbegin(); it != roots.rend(); ++it) open.push_back({*it, Eigen::Affine3d::Identity()});
+  std::vector<GltfPlacedNode> open = roots_to_read(gltf, parents, scene);
+  std::vector<GltfPlacedNode> placed;
+  std::reverse(open.begin(), open.end());
   std::size_t hidden = 0;
   while (!open.empty()) {
     GltfPlacedNode node = open.back();

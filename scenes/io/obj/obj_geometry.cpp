@@ -187,12 +187,12 @@ std::uint32_t absolute(int index, std::size_t count, const Loading& loading, con
   const std::int64_t value = index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
   if (value < 0)
     throw InputError(at_line(loading.file, face.line), fmt::format("index {} is out of range", index),
-                     fmt::format("There are {} so far.", count));
+                     fmt::format("There are {} vertices so far.", count));
   return static_cast<std::uint32_t>(value);
 }
 
-// What refers to none leaves the face without: it still has a shape, and a textured one is warned of.
-std::uint32_t texture_point(int index, std::size_t count) {
+// Of a normal or texture coordinate. What refers to none leaves the face without: it still has a shape.
+std::uint32_t optional_index(int index, std::size_t count) {
   const std::int64_t value = index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
   return value < 0 ? 0xffffffffU : static_cast<std::uint32_t>(value);
 }
@@ -204,31 +204,37 @@ void add_face(void* user, tinyobj::index_t* corners, int count) {
   for (int i = 0; i < count; ++i) {
     face.positions.push_back(absolute(corners[i].vertex_index, geometry.positions.size(), loading, face));
     if (corners[i].texcoord_index != 0)
-      face.texture_points.push_back(texture_point(corners[i].texcoord_index, geometry.texture_points.size()));
+      face.texture_points.push_back(
+          optional_index(corners[i].texcoord_index, geometry.texture_points.size()));
     if (corners[i].normal_index != 0)
-      face.normals.push_back(absolute(corners[i].normal_index, geometry.normals.size(), loading, face));
+      face.normals.push_back(optional_index(corners[i].normal_index, geometry.normals.size()));
   }
 }
 
 // Positive indices may point forward, so their range is known at the end only.
 // Faces that have normals at some corners only become flat, those with texture coordinates at some have none.
 void check_ranges(ObjGeometry& geometry, const std::string& file) {
-  const auto check = [&](const std::vector<std::uint32_t>& indices, std::size_t count, const ObjFace& face) {
-    for (const std::uint32_t index : indices)
-      if (index >= count)
-        throw InputError(at_line(file, face.line), fmt::format("index {} is out of range", index + 1),
-                         fmt::format("The file has {}.", count));
+  const auto any_beyond = [](const std::vector<std::uint32_t>& indices, std::size_t count) {
+    return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t i) { return i >= count; });
   };
+  std::size_t without = 0;  // faces that refer to normals or texture coordinates which are not there
+  std::uint32_t first = 0;
   for (ObjFace& face : geometry.faces) {
-    check(face.positions, geometry.positions.size(), face);
-    check(face.normals, geometry.normals.size(), face);
-    const bool has_missing =
-        std::any_of(face.texture_points.begin(), face.texture_points.end(),
-                    [&](std::uint32_t i) { return i >= geometry.texture_points.size(); });
-    if (has_missing) face.texture_points.clear();
-    if (face.normals.size() != face.positions.size()) face.normals.clear();
-    if (face.texture_points.size() != face.positions.size()) face.texture_points.clear();
+    for (const std::uint32_t index : face.positions)
+      if (index >= geometry.positions.size())
+        throw InputError(at_line(file, face.line), fmt::format("index {} is out of range", index + 1),
+                         fmt::format("The file has {} vertices.", geometry.positions.size()));
+    const bool no_texture_points = any_beyond(face.texture_points, geometry.texture_points.size());
+    const bool no_normals = any_beyond(face.normals, geometry.normals.size());
+    if ((no_texture_points || no_normals) && without++ == 0) first = face.line;
+    if (no_texture_points || face.texture_points.size() != face.positions.size()) face.texture_points.clear();
+    if (no_normals || face.normals.size() != face.positions.size()) face.normals.clear();
   }
+  if (without > 0)
+    geometry.warnings.push_back(
+        fmt::format("{}: {} face(s) refer to a vn or vt that the file has not and are read without, the "
+                    "first in line {}.",
+                    file, without, first));
 }
 
 }  // namespace

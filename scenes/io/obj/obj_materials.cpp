@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uintmax_t kLargestMtl = std::uintmax_t{64} << 20;
+// Of materials without one, which old Blenders write for faces without a material.
+constexpr const char* kNoName = "no material";
 constexpr double kGrey = 0.5;  // reflectance of materials that nobody defines
 
 // Numbers a statement of a MTL file must have. tinyobjloader reads what is missing or garbled as 0.
@@ -133,10 +135,11 @@ std::string checked_text(const std::string& text, const std::string& name, std::
     if (line.words[0][0] == '#') continue;
     const std::string where = at_line(name, line.number);
     if (line.words[0] == "newmtl") {
-      if (line.words.size() < 2) throw InputError(where, "'newmtl' has no name", "Name the material.");
       in_material = true;
       clean += emission.completed(name, notes);
-      emission = {rest_of(line, 1)};
+      emission = {line.words.size() < 2 ? kNoName : rest_of(line, 1)};
+      clean += fmt::format("newmtl {}\n", emission.material);
+      continue;
     } else if (!in_material) {
       if (!has_stray)
         warnings.push_back(
@@ -306,6 +309,34 @@ Material convert(const tinyobj::material_t& m, const fs::path& file, TextureImag
   return material;
 }
 
+// What a dielectric reflects at normal incidence: its index of refraction is about 1.5.
+constexpr double kVarnish = 0.04;
+
+// Ks as programs write it that add a highlight to the light that Kd reflects: together they are more than
+// there is. Left as a share it would take the place of Kd, and the surface would absorb nothing. Whether it
+// is such a one.
+bool make_highlight_a_varnish(Material& material) {
+  NonDiffusePart& part = material.non_diffuse;
+  if (!part.reflects_specularly() || part.roughness == 0 || part.angle_law == AngleLaw::kSchlick)
+    return false;
+  Spectrum left = 1 - material.reflectance;
+  if (part.transmits_specularly()) left -= part.specular_transmittance;
+  constexpr double kRounded = 1e-6;
+  if (!(part.specular_reflectance > left + kRounded).any()) return false;
+  part.specular_reflectance = left.max(0).min(kVarnish);
+  if (!(part.specular_reflectance > 0).any()) part.specular_reflectance.resize(0);
+  return true;
+}
+
+// Names, not too many of them.
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 8;
+  const std::size_t shown = std::min(names.size(), kMost);
+  return fmt::format("{}{}",
+                     fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                     names.size() > shown ? ", ..." : "");
+}
+
 // Of Blender's metals, in place of Phong's lobe.
 void make_metal(double roughness, NonDiffusePart& part) {
   part.roughness = roughness;
@@ -342,9 +373,10 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
   std::string ignored_warning, ignored_error;  // about what checked_text has refused
   tinyobj::LoadMtl(&names, &loaded, &stream, &ignored_warning, &ignored_error);
   const bool by_blender = is_written_by_blender(text);
+  std::vector<std::string> highlights;  // names of materials whose Ks is no share of the light
   for (tinyobj::material_t& m : loaded) {
     if (m.name.empty()) continue;
-    Material* place = place_of(m.name);
+    Material* place = place_of(m.name == kNoName ? "" : m.name);
     if (place == nullptr) {
       warnings_.push_back(fmt::format("{}: material '{}' is defined again; the first definition counts.",
                                       file.string(), m.name));
@@ -352,8 +384,14 @@ void ObjMaterials::read(const fs::path& folder, const std::string& name, const s
     }
     const std::optional<double> metal = by_blender ? read_as_written_by_blender(m) : std::nullopt;
     *place = convert(m, file, images_, {warnings_, refused, not_modelled, notes});
+    if (make_highlight_a_varnish(*place)) highlights.push_back(fmt::format("'{}'", m.name));
     if (metal) make_metal(*metal, place->non_diffuse);
   }
+  if (!highlights.empty())
+    warnings_.push_back(fmt::format(
+        "{}: Kd and Ks come to more than 1 in {} material(s): {}. Such a Ks, the strength of a highlight, is "
+        "taken as the gloss of varnish: {} of the light.",
+        file.string(), highlights.size(), listed(highlights), kVarnish));
   if (by_blender) notes.push_back(file.string() + ": " + kBlenderNote);
 }
 
@@ -373,7 +411,7 @@ std::size_t ObjMaterials::index_of(const std::string& name, const std::string& w
   const auto [entry, added] = index_.try_emplace(name, materials.size());
   if (!added) return entry->second;
   Material material;
-  material.name = name.empty() ? "no material" : name;
+  material.name = name.empty() ? kNoName : name;
   material.reflectance = Spectrum::Constant(3, kGrey);
   material.emitted_radiance = Spectrum::Zero(3);
   materials.push_back(std::move(material));
@@ -386,13 +424,10 @@ std::size_t ObjMaterials::index_of(const std::string& name, const std::string& w
 std::vector<std::string> ObjMaterials::warnings() const {
   std::vector<std::string> all = warnings_;
   if (undefined_.empty()) return all;
-  constexpr std::size_t kMostNames = 8;
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < std::min(undefined_.size(), kMostNames); ++i)
-    names.push_back(undefined_[i].shown);
-  all.push_back(fmt::format("{}: {} material(s) are not defined and are taken as grey, reflectance {}: {}{}.",
-                            undefined_.front().at, undefined_.size(), kGrey, fmt::join(names, ", "),
-                            undefined_.size() > names.size() ? ", ..." : ""));
+  for (const Undefined& u : undefined_) names.push_back(u.shown);
+  all.push_back(fmt::format("{}: {} material(s) are not defined and are taken as grey, reflectance {}: {}.",
+                            undefined_.front().at, names.size(), kGrey, listed(names)));
   return all;
 }
 

@@ -42,6 +42,13 @@ TEST(GltfMaterials, MetallicPartIsNotDiffuse) {
   EXPECT_TRUE((by_default.non_diffuse.specular_reflectance == 1).all());
 }
 
+TEST(GltfMaterials, UnlitOnesHaveTheirBaseColourAndNoMetal) {
+  const Material m = read_material({{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.2, 0, 1}}}},
+                                    {"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  EXPECT_TRUE(m.reflectance.isApprox(Eigen::Array3d(1, 0.2, 0), 1e-12));
+  EXPECT_FALSE(m.non_diffuse.reflects_specularly());
+}
+
 TEST(GltfMaterials, TransmissionAndSpecularGlossiness) {
   const Material glass = read_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
                                         {"extensions",

@@ -200,6 +200,21 @@ TEST(GltfReader, ReadsTheDefaultScene) {
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("scene 1 \"second\" of 2")));
 }
 
+TEST(GltfReader, ScenesMayNameChildrenOfNodesThatTheyLeaveOut) {
+  GltfBuilder gltf;
+  gltf.square();
+  gltf.node({{"children", {0}}, {"translation", {0, 0, 5}}});
+  gltf.json["scenes"] = {{{"nodes", {0}}}};
+  const Scene child = read_gltf(gltf);
+  ASSERT_EQ(child.surfaces.size(), 1u);
+  EXPECT_EQ(child.surfaces[0].positions[0].z(), 5);
+  EXPECT_THAT(child.warnings, Contains(AllOf(HasSubstr("names 1 node(s)"), HasSubstr("node \"square\""))));
+  gltf.json["scenes"] = {{{"nodes", {0, 1, 0}}}};
+  EXPECT_EQ(read_gltf(gltf).surfaces.size(), 1u) << "what is below a node that is named is there once";
+  gltf.json["scenes"] = {{{"nodes", {1, 1}}}};
+  EXPECT_EQ(read_gltf(gltf).surfaces.size(), 1u);
+}
+
 TEST(GltfReader, NormalizedAndSparseAccessors) {
   GltfBuilder gltf;
   gltf.square();
@@ -406,6 +421,19 @@ TEST(GltfReader, RefusesExtensionsThatChangeTheGeometry) {
   gltf.json.erase("extensionsRequired");
   gltf.json["asset"]["version"] = "1.0";
   expect_gltf_refused(gltf, {"version \"1.0\""});
+}
+
+TEST(GltfReader, FilesThatAreNoGltfAreNamedForWhatTheyAre) {
+  const TempFolder folder;
+  const auto refused = [&](const char* name, const std::string& text,
+                           std::initializer_list<const char*> parts) {
+    const auto file = folder.write(name, text);
+    expect_input_error([&] { read_gltf_scene(file, {}); }, parts);
+  };
+  refused("room.glb", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n",
+          {"Git LFS", "git lfs pull"});
+  refused("room.glb", "<!DOCTYPE html>", {"no GLB file"});
+  refused("room.gltf", R"({"asset": {"version": "1.0"}, "buffers": {"a": {}}})", {"glTF 1.0"});
 }
 
 TEST(GltfReader, RefusesDamagedGlb) {

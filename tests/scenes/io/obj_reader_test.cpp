@@ -120,7 +120,7 @@ TEST_F(ObjReader, NamesMayHaveBlanksAndLinesMayEndOddly) {
 TEST_F(ObjReader, NamesFileAndLineOfEveryMistake) {
   for (const char* bad :
        {"f",          "f 1 2 9",   "f 1 2 0",       "f 1 2 -5",          "f 1 2 x",   "f 1 2 /",
-        "f 1 2 /3",   "f 1 9",     "f 1 2 3/1/1/1", "f 1 2 3//9",        "f 1 2 1.5", "f 1 2 99999999999",
+        "f 1 2 /3",   "f 1 9",     "f 1 2 3/1/1/1", "f 1 2 0//1",        "f 1 2 1.5", "f 1 2 99999999999",
         "v 1 2",      "v 1 2 nan", "v 1 2 1e999",   "v 1 2 3 4 5 6 7 8", "v",         "vn 0 0",
         "vn 0 0 1 1", "mtllib"})
     EXPECT_THAT(refusal(kSquare + bad + "\n"), HasSubstr("room.obj:7: ")) << bad;
@@ -139,7 +139,7 @@ TEST_F(ObjReader, IgnoredStatementsAreNamedOnce) {
 TEST_F(ObjReader, MtlMistakesAreNamedWithTheirLine) {
   for (const char* bad :
        {"Kd 0.5 0.5", "Kd", "Kd 255 0 0", "Kd -0.1 0 0", "Kd x 0 0", "Ks 11 0 0", "Ke -1 0 0", "Ke nan 0 0",
-        "Ns", "Ns x", "Ni -1", "Ni inf", "d 100", "Kd spectral file.rfl", "Kd 0 0 0 0", "newmtl"})
+        "Ns", "Ns x", "Ni -1", "Ni inf", "d 100", "Kd spectral file.rfl", "Kd 0 0 0 0"})
     EXPECT_THAT(mtl_refusal(std::string("newmtl wall\n") + bad + "\n"), HasSubstr("room.mtl:2: ")) << bad;
   folder_.write("room.mtl", "newmtl wall\nKd 0.5 0.5 0.5\nnewmtl wall\nKd 1 1 1\n");
   EXPECT_THAT(read(kSquare + "f 1 2 3\n").warnings, Contains(HasSubstr("defined again")));
@@ -168,6 +168,36 @@ TEST_F(ObjReader, FacesOfTwoCornersAreLeftOut) {
   const Scene scene = read(kSquare + "f 1 2 3\nf 1 2\nf 3\n");
   EXPECT_EQ(test::face_count(scene), 1U);
   EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("2 face(s)"), HasSubstr("line 8"))));
+}
+
+TEST_F(ObjReader, NormalsAndTextureCoordinatesThatAreNotThereAreDoneWithout) {
+  const Scene scene = read(kSquare + "f 1//1 2//1 3//1\nf 1/-4 3/-4 4/-4\n");
+  EXPECT_EQ(test::face_count(scene), 2U);
+  EXPECT_TRUE(scene.surfaces[0].faces[0].normals.empty());
+  EXPECT_THAT(scene.warnings,
+              Contains(AllOf(HasSubstr("2 face(s) refer to a vn or vt"), HasSubstr("line 7"))));
+}
+
+TEST_F(ObjReader, AMaterialWithoutANameIsThatOfFacesWithoutOne) {
+  folder_.write("room.mtl", "newmtl\nKd 0.8 0.7 0.6\n");
+  const Scene scene = read("mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  EXPECT_NEAR(scene.material_of(scene.surfaces.at(0)).reflectance[1], 0.7, 1e-7);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(ObjReader, HighlightsOverTheWholeLightAreVarnish) {
+  const Scene scene = read_with("newmtl wall\nKd 0.5 0.4 0.3\nKs 1 1 1\nNs 98\n");
+  const Material& wall = scene.materials.at(0);
+  EXPECT_TRUE(wall.reflectance.isApprox(Eigen::Array3d(0.5, 0.4, 0.3), 1e-6));
+  EXPECT_TRUE(wall.non_diffuse.specular_reflectance.isApproxToConstant(0.04, 1e-12));
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("more than 1 in 1 material(s): 'wall'"))));
+  EXPECT_TRUE(
+      read_with("newmtl wall\nKd 1 1 1\nKs 1 1 1\n").materials[0].non_diffuse.specular_reflectance.size() ==
+      0);
+  EXPECT_NEAR(read_with("newmtl wall\nKd 0 0 0\nKs 0.9 0.9 0.9\nNs 98\n")
+                  .materials[0]
+                  .non_diffuse.specular_reflectance[0],
+              0.9, 1e-6);
 }
 
 TEST_F(ObjReader, Utf16IsNamed) {
