@@ -164,7 +164,10 @@ std::string text_of(const LightLoss& loss, double lost, const Scene& scene) {
     text += fmt::format(" through a gap of about {:.1g} m{}{}", loss.width, names.empty() ? "" : " beside ",
                         names);
   else if (!names.empty())
-    text += fmt::format("{} from {}", loss.way == LightLoss::Way::kOutside ? " outside" : "", names);
+    text += fmt::format("{} from {}{}", loss.way == LightLoss::Way::kOutside ? " outside" : "", names,
+                        scene.material_of(scene.surfaces[loss.surfaces[0].index()]).emits()
+                            ? ", a luminaire (does it lie in a face, or behind one?)"
+                            : "");
   return text + fmt::format(" ({} of that)", share_text(loss.share / lost));
 }
 

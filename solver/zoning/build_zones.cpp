@@ -97,17 +97,21 @@ MeshResult zones_of_whole_faces(const Scene& scene, const MeshSettings& settings
   constexpr double kSolved = 0.75;
   constexpr double kGrouped = 0.9;
   MeshResult result = build_mesh(scene, settings, watch.part(0, kMeshed));
+  const bool no_light = has_no_light(scene);
+  // Without light no side is reached by any, but which would be is not known before there is some.
   const std::vector<SideUse> uses =
-      uses_of_sides(Room(scene, result.mesh, TextureMeans::kLeftOut), watch.part(kMeshed, kSealed));
+      no_light
+          ? std::vector<SideUse>(result.mesh.side_count(), SideUse::kShared)
+          : uses_of_sides(Room(scene, result.mesh, TextureMeans::kLeftOut), watch.part(kMeshed, kSealed));
   const double area = open_area(result.mesh, uses);
-  if (!(area > 0)) return result;  // there is no light
+  if (!(area > 0)) return result;  // light that reaches nothing
   const double zone_area = wanted_zone_area(settings, area);
   const double wanted = wanted_zone_count(settings, area);
   const std::vector<bool> dark = dark_triangles(result.mesh, uses);
   const double largest = settings.zone_area ? zone_area : kMostLarger * zone_area;
   result.mesh = with_cells(std::move(result.mesh).release_base(), zone_area, dark);
   ZonePlan plan = plan_zones(result.mesh, uses, {}, wanted, zone_area, largest);
-  if (has_no_light(scene)) {
+  if (no_light) {
     result.mesh =
         with_cells(std::move(result.mesh).release_base(), plan.zone_area, dark, std::move(plan.groups));
     return result;

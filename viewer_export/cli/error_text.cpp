@@ -6,19 +6,10 @@
 #include "viewer_export/cli/text_table.h"
 
 namespace reemit::cli {
-namespace {
-
-/// Two digits: it is an estimate from few points.
-std::string rough_percent(double share) {
-  return fmt::format("{:.2g} %", 100 * share);
-}
-
-}  // namespace
-
 std::string zones_text(const std::optional<ZoneBias>& zones) {
   if (!zones) return "not known";
   if (zones->bound == 0) return "none";
-  return zones->certain() ? rough_percent(zones->rms) : "below " + rough_percent(zones->bound);
+  return zones->certain() ? rough_percent_text(zones->rms) : "below " + rough_percent_text(zones->bound);
 }
 
 void add_zones(nlohmann::ordered_json& json, const std::optional<ZoneBias>& zones) {
@@ -31,7 +22,7 @@ std::string missed_by_zones(const std::string& what, double target, const std::o
   return fmt::format(
       "the zones keep {} from an error of {}: they are too large and put it off by about {}, whatever its "
       "noise; solve with more --zones",
-      what, percent_text(target), rough_percent(zones->rms));
+      what, percent_text(target), rough_percent_text(zones->rms));
 }
 
 }  // namespace reemit::cli

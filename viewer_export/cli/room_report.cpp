@@ -92,8 +92,8 @@ std::string materials_text(const Scene& scene) {
 std::string models_text(const Scene& scene, const MeshResult& meshed) {
   std::string text;
   for (const ModelShare& share : model_shares(scene, meshed))
-    text += fmt::format("; {} {:.3g} % of the area and about {:.2g} % of the light that arrives", share.model,
-                        100 * share.area, 100 * share.power);
+    text += fmt::format("; {} {} of the area and about {} of the light that arrives", share.model,
+                        percent_text(share.area), rough_percent_text(share.power));
   return fmt::format("surfaces are  Lambertian{}\n", text);
 }
 

@@ -77,6 +77,11 @@ std::string percent_text(double share) {
   return fmt::format("{:.3g} %", 100 * share);
 }
 
+std::string rough_percent_text(double share) {
+  const double percent = 100 * share;
+  return percent >= 99.5 ? fmt::format("{:.0f} %", percent) : fmt::format("{:.2g} %", percent);
+}
+
 double known_error(const ExportInfo& info) {
   return info.error > 0 ? info.error : std::numeric_limits<double>::infinity();
 }

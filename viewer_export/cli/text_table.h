@@ -39,6 +39,8 @@ void add_band_cells(std::vector<std::string>& cells, const Spectrum& value);
 
 /// "1.25 %", or "not known" unless finite.
 std::string percent_text(double share);
+/// With two digits: of an estimate from few points.
+std::string rough_percent_text(double share);
 
 /// The achieved error of exported values; infinite where it is not known, which JSON shows as null.
 double known_error(const ExportInfo& info);

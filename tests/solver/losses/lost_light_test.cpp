@@ -93,6 +93,15 @@ TEST_F(LostLight, AGapIsNamedWithItsPlaceAndShare) {
   }
 }
 
+TEST_F(LostLight, ALuminaireThatShinesOutOfTheRoomItselfIsNamedAsOne) {
+  box(true);
+  room_.quad(sides_[2],
+             {Vec3(1, -0.001, 1), Vec3(1.1, -0.001, 1), Vec3(1.1, -0.001, 1.1), Vec3(1, -0.001, 1.1)}, 1);
+  EXPECT_THAT(warnings(),
+              ElementsAre(AllOf(HasSubstr("whose faces nearly close"),
+                                HasSubstr("a luminaire (does it lie in a face, or behind one?)"))));
+}
+
 TEST_F(LostLight, AnOpenRoomIsNoLeak) {
   box(false);
   const Solution solution = solved();

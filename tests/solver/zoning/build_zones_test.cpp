@@ -298,6 +298,19 @@ TEST(BuildZones, MakesAboutAsManyAsAskedForAndKeepsTheArea) {
   }
 }
 
+// Which sides light would reach is not known, so none is taken for sealed.
+TEST(BuildZones, RoomsWithoutLightHaveAboutAsManyToo) {
+  CrateRoom room(5, 20);
+  for (Material& m : room.scene().materials) m.emitted_radiance.setZero();
+  MeshSettings settings;
+  settings.default_zone_count = 1000;
+  const ZoneMesh mesh = build_zones(room.scene(), settings).mesh;
+  EXPECT_GT(mesh.triangle_count(), 3000U);
+  EXPECT_GT(mesh.zone_count(), 333U);
+  EXPECT_LT(mesh.zone_count(), 1500U);
+  EXPECT_EQ(mesh.groups().sealed, 0U);
+}
+
 // A ground of 20 km outside of a closed room: cut like the walls it would have more zones than can be.
 TEST(BuildZones, WhatNoLightReachesIsNotDividedLikeTheRest) {
   CrateRoom room(1, 1);

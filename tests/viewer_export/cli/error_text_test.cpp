@@ -4,10 +4,18 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "viewer_export/cli/text_table.h"
+
 namespace reemit::cli {
 namespace {
 
 using testing::HasSubstr;
+
+TEST(RoughPercent, HasTwoDigitsAndNoExponent) {
+  EXPECT_EQ(rough_percent_text(0.01234), "1.2 %");
+  EXPECT_EQ(rough_percent_text(0.9996), "100 %");
+  EXPECT_EQ(rough_percent_text(4.231), "423 %");
+}
 
 TEST(ErrorText, states_the_share_of_the_zones) {
   EXPECT_EQ(zones_text(ZoneBias{0.0312, 0.035}), "3.1 %");

@@ -485,7 +485,7 @@ TEST_F(Pipeline, InfoTellsWhatIsRefusedAndWhatIsNotModelled) {
   EXPECT_EQ(document["kind"], "refused");
   EXPECT_EQ(document["refused"]["count"], 1);
   EXPECT_THAT(document["error"].get<std::string>(), HasSubstr("bad.obj:14: index 99 is out of range"));
-  EXPECT_EQ(document["advice"], "The file has 4.");
+  EXPECT_EQ(document["advice"], "The file has 4 vertices.");
 }
 
 TEST_F(Pipeline, InfoGivesTheLightOfEverySurfaceAndMaterialWithItsError) {
