@@ -8,6 +8,7 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "scenes/model/error.h"
 #include "scenes/model/limits.h"
@@ -299,8 +300,14 @@ void check_materials(Scene& scene) {
 
 void check_geometry(Scene& scene) {
   std::erase_if(scene.surfaces, [](const Surface& s) { return s.empty(); });
-  if (scene.surfaces.empty())
-    throw InputError(in_file(scene, "room"), "it has no faces", "A room needs at least one polygon.");
+  if (scene.surfaces.empty()) {
+    // What was left out says why.
+    const std::size_t told = std::min<std::size_t>(scene.warnings.size(), 3);
+    const auto last = scene.warnings.end() - static_cast<std::ptrdiff_t>(told);
+    throw InputError(in_file(scene, "room"), "it has no faces",
+                     fmt::format("A room needs at least one polygon.{}{}", told > 0 ? " " : "",
+                                 fmt::join(last, scene.warnings.end(), " ")));
+  }
   std::size_t flattened = 0;
   for (Surface& surface : scene.surfaces) {
     if (surface.material.index() >= scene.materials.size())

@@ -21,33 +21,31 @@ std::string place_of(const Scene& scene, const Surface& surface, std::size_t fac
                      line > 0 ? fmt::format(":{}", line) : "", surface.name, face + 1);
 }
 
-/// False if some lie too far out to tell texels apart: the face then has none.
-bool check_coordinates(const Scene& scene, const Surface& surface, std::size_t f) {
+/// Coordinates beyond which single precision no longer tells texels apart count as 0. Returns whether there
+/// were some.
+bool check_coordinates(const Scene& scene, Surface& surface, std::size_t f) {
   const Face& face = surface.faces[f];
-  bool are_usable = true;
   const auto fail = [&](const std::string& problem, const char* advice) {
     throw InputError(place_of(scene, surface, f), problem, advice);
   };
   if (face.texture_points.size() != face.outer.size())
     fail(fmt::format("{} texture coordinates for {} vertices", face.texture_points.size(), face.outer.size()),
          "Give one pair per outer vertex, or none.");
-  // Beyond, single precision no longer tells texels apart.
   constexpr double kFarthest = 1e5;
+  bool any_far = false;
   for (const std::uint32_t index : face.texture_points) {
     if (index >= surface.texture_points.size())
       fail(fmt::format("texture coordinate {} is out of range", index), "Refer to one that the surface has.");
-    for (const auto& uv : surface.texture_points[index].uv)
-      for (const double x : uv)
+    for (auto& uv : surface.texture_points[index].uv)
+      for (double& x : uv)
         if (!(std::abs(x) <= kFarthest)) {
-          // Beside them stand the colours of vertices, which the face would lose.
-          if (surface.has_vertex_colours)
-            fail(fmt::format("the texture coordinate {:g}", x), "Give finite ones of at most 100000.");
-          are_usable = false;
+          x = 0;
+          any_far = true;
         }
     for (const float share : surface.texture_points[index].colour)
       if (!(share >= 0 && share <= 1)) fail(fmt::format("the vertex colour {:g}", share), "Give 0 to 1.");
   }
-  return are_usable;
+  return any_far;
 }
 
 /// What the brightest texel reflects, as far as the other shares leave it. Spectra of dark colours may be as
@@ -72,8 +70,8 @@ void warn_of_unmapped(Scene& scene, std::size_t faces, std::size_t shapes, const
   if (faces + shapes == 0) return;
   scene.not_modelled["faces_without_texture_coordinates"] += faces + shapes;
   scene.warnings.push_back(
-      fmt::format("{} face(s) and {} round shape(s) have a texture but no texture coordinates of at most "
-                  "100000; they count with the mean of the image. The first is {}",
+      fmt::format("{} face(s) and {} round shape(s) have a texture but no texture coordinates; they count "
+                  "with the mean of the image. The first is {}",
                   faces, shapes, first));
 }
 
@@ -97,6 +95,8 @@ void check_textures(Scene& scene) {
   std::size_t unmapped = 0;
   std::size_t shapes = 0;
   std::string first;
+  std::size_t far = 0;
+  std::string first_far;
   for (Surface& surface : scene.surfaces) {
     if (!scene.is_textured(surface)) continue;
     TexelSpectra& of_vertices = scene.materials[surface.material.index()].textures.reflectance_spectra;
@@ -109,8 +109,8 @@ void check_textures(Scene& scene) {
     if (has_image) shapes += surface.shapes.size();
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
       if (!surface.faces[f].texture_points.empty()) {
-        if (check_coordinates(scene, surface, f)) continue;
-        surface.faces[f].texture_points.clear();
+        if (check_coordinates(scene, surface, f) && far++ == 0) first_far = place_of(scene, surface, f);
+        continue;
       }
       if (!has_image) continue;
       if (first.empty()) first = place_of(scene, surface, f);
@@ -118,6 +118,10 @@ void check_textures(Scene& scene) {
     }
   }
   warn_of_unmapped(scene, unmapped, shapes, first);
+  if (far > 0)
+    scene.warnings.push_back(
+        fmt::format("{} face(s) have texture coordinates beyond 100000, which count as 0. The first is {}",
+                    far, first_far));
 }
 
 std::shared_ptr<const ColourSpectra> spectra_in_white(const Scene& scene) {

@@ -217,17 +217,18 @@ void check_ranges(ObjGeometry& geometry, const std::string& file) {
   const auto any_beyond = [](const std::vector<std::uint32_t>& indices, std::size_t count) {
     return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t i) { return i >= count; });
   };
-  std::size_t without = 0;  // faces that refer to normals or texture coordinates which are not there
+  std::size_t without = 0;  // faces that refer to normals which are not there
   std::uint32_t first = 0;
   for (ObjFace& face : geometry.faces) {
     for (const std::uint32_t index : face.positions)
       if (index >= geometry.positions.size())
         throw InputError(at_line(file, face.line), fmt::format("index {} is out of range", index + 1),
                          fmt::format("The file has {} vertices.", geometry.positions.size()));
-    const bool no_texture_points = any_beyond(face.texture_points, geometry.texture_points.size());
+    if (any_beyond(face.texture_points, geometry.texture_points.size()) ||
+        face.texture_points.size() != face.positions.size())
+      face.texture_points.clear();
     const bool no_normals = any_beyond(face.normals, geometry.normals.size());
-    if ((no_texture_points || no_normals) && without++ == 0) first = face.line;
-    if (no_texture_points || face.texture_points.size() != face.positions.size()) face.texture_points.clear();
+    if (no_normals && without++ == 0) first = face.line;
     if (no_normals || face.normals.size() != face.positions.size()) face.normals.clear();
   }
   if (without > 0)

@@ -118,6 +118,8 @@ TEST(FinishScene, NamesTheFaceWithBadGeometry) {
               HasSubstr("normal index"));
   EXPECT_THAT(refusal([](Scene& s) { s.surfaces[0].material = MaterialId(9); }), HasSubstr("no material"));
   EXPECT_THAT(refusal([](Scene& s) { s.surfaces.clear(); }), HasSubstr("no faces"));
+  EXPECT_THAT(refusal([](Scene& s) { s.surfaces.clear(), s.warnings = {"3 points were left out"}; }),
+              HasSubstr("3 points were left out"));
 }
 
 TEST(FinishScene, RepairsShadingNormals) {
