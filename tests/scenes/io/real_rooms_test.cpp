@@ -104,7 +104,8 @@ TEST_F(RealRooms, CornellVariantsRead) {
     const Scene scene = obj("cornell/" + entry.path().filename().string());
     EXPECT_GE(scene.surfaces.size(), 6U) << entry.path();
     EXPECT_NEAR(bounds(scene).size().x(), 2.02, 1e-9) << entry.path();
-    EXPECT_THAT(scene.warnings, Each(HasSubstr("more than 1 in 2 material(s): 'sphere', 'floor'"))) << entry.path();
+    EXPECT_THAT(scene.warnings, Each(HasSubstr("more than 1 in 2 material(s): 'sphere', 'floor'")))
+        << entry.path();
   }
 }
 
