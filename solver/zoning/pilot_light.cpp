@@ -19,20 +19,28 @@ constexpr std::uint64_t kPilotSeed = 1;  // nothing of a solution should depend 
 constexpr std::uint64_t kPackets = 1 << 18;
 /// Independent parts of the solution: a point is looked at once with each.
 constexpr int kPilotHalves = 2;
-/// Surfaces reflect, as mirrors too, and diffusely transmit no more than this in it, so that it ends soon
-/// whatever the room.
+/// Surfaces send on no more than this of the light in it, by all ways but clear transmission together, so
+/// that it ends soon whatever the room: white ones that are partly metal absorb nothing by themselves.
 constexpr double kMostReflectance = 0.9;
 
 Scene dimmed(Scene scene) {
   for (Material& material : scene.materials) {
-    material.reflectance = material.reflectance.min(kMostReflectance);
-    if (material.back_reflectance.size() > 0)
-      material.back_reflectance = material.back_reflectance.min(kMostReflectance);
-    Spectrum& mirror = material.non_diffuse.specular_reflectance;  // of metals a tint
-    if (mirror.size() > 0) mirror = mirror.min(kMostReflectance);
-    if (material.non_diffuse.transmits_diffusely())
-      material.non_diffuse.diffuse_transmittance =
-          material.non_diffuse.diffuse_transmittance.min(kMostReflectance - material.largest_reflectance());
+    Spectrum& mirror = material.non_diffuse.specular_reflectance;
+    Spectrum& through = material.non_diffuse.diffuse_transmittance;
+    const bool is_tint = material.non_diffuse.angle_law == AngleLaw::kConductor;
+    if (is_tint && mirror.size() > 0) mirror = mirror.min(kMostReflectance);
+    Spectrum sum = material.largest_reflectance();
+    if (!is_tint && mirror.size() > 0) sum += mirror;
+    if (through.size() > 0) sum += through;
+    const Spectrum share = kMostReflectance / sum.max(kMostReflectance);
+    material.reflectance *= share;
+    if (material.textures.reflectance) {
+      material.textures.reflectance_factor *= share;
+      material.textures.most_reflectance *= share;
+    }
+    if (material.back_reflectance.size() > 0) material.back_reflectance *= share;
+    if (!is_tint && mirror.size() > 0) mirror *= share;
+    if (through.size() > 0) through *= share;
   }
   return scene;
 }

@@ -195,6 +195,25 @@ TEST(PilotLight, IsThatOfThePointLight) {
   EXPECT_EQ(levels[side_of(TriangleId(0), false).index()], 0);
 }
 
+// White surfaces that are partly metal, as glTF has them by default, absorb nothing: a machine made of such
+// took 80 s to look at.
+TEST(PilotLight, SurfacesSendOnNoMoreThanNineTenths) {
+  CrateRoom room(1, 1);
+  Material& metal = room.scene().materials[0];
+  metal.reflectance = Spectrum::Constant(1, 0.14);
+  metal.back_reflectance = Spectrum::Constant(1, 0.1);
+  metal.non_diffuse.specular_reflectance = Spectrum::Constant(1, 0.86);
+  metal.non_diffuse.angle_law = AngleLaw::kSchlick;
+  Material& opal = room.scene().materials.back();
+  opal.reflectance = Spectrum::Constant(1, 0.6);
+  opal.non_diffuse.diffuse_transmittance = Spectrum::Constant(1, 0.4);
+  const PilotLight pilot(room.scene(), build_mesh(room.scene(), {.zone_area = 1}), {});
+  const std::vector<Material>& dimmed = pilot.room().scene().materials;
+  for (const Material& m : {dimmed[0], dimmed.back()}) EXPECT_NEAR(m.share_of_light()[0], 0.9, 1e-12);
+  EXPECT_NEAR(dimmed[0].reflectance[0] / dimmed[0].non_diffuse.specular_reflectance[0], 0.14 / 0.86, 1e-12);
+  EXPECT_NEAR(dimmed[0].back_reflectance[0], 0.09, 1e-12);
+}
+
 TEST(PilotLight, EvenLightHasNoSpreadAndABorderHasItsOwn) {
   // A screen shades the half x < 0 of the tile, whose other half is lit evenly enough.
   CrateRoom room(0, 1);
