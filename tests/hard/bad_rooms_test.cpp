@@ -2,6 +2,7 @@
 // output.
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -165,14 +166,15 @@ TEST(BadRooms, IndexOutOfRange) {
 
 TEST(BadRooms, ReflectanceOutOfRange) {
   const TempFolder folder;
-  for (const char* bad : {"1.5", "-0.1"}) {
+  // A Kd a little above 1 is what some programs write for 1; that is read, with a warning.
+  for (const auto& [bad, bad_kd] : {std::pair{"1.5", "150"}, std::pair{"-0.1", "-0.1"}}) {
     folder.write("room.json", replaced(small_json_room(), "\"white\": {\"reflectance\": 0.5}",
                                        std::string("\"white\": {\"reflectance\": ") + bad + "}"));
     expect_refused(folder, "room.json", {"room.json", "/materials/white/reflectance"});
     folder.write("room.mgf", replaced(small_mgf_room(), "rd 0.5", std::string("rd ") + bad));
     expect_refused(folder, "room.mgf", {"room.mgf"});
     folder.write("room.mtl",
-                 replaced(small_obj_materials(), "Kd 0.5 0.5 0.5", std::string("Kd 0.5 ") + bad + " 0.5"));
+                 replaced(small_obj_materials(), "Kd 0.5 0.5 0.5", std::string("Kd 0.5 ") + bad_kd + " 0.5"));
     folder.write("room.obj", small_obj_room());
     expect_refused(folder, "room.obj", {"room.mtl:2", "Kd"});
   }
