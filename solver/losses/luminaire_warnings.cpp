@@ -1,5 +1,6 @@
 #include "solver/losses/luminaire_warnings.h"
 
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -48,12 +49,29 @@ std::string warning_of(const OpeningLoss& loss, const Scene& scene) {
                     surface);
 }
 
+/// Of a room that is as good as dark; empty of others.
+std::string faintness_warning(const PacketRoom& transport, const PacketSources& emission) {
+  constexpr double kStarlight = 1e-6;  // [W/m2], some 2e-4 lx
+  double watts = 0;
+  for (std::size_t s = 0; s < emission.sources.size(); ++s) watts += emission.watts_of(s);
+  const ZoneMesh& mesh = transport.mesh();
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) area += mesh.triangle_area(TriangleId(t));
+  if (!(watts > 0) || watts >= kStarlight * area) return "";
+  return fmt::format(
+      "all luminaires together send out {:.3g} W, {:.1g} W on a square metre of the surfaces: less than "
+      "starlight. Are their strengths in other units, or is a luminaire missing?",
+      watts, watts / area);
+}
+
 }  // namespace
 
 std::vector<std::string> luminaire_warnings(const PacketRoom& transport, const PacketSources& emission,
                                             const StopToken* stop) {
   const Scene& scene = transport.scene();
   std::vector<std::string> warnings;
+  if (std::string faint = faintness_warning(transport, emission); !faint.empty())
+    warnings.push_back(std::move(faint));
   for (const OpeningLoss& loss : opening_losses(transport, stop)) warnings.push_back(warning_of(loss, scene));
   for (const LampLoss& lamp : lamp_losses(transport, emission, stop)) {
     const std::string name = fmt::format(

@@ -8,9 +8,9 @@
 
 namespace reemit {
 
-/// What the user should know about luminaires that lose light (opening_losses.h), light themselves or
-/// stand through a ceiling (lamp_losses.h), with names and shares. Throws Interrupted when `stop` (may be
-/// null) is requested.
+/// What the user should know about luminaires that all together send out next to nothing, lose light
+/// (opening_losses.h), light themselves or stand through a ceiling (lamp_losses.h), with names and shares.
+/// Throws Interrupted when `stop` (may be null) is requested.
 std::vector<std::string> luminaire_warnings(const PacketRoom& transport, const PacketSources& emission,
                                             const StopToken* stop = nullptr);
 /// The same before a solve.

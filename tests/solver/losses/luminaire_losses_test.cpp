@@ -129,6 +129,15 @@ TEST_P(LuminaireLosses, LampsInOpalBodiesAreNot) {
   EXPECT_THAT(losses(), IsEmpty());
 }
 
+TEST_P(LuminaireLosses, RoomsAsGoodAsDarkAreNamed) {
+  walls(GetParam());
+  light(PointLight{"bulb", Vec3(1.5, 2, 1.5), room_.flat(1e-4)});
+  EXPECT_THAT(warnings(), IsEmpty());
+  std::get<PointLight>(room_.scene().lights[0]).intensity = room_.flat(1e-6);  // 1.6e-7 W/m2
+  EXPECT_THAT(warnings(),
+              ElementsAre(AllOf(HasSubstr("send out 1.26e-05 W"), HasSubstr("less than starlight"))));
+}
+
 INSTANTIATE_TEST_SUITE_P(Sides, LuminaireLosses, testing::Bool());
 
 TEST_F(LuminaireLosses, LampsBehindASurfaceLoseWhatMeetsItsBack) {
