@@ -131,23 +131,28 @@ std::vector<GltfPlacedNode> roots_to_read(const GltfModel& gltf, const std::vect
   std::size_t children = 0;
   std::string first;
   std::vector<bool> read(parents.size(), false);
+  int parent = kNone;  // of the last node, and what was found of it: many have the same
+  Eigen::Affine3d to_parent = Eigen::Affine3d::Identity();
+  bool is_below_another = false;
   for (const int node : source.nodes) {
     const auto index = static_cast<std::size_t>(node);
-    GltfPlacedNode root{index, Eigen::Affine3d::Identity()};
-    bool is_below_another = false;
-    for (int p = parents[index]; p != kNone; p = parents[static_cast<std::size_t>(p)]) {
-      root.to_world = local_transform(gltf, static_cast<std::size_t>(p)) * root.to_world;
-      is_below_another |= named[static_cast<std::size_t>(p)];
+    if (parents[index] != parent) {
+      parent = parents[index];
+      to_parent.setIdentity();
+      is_below_another = false;
+      for (int p = parent; p != kNone && !is_below_another; p = parents[static_cast<std::size_t>(p)]) {
+        to_parent = local_transform(gltf, static_cast<std::size_t>(p)) * to_parent;
+        is_below_another = named[static_cast<std::size_t>(p)];
+      }
     }
     if ((parents[index] != kNone || read[index]) && children++ == 0) first = node_place(gltf, index);
-    if (!is_below_another && !read[index]) roots.push_back(root);
+    if (!is_below_another && !read[index]) roots.push_back({index, to_parent});
     read[index] = true;
   }
   if (children > 0)
     scene.warnings.push_back(
         fmt::format("the scene names {} node(s) that are children of others or named before; each is read "
-                    "once, where its "
-                    "parents put it. The first is {}",
+                    "once, where its parents put it. The first is {}",
                     children, first));
   return roots;
 }

@@ -233,8 +233,7 @@ void check_ranges(ObjGeometry& geometry, const std::string& file) {
   }
   if (without > 0)
     geometry.warnings.push_back(
-        fmt::format("{}: {} face(s) refer to a vn or vt that the file has not and are read without, the "
-                    "first in line {}.",
+        fmt::format("{}: {} face(s) refer to a vn that the file has not and are flat, the first in line {}.",
                     file, without, first));
 }
 
