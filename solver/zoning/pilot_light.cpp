@@ -29,9 +29,8 @@ Scene dimmed(Scene scene) {
     Spectrum& through = material.non_diffuse.diffuse_transmittance;
     const bool is_tint = material.non_diffuse.angle_law == AngleLaw::kConductor;
     if (is_tint && mirror.size() > 0) mirror = mirror.min(kMostReflectance);
-    Spectrum sum = material.largest_reflectance();
+    Spectrum sum = material.lambertian_share();
     if (!is_tint && mirror.size() > 0) sum += mirror;
-    if (through.size() > 0) sum += through;
     const Spectrum share = kMostReflectance / sum.max(kMostReflectance);
     material.reflectance *= share;
     if (material.textures.reflectance) {
