@@ -78,7 +78,8 @@ Found Pilot::look(ZoneId zone, const SurfacePoint& x, std::uint64_t index) const
     Hit hit;
     if (!(x.normal.dot(direction) > 0) || !rays.closest(origin, direction, hit)) return;
     const ZoneId met = gather_.room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
-    if (!met.valid() || (aim != nullptr && !(aim->is_met(hit.triangle, hit.distance) && bright.holds(met))))
+    if (!met.valid() ||
+        (aim != nullptr && !(aim->is_met(hit.triangle, hit.front, hit.distance) && bright.holds(met))))
       return;
     const auto value = static_cast<double>(bright.radiance(met));
     const double continued = gather_.continues(met, hit.distance) ? 1 : 0;

@@ -202,7 +202,7 @@ BrightZones::Aim BrightZones::aim(const Vec3f& x, const View& view, const std::a
   const Vec3f way = room_->rays().point(target.triangle, target.u, target.v) - x;
   const float distance = way.norm();
   if (!(distance > 0)) return {};
-  return {way / distance, target.triangle, distance};
+  return {way / distance, target.triangle, target.front, distance};
 }
 
 float BrightZones::pdf_per_sr(const Vec3f& x, const Vec3f& n, float total, ZoneId zone, float cosine,

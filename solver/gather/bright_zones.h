@@ -30,11 +30,13 @@ class BrightZones {
   struct Aim {
     Vec3f direction{0, 0, 1};  ///< Unit.
     TriangleId triangle;       ///< That holds the point aimed at.
+    bool front = true;         ///< The side of it.
     float distance = 0;        ///< To that point [normalised]; 0: none was found.
-    /// Whether a ray along it that ended so met what it was aimed at.
-    bool is_met(TriangleId t, float length) const {
+    /// Whether a ray along it that ended so met what it was aimed at: not the other side of a sheet that is
+    /// bright on both, whose zone has a density of its own.
+    bool is_met(TriangleId t, bool on_front, float length) const {
       constexpr float kSameDistance = 1e-3F;
-      return t == triangle && std::fabs(length - distance) <= kSameDistance * distance;
+      return t == triangle && on_front == front && std::fabs(length - distance) <= kSameDistance * distance;
     }
   };
 

@@ -89,7 +89,8 @@ void GatherBatch::look_at_bright() {
 
 float GatherBatch::share_of_kind(int lane, const Way& way, ZoneId zone, const Hit16& hits) const {
   const bool is_aimed = way.aim.distance > 0;
-  if (is_aimed && !way.aim.is_met(TriangleId(hits.triangle[lane]), hits.distance[lane])) return 0;
+  if (is_aimed && !way.aim.is_met(TriangleId(hits.triangle[lane]), hits.front[lane], hits.distance[lane]))
+    return 0;
   if (!gather_->bright().holds(zone)) return is_aimed ? 0.0F : 1.0F;
   const Hit hit{TriangleId(hits.triangle[lane]), hits.u[lane], hits.v[lane], hits.distance[lane],
                 hits.front[lane]};

@@ -179,7 +179,7 @@ float HemisphereGather::add_aimed(const SurfacePoint& y, int bounce, const PathK
   const Vec3f& along = aim.direction;
   Hit hit;
   if (!(aim.distance > 0) || !(along.dot(y.normal) > 0) || !rays.closest(origin, along, hit) ||
-      !aim.is_met(hit.triangle, hit.distance))
+      !aim.is_met(hit.triangle, hit.front, hit.distance))
     return view.total;
   const ZoneId met = room().mesh().zone_at(hit.triangle, hit.u, hit.v, hit.front);
   if (!met.valid() || !bright_.holds(met)) return view.total;

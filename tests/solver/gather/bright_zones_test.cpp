@@ -33,9 +33,9 @@ struct PatchRoom {
       Contour{Vec3(1, 1, 1.9), Vec3(1, 1.5, 1.9), Vec3(2, 1.5, 1.9), Vec3(2, 1, 1.9)},
       Contour{Vec3(0.05, 2, 0.5), Vec3(0.05, 2.5, 0.5), Vec3(0.05, 2.5, 1), Vec3(0.05, 2, 1)}};
 
-  PatchRoom() {
+  explicit PatchRoom(bool two_sided = false) {
     const MaterialId wall = builder.material("wall", kDarkWall);
-    const MaterialId light = builder.material("light", kPatch);
+    const MaterialId light = builder.material("light", kPatch, 0, two_sided);
     builder.box(Vec3::Zero(), {4, 3, 2}, {wall, wall, wall, wall, wall, wall}, 4);
     for (const Contour& p : patches) builder.quad(light, {p[0], p[1], p[2], p[3]}, 12);
   }
@@ -120,6 +120,23 @@ TEST_F(BrightZonesOfPatches, gather_what_the_contour_integral_says) {
     EXPECT_TRUE(aimed.would_notice(0.02, truth)) << place.at.transpose();
     EXPECT_FALSE(gathered(gather_, direct_, x, true, 1.02).agrees_with(truth)) << place.at.transpose();
   }
+}
+
+/// A sheet that is bright on both sides has bright zones on both, and a ray aimed at one of its back meets
+/// its front. Limits as above.
+TEST(BrightZonesOfSheets, are_not_met_from_behind) {
+  const PatchRoom patches(true);
+  const Solution solution = test::uniform_solution(patches.builder, 0.25 * kIrradiance, 0.75 * kIrradiance);
+  const Room room(patches.builder.scene(), solution.mesh);
+  const RadianceField field(room, solution);
+  const DirectLight direct(room);
+  const HemisphereGather gather(field, direct, {.close_hit = 0, .continue_uneven = false});
+  const Vec3 at(1.5, 1.2, 0);
+  const SurfacePoint x = wall_point(room, at, Vec3::UnitZ());
+  const double truth = patches.radiance(at, Vec3::UnitZ());
+  const MeanTest aimed = gathered(gather, direct, x, true);
+  EXPECT_TRUE(aimed.agrees_with(truth));
+  EXPECT_TRUE(aimed.would_notice(0.02, truth));
 }
 
 TEST_F(BrightZonesOfPatches, are_found_from_points_in_the_air_as_well) {
