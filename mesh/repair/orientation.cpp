@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -197,6 +198,25 @@ class Orientation {
         others_elsewhere = true;
       }
     }
+    for (const Surface& surface : scene_.surfaces)
+      for (const CurvedShape& shape : surface.shapes) {
+        const auto [low, high] = shape_bounds(shape);
+        const Eigen::AlignedBox3d of_shape(low, high);
+        if (box.intersects(of_shape) && !of_shape.contains(box)) return;
+        others_elsewhere = true;
+      }
+    const auto is_light_inside = [&](const PunctualLight& light) {
+      return std::visit(
+          [&](const auto& l) {
+            if constexpr (requires { l.position; }) return box.contains(l.position);
+            return false;
+          },
+          light);
+    };
+    const auto is_eye_inside = [&](const Camera& camera) { return box.contains(camera.eye); };
+    if (std::any_of(scene_.lights.begin(), scene_.lights.end(), is_light_inside) ||
+        std::any_of(scene_.cameras.begin(), scene_.cameras.end(), is_eye_inside))
+      return;
     if (!others_elsewhere) return;  // the shell is the whole room
     for (const std::size_t i : shell.pieces) flip(i);
   }

@@ -17,6 +17,10 @@
 namespace reemit {
 namespace {
 
+/// A shading normal whose cosine to the normal of its plane is less than 1 by no more, 0.03 degrees, bends
+/// nothing.
+constexpr double kUnbent = 1e-7;
+
 // A corner of a polygon: where it was read and which vertex it became.
 struct Corner {
   Vec3 read;
@@ -287,8 +291,7 @@ void PolygonRepair::add_triangle(const FacePiece& like, const std::array<Corner,
     const double length = n.norm();
     n = length > 0 ? Vec3(n / length) : piece.plane.normal;
     if (n.dot(piece.plane.normal) < 0) n = -n;  // the front is where the corners run counter-clockwise
-    constexpr double kSame = 1e-7;              // 1 - cos of about 0.03 degrees
-    piece.smooth |= n.dot(piece.plane.normal) < 1 - kSame;
+    piece.smooth |= n.dot(piece.plane.normal) < 1 - kUnbent;
     piece.corner_normal[k] = n;
   }
   report_.surfaces[piece.surface.index()].input += piece.area;
@@ -362,8 +365,10 @@ double PolygonRepair::repair_part(SurfaceId surface, std::uint32_t face, const F
     add_triangle(piece, {outline[0], outline[1], outline[2]});
     return 0;
   }
+  // Which side a normal points to does not matter: add_triangle turns it to the front.
   const bool shaded = std::any_of(outline.begin(), outline.end(), [&](const Corner& c) {
-    return c.normal.squaredNorm() > 0 && std::abs(c.normal.normalized().dot(piece.plane.normal)) < 1 - 1e-7;
+    return c.normal.squaredNorm() > 0 &&
+           std::abs(c.normal.normalized().dot(piece.plane.normal)) < 1 - kUnbent;
   });
   const double bend = deviation > kVisiblyBent * piece.diameter ? deviation : 0;
   if (add_texture_split(piece, part)) return bend;

@@ -8,19 +8,18 @@
 
 #include <fmt/format.h>
 
+#include "scenes/model/fnv1a.h"
 #include "scenes/model/scene.h"
 
 namespace reemit {
 namespace {
 
-// FNV-1a, 64 bit [FNV]. Numbers enter as little-endian bytes whatever the machine, and -0 as 0.
+// Numbers enter as little-endian bytes whatever the machine, and -0 as 0.
 class Hasher {
  public:
   void add(std::uint64_t value) {
-    for (int shift = 0; shift < 64; shift += 8) {
-      state_ ^= (value >> shift) & 0xffU;
-      state_ *= 0x100000001b3ULL;
-    }
+    for (int shift = 0; shift < 64; shift += 8)
+      hash_.add(static_cast<std::uint32_t>((value >> shift) & 0xffU));
   }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value)); }
   void add(bool value) { add(std::uint64_t{value}); }
@@ -35,10 +34,10 @@ class Hasher {
     add(std::uint64_t{numbers.size()});
     for (const double x : numbers) add(x);
   }
-  std::uint64_t state() const { return state_; }
+  std::uint64_t state() const { return hash_.state(); }
 
  private:
-  std::uint64_t state_ = 0xcbf29ce484222325ULL;
+  Fnv1a hash_;
 };
 
 /// Nothing is added for a material without such a part.

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "scenes/model/fnv1a.h"
+
 namespace reemit {
 namespace {
 
@@ -34,21 +36,8 @@ TextureLevel shrunk(int width, int height, TexelAt&& texel_at) {
   return level;
 }
 
-// FNV-1a over words of 32 bits, which is fast enough for images [FNV].
-class WordHash {
- public:
-  void add(std::uint32_t word) {
-    state_ ^= word;
-    state_ *= 0x100000001b3ULL;
-  }
-  std::uint64_t state() const { return state_; }
-
- private:
-  std::uint64_t state_ = 0xcbf29ce484222325ULL;
-};
-
 std::uint64_t hash_of(const TextureImage& image) {
-  WordHash hash;
+  Fnv1a hash;
   hash.add(static_cast<std::uint32_t>(image.width));
   hash.add(static_cast<std::uint32_t>(image.height));
   if (!image.bytes.empty()) hash.add(std::bit_cast<std::uint32_t>(image.decoded[128]));

@@ -360,5 +360,24 @@ TEST(Orientation, ClosedLampIsTurnedOutwardsButAGlowingRoomIsNot) {
   EXPECT_EQ(build_mesh(furnace.scene()).report.flipped_faces, 0U);
 }
 
+TEST(Orientation, AGlowingBoothWithARoundSampleIsARoomInTheRoom) {
+  const auto flipped = [](const auto& put_in) {
+    TestRoom room;
+    room.box("lab", room.material(false), {0, 0, 0}, {4, 4, 4}, true);
+    room.box("booth", room.material(false, 3), {1, 1, 1}, {2, 2, 2}, true);
+    Scene scene = room.scene();
+    put_in(scene);
+    return build_mesh(scene).report.flipped_faces;
+  };
+  EXPECT_EQ(flipped([](Scene&) {}), 6U);
+  const auto put_ball = [](const Vec3& centre) {
+    return [centre](Scene& scene) { scene.surfaces[0].shapes.push_back(Sphere{centre, 0.2}); };
+  };
+  EXPECT_EQ(flipped(put_ball({1.5, 1.5, 1.5})), 0U);
+  EXPECT_EQ(flipped(put_ball({3, 3, 3})), 6U);
+  const auto put_eye = [](Scene& scene) { scene.cameras.emplace_back().eye = {1.2, 1.5, 1.5}; };
+  EXPECT_EQ(flipped(put_eye), 0U);
+}
+
 }  // namespace
 }  // namespace reemit

@@ -26,7 +26,10 @@ NativeObjects::ReferencedFile& NativeObjects::load(const JsonCursor& path) {
   const std::string extension = lower_case_extension(file);
   ReferencedFile loaded;
   if (extension == ".ply") {
-    loaded.surfaces.push_back(read_ply_surface(file));
+    PlyMesh mesh = read_ply(file);
+    loaded.surfaces.push_back(std::move(mesh.surface));
+    for (const std::string& warning : mesh.warnings)
+      scene_.warnings.push_back(fmt::format("{}: {}", name, warning));
   } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
     Scene read = extension == ".obj" ? read_obj_scene(file, options_) : read_gltf_scene(file, options_);
     loaded.surfaces = std::move(read.surfaces);

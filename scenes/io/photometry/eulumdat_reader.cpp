@@ -156,7 +156,8 @@ class EulumdatFile {
     const IesComplaint vertical = check_vertical_angles(grid_);
     if (!vertical.problem.empty()) text_.fail(vertical.problem, vertical.advice);
     const std::size_t count = stored_planes();
-    const std::vector<double> values = text_.numbers(count * angles_, "intensities");
+    std::vector<double> values = text_.numbers(count * angles_, "intensities");
+    clear_noise(values, text_.where(), result_.warnings);
     for (std::size_t i = 0; i < count; ++i) {
       // Symmetric to plane 90 - 270, the half from 270 over 0 to 90 is stored: its mirror image backwards.
       const std::size_t plane = symmetry_ == 3 ? count - 1 - i : i;
@@ -165,15 +166,16 @@ class EulumdatFile {
       grid_.horizontal.push_back(symmetry_ == 3 ? (angle > 180 ? 540 - angle : 180 - angle) : angle);
       for (std::size_t k = 0; k < angles_; ++k) add_intensity(values[plane * angles_ + k]);
     }
-    if (symmetry_ == 0 && planes_ > 1) {
+    if (symmetry_ == 0 && planes_ > 1 && grid_.horizontal.back() < 360) {
       grid_.horizontal.push_back(360);
       for (std::size_t k = 0; k < angles_; ++k) grid_.candela.push_back(grid_.candela[k]);
     }
     const IesComplaint horizontal = check_horizontal_angles(grid_);
     if (!horizontal.problem.empty() || (symmetry_ > 0 && !spans_symmetry()))
-      text_.fail(
-          fmt::format("the C angles of the stored planes do not fit the symmetry {}", symmetry_),
-          "They run from 0 to 180 (symmetry 2), 270 to 90 (3) or 0 to 90 (4) in the list of C angles.");
+      text_.fail(fmt::format("the C angles of the stored planes do not fit the symmetry {}", symmetry_),
+                 "They run from 0 to below or up to 360 (symmetry 0), 0 to 180 (2), 270 to 90 (3) or 0 to 90 "
+                 "(4) in the "
+                 "list of C angles.");
   }
 
   void expect_increase(const std::vector<double>& angles, const char* what) const {

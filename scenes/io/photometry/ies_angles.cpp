@@ -147,6 +147,21 @@ IesComplaint check_horizontal_angles(const IesGrid& grid) {
           "270."};
 }
 
+void clear_noise(std::vector<double>& intensities, const std::string& where,
+                 std::vector<std::string>& warnings) {
+  constexpr double kMostNoise = 0.01;
+  if (intensities.empty()) return;
+  const double least = -kMostNoise * *std::max_element(intensities.begin(), intensities.end());
+  std::size_t count = 0;
+  for (double& intensity : intensities) {
+    if (!(intensity < 0 && intensity >= least)) continue;
+    intensity = 0;
+    ++count;
+  }
+  if (count > 0)
+    warnings.push_back(fmt::format("{}: {} intensities slightly below 0 count as 0.", where, count));
+}
+
 std::shared_ptr<const IntensityTable> table_of(const IesGrid& grid, const std::string& where,
                                                const std::string& file, std::vector<std::string>& warnings) {
   bool closed = false;

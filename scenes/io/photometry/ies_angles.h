@@ -24,6 +24,11 @@ struct IesComplaint {
 IesComplaint check_vertical_angles(const IesGrid& grid);
 IesComplaint check_horizontal_angles(const IesGrid& grid);
 
+/// Intensities below 0 by no more than 1 % of the largest, as goniometers note them where there is no light,
+/// become 0, with a warning that begins with `where`.
+void clear_noise(std::vector<double>& intensities, const std::string& where,
+                 std::vector<std::string>& warnings);
+
 /// Unfolds the symmetry of the horizontal angles and brings the grid to polar angle and azimuth. The values
 /// are copied, not resampled: mirrored grid lines of a bilinear function give the mirrored function. Adds to
 /// the warnings, which name `file`, where the last plane is missing or angles cover less than any range that

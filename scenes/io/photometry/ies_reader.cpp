@@ -28,11 +28,12 @@ std::string upper_case(std::string_view text) {
   return result;
 }
 
-/// Edition of the standard by the first line, as in IESNA:LM-63-2002, IESNA91, IES:LM-63-2019; nothing if it
-/// is no such line, as in files of 1986.
+/// Edition of the standard by its line, as in IESNA:LM-63-2002, IESNA91, IES:LM-63-2019; nothing if it is no
+/// such line, as in files of 1986.
 std::optional<int> edition_of(std::string_view line) {
-  const std::string header = upper_case(line);
+  std::string header = upper_case(line);
   if (!header.starts_with("IES")) return std::nullopt;
+  header.resize(std::min(header.find_first_of(" \t("), header.size()));
   for (const int year : {1986, 1991, 1995, 2002, 2019}) {
     const std::string digits = fmt::format("{:02}", year % 100);
     if (header.ends_with(std::to_string(year)) || header.ends_with("-" + digits) ||
@@ -73,7 +74,7 @@ class IesFile {
     std::string label;
     std::string luminaire;
     std::string catalogue;
-    bool first = true;
+    bool is_edition_due = true;
     while (text_.next_line(line)) {
       if (const auto tilt = tilt_of(line)) {
         tilt_ = *tilt;
@@ -81,12 +82,14 @@ class IesFile {
         if (result_.name.empty()) result_.name = path_.stem().string();
         return;
       }
-      const auto edition = first ? edition_of(line) : std::nullopt;
-      first = false;
-      if (edition) {
+      if (line.empty()) continue;
+      // It is the first line, but for remarks that somebody put above it.
+      if (const auto edition = is_edition_due ? edition_of(line) : std::nullopt) {
+        is_edition_due = false;
         edition_ = *edition;
         continue;
       }
+      is_edition_due = is_edition_due && !line.starts_with('[');
       const std::size_t end = line.starts_with('[') ? line.find(']') : std::string_view::npos;
       if (end == std::string_view::npos) {
         if (label.empty()) label = line;
@@ -152,11 +155,13 @@ class IesFile {
   }
 
   void read_lamps() {
-    const double lamps = text_.positive("the number of lamps");
+    const double lamps = text_.number("the number of lamps");
     const double lumens = text_.number("the lumens per lamp");
-    if (!(lumens > 0) && lumens != -1)
-      text_.fail(fmt::format("the lumens per lamp are {}", lumens),
-                 "Give a value above 0, or -1 for absolute photometry.");
+    const bool is_absolute = lumens == -1;
+    if (!is_absolute && (!(lumens > 0) || !(lamps > 0)))
+      result_.warnings.push_back(
+          fmt::format("{}: {} lamps of {} lm: the light is that of the intensities, unchecked.",
+                      text_.where(), lamps, lumens));
     factor_ *= text_.positive("the candela multiplier");
     verticals_ = static_cast<std::size_t>(text_.integer("the number of vertical angles", 2, kMostAngles));
     horizontals_ = static_cast<std::size_t>(text_.integer("the number of horizontal angles", 1, kMostAngles));
@@ -180,12 +185,16 @@ class IesFile {
       result_.warnings.push_back(fmt::format(
           "{}: an opening of {} x {} x {} has no meaning in LM-63; a box of these sizes is taken.",
           text_.where(), width, length, height));
-    const double ballast = text_.positive("the ballast factor");
+    const double ballast = text_.number("the ballast factor");
+    if (!(ballast > 0))
+      text_.fail(
+          fmt::format("the ballast factor is {}", ballast),
+          "It must be above 0. Is the line of ballast factor, a second number and input watts missing, "
+          "so that an angle stands in its place?");
     factor_ *= ballast;
     read_second_factor();
-    const double watts = text_.number("the input watts");
-    if (watts < 0) text_.fail(fmt::format("the input watts are {}", watts), "Give 0 or more.");
-    result_.lamp_lumens = lumens > 0 ? lamps * lumens * factor_lumens_ * ballast : 0;
+    text_.number("the input watts");
+    result_.lamp_lumens = std::max(0.0, lamps) * std::max(0.0, lumens) * factor_lumens_ * ballast;
   }
 
   /// The number after the ballast factor is a factor in the editions of 1986 and 1991, not used in those of
@@ -227,6 +236,7 @@ class IesFile {
     if (!horizontal.problem.empty()) text_.fail(horizontal.problem, horizontal.advice);
     lines.clear();
     grid_.candela = text_.numbers(verticals_ * horizontals_, "candela values", &lines);
+    clear_noise(grid_.candela, text_.where(), result_.warnings);
     for (std::size_t i = 0; i < grid_.candela.size(); ++i) {
       if (grid_.candela[i] < 0)
         text_.fail_at(lines[i], fmt::format("the intensity {} cd is negative", grid_.candela[i]),

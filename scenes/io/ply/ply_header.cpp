@@ -131,7 +131,8 @@ PlyHeader read_ply_header(const std::string& bytes, const std::string& file) {
            is_list ? type_named(count_type, where) : PlyType::kUint8});
     } else if (keyword == "end_header") {
       break;
-    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty() &&
+               !header.elements.empty()) {  // before them old programs say who they are
       throw InputError(where, "a line that is no part of a PLY header",
                        "The file is damaged; write it anew.");
     }

@@ -109,9 +109,27 @@ class PlyBody {
 /// Which number of a vertex a property is: x y z nx ny nz, u and v of textures, which have several names, and
 /// red, green and blue; nothing for any other.
 std::optional<std::size_t> coordinate_of(const PlyProperty& property) {
-  static constexpr std::pair<std::string_view, std::size_t> kNames[] = {
-      {"x", 0}, {"y", 1}, {"z", 2},         {"nx", 3},        {"ny", 4},  {"nz", 5},    {"u", 6},    {"v", 7},
-      {"s", 6}, {"t", 7}, {"texture_u", 6}, {"texture_v", 7}, {"red", 8}, {"green", 9}, {"blue", 10}};
+  static constexpr std::pair<std::string_view, std::size_t> kNames[] = {{"x", 0},
+                                                                        {"y", 1},
+                                                                        {"z", 2},
+                                                                        {"nx", 3},
+                                                                        {"ny", 4},
+                                                                        {"nz", 5},
+                                                                        {"u", 6},
+                                                                        {"v", 7},
+                                                                        {"s", 6},
+                                                                        {"t", 7},
+                                                                        {"texture_u", 6},
+                                                                        {"texture_v", 7},
+                                                                        {"red", 8},
+                                                                        {"green", 9},
+                                                                        {"blue", 10},
+                                                                        {"diffuse_red", 8},
+                                                                        {"diffuse_green", 9},
+                                                                        {"diffuse_blue", 10},
+                                                                        {"r", 8},
+                                                                        {"g", 9},
+                                                                        {"b", 10}};
   const auto it = std::find_if(std::begin(kNames), std::end(kNames),
                                [&](const auto& name) { return name.first == property.name; });
   if (it == std::end(kNames) || property.is_list) return std::nullopt;
@@ -140,7 +158,8 @@ void read_vertices(const PlyElement& element, PlyBody& body, Surface& surface) {
     for (const PlyProperty& property : element.properties) {
       if (const auto k = coordinate_of(property)) {
         values[*k] = body.next(property.type);
-        if (!std::isfinite(values[*k])) body.fail(fmt::format("vertex {} is not finite", i));
+        const bool is_needed = *k < 3 || *k >= 8;
+        if (is_needed && !std::isfinite(values[*k])) body.fail(fmt::format("vertex {} is not finite", i));
         if (*k >= 8) values[*k] = colour_of(values[*k], property.type);
       } else {
         body.skip(property);
@@ -149,7 +168,7 @@ void read_vertices(const PlyElement& element, PlyBody& body, Surface& surface) {
     surface.positions.emplace_back(values[0], values[1], values[2]);
     if (has_coordinates || surface.has_vertex_colours) {
       TexturePoint& point = surface.texture_points.emplace_back();
-      point.uv[0] = {values[6], values[7]};
+      if (std::isfinite(values[6]) && std::isfinite(values[7])) point.uv[0] = {values[6], values[7]};
       if (surface.has_vertex_colours)
         for (std::size_t c = 0; c < 3; ++c) point.colour[c] = static_cast<float>(values[8 + c]);
     }
@@ -157,27 +176,76 @@ void read_vertices(const PlyElement& element, PlyBody& body, Surface& surface) {
   }
 }
 
-void read_faces(const PlyElement& element, std::uint64_t vertices, PlyBody& body, Surface& surface) {
+bool is_vertex_list(const PlyProperty& property) {
+  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// The vertices that element number `i` names; `restarts`: numbers below 0 are let through.
+std::vector<std::int64_t> read_indices(const PlyProperty& property, std::uint64_t vertices, std::uint64_t i,
+                                       bool restarts, PlyBody& body) {
+  std::vector<std::int64_t> indices(body.next_list_length(property));
+  for (std::int64_t& index : indices) {
+    const double value = body.next(property.type);
+    if (!(value < double(vertices)) || value != std::floor(value) || (value < 0 && !restarts))
+      body.fail(fmt::format("face {} names vertex {}, but there are {} vertices", i, value, vertices));
+    index = static_cast<std::int64_t>(value);
+  }
+  return indices;
+}
+
+void read_faces(const PlyElement& element, std::uint64_t vertices, PlyBody& body, PlyMesh& mesh) {
+  std::uint64_t degenerate = 0;
+  std::uint64_t first = 0;
   for (std::uint64_t i = 0; i < element.count; ++i) {
     Face face;
     for (const PlyProperty& property : element.properties) {
-      if (!property.is_list || (property.name != "vertex_indices" && property.name != "vertex_index")) {
+      if (is_vertex_list(property)) {
+        const std::vector<std::int64_t> indices = read_indices(property, vertices, i, false, body);
+        face.outer.assign(indices.begin(), indices.end());
+      } else {
+        body.skip(property);
+      }
+    }
+    if (face.outer.size() < 3) {
+      if (degenerate++ == 0) first = i;
+      continue;
+    }
+    face.source_line = body.line();
+    mesh.surface.faces.push_back(std::move(face));
+  }
+  if (degenerate > 0)
+    mesh.warnings.push_back(fmt::format(
+        "{} faces of fewer than 3 vertices were left out, the first is face {}", degenerate, first));
+  if (std::any_of(element.properties.begin(), element.properties.end(), [](const PlyProperty& property) {
+        const auto k = coordinate_of(property);
+        return k && *k >= 8;
+      }))
+    mesh.warnings.push_back("colours of faces are not read, only those of vertices");
+}
+
+/// Every three vertices in a row are a triangle, the second and each other after it wound the other way;
+/// numbers below 0 begin a new strip.
+void read_strips(const PlyElement& element, std::uint64_t vertices, PlyBody& body, PlyMesh& mesh) {
+  for (std::uint64_t i = 0; i < element.count; ++i)
+    for (const PlyProperty& property : element.properties) {
+      if (!is_vertex_list(property)) {
         body.skip(property);
         continue;
       }
-      face.outer.resize(body.next_list_length(property));
-      for (std::uint32_t& index : face.outer) {
-        const double value = body.next(property.type);
-        if (!(value >= 0 && value < double(vertices)) || value != std::floor(value)) {
-          body.fail(fmt::format("face {} names vertex {}, but there are {} vertices", i, value, vertices));
-        }
-        index = static_cast<std::uint32_t>(value);
+      const std::vector<std::int64_t> strip = read_indices(property, vertices, i, true, body);
+      std::size_t begin = 0;
+      for (std::size_t k = 0; k < strip.size(); ++k) {
+        if (strip[k] < 0) begin = k + 1;
+        if (strip[k] < 0 || k < begin + 2) continue;
+        const auto at = [&](std::size_t back) { return static_cast<std::uint32_t>(strip[k - back]); };
+        if (at(0) == at(1) || at(1) == at(2) || at(0) == at(2)) continue;  // turns the strip
+        const bool is_turned = (k - begin) % 2 == 1;
+        Face face;
+        face.outer = {at(is_turned ? 1 : 2), at(is_turned ? 2 : 1), at(0)};
+        face.source_line = body.line();
+        mesh.surface.faces.push_back(std::move(face));
       }
     }
-    if (face.outer.size() < 3) body.fail(fmt::format("face {} has fewer than 3 vertices", i));
-    face.source_line = body.line();
-    surface.faces.push_back(std::move(face));
-  }
 }
 
 /// Normals are used only where every face has proper ones.
@@ -194,7 +262,7 @@ void attach_normals(Surface& surface) {
 
 }  // namespace
 
-Surface read_ply_surface(const std::filesystem::path& file) {
+PlyMesh read_ply(const std::filesystem::path& file) {
   const std::string name = file.string();
   const std::string bytes = load_file(file);
   const PlyHeader header = read_ply_header(bytes, name);
@@ -202,13 +270,16 @@ Surface read_ply_surface(const std::filesystem::path& file) {
                                      [](const PlyElement& element) { return element.name == "vertex"; });
   if (vertices == header.elements.end()) throw InputError(name, "the file has no vertices", "Export a mesh.");
   PlyBody body(bytes, header, name);
-  Surface surface;
+  PlyMesh mesh;
+  Surface& surface = mesh.surface;
   surface.source = name;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {
       read_vertices(element, body, surface);
     } else if (element.name == "face") {
-      read_faces(element, vertices->count, body, surface);
+      read_faces(element, vertices->count, body, mesh);
+    } else if (element.name == "tristrips") {
+      read_strips(element, vertices->count, body, mesh);
     } else {
       for (std::uint64_t i = 0; i < element.count; ++i) {
         for (const PlyProperty& property : element.properties) body.skip(property);
@@ -220,7 +291,7 @@ Surface read_ply_surface(const std::filesystem::path& file) {
   attach_normals(surface);
   if (!surface.texture_points.empty())
     for (Face& face : surface.faces) face.texture_points = face.outer;
-  return surface;
+  return mesh;
 }
 
 }  // namespace reemit

@@ -39,6 +39,7 @@ Vec3 direction(double c, double gamma) {
 
 struct Ldt {
   int symmetry = 0;
+  bool repeats_plane_0 = false;  // as plane 360; without symmetry
   std::string lamp_sets = "1\n2\nT16\n2400\n840\n1B\n54\n";
   std::string opening = "1200\n300\n0\n0\n0\n0\n";
   std::string factors = "0\n0\n1\n0\n";  // downward share, output ratio, conversion factor, tilt
@@ -48,18 +49,19 @@ struct Ldt {
 std::string ldt_text(const Distribution& f, const Ldt& ldt = {}) {
   std::ostringstream text;
   text.precision(17);
+  const int planes = kPlanes + (ldt.repeats_plane_0 ? 1 : 0);
   text << "Company\n2\n"
        << ldt.symmetry << "\n"
-       << kPlanes << "\n15\n"
+       << planes << "\n15\n"
        << kAngles << "\n5\nreport\nA lamp\n4711\n"
        << "lamp.ldt\n2024\n1250\n310\n80\n"
        << ldt.opening << ldt.factors << ldt.lamp_sets;
   for (int i = 0; i < 10; ++i) text << "0.5\n";
-  for (int i = 0; i < kPlanes; ++i) text << 15 * i << "\n";
+  for (int i = 0; i < planes; ++i) text << 15 * i << "\n";
   for (int k = 0; k < kAngles; ++k) text << 5 * k << "\n";
   constexpr int kFirst[] = {0, 0, 0, 3 * kPlanes / 4, 0};
-  constexpr int kCount[] = {kPlanes, 1, kPlanes / 2 + 1, kPlanes / 2 + 1, kPlanes / 4 + 1};
-  for (int i = 0; i < kCount[ldt.symmetry]; ++i)
+  const int count[] = {planes, 1, kPlanes / 2 + 1, kPlanes / 2 + 1, kPlanes / 4 + 1};
+  for (int i = 0; i < count[ldt.symmetry]; ++i)
     for (int k = 0; k < kAngles; ++k) text << f(15 * ((kFirst[ldt.symmetry] + i) % kPlanes), 5 * k) << "\n";
   return text.str();
 }
@@ -173,6 +175,12 @@ TEST_F(EulumdatReader, OpeningsByTheSizesOfTheLuminousArea) {
   expect("200\n0\n50\n50\n50\n50\n", OpeningShape::kCylinder, 0.2, 0.2, 0.05);
   expect("600\n150\n40\n0\n40\n0\n", OpeningShape::kBox, 0.15, 0.6, 0.02);
   EXPECT_THAT(opening("600\n150\n40\n0\n40\n0\n").notes, ElementsAre(HasSubstr("0 to 40 mm")));
+}
+
+TEST_F(EulumdatReader, PlaneZeroMayBeListedAgainAsPlane360) {
+  const std::string once = ldt_text(kDistributions[0], {});
+  const double flux = read(once).table->total_flux();
+  EXPECT_EQ(read(ldt_text(kDistributions[0], {.repeats_plane_0 = true})).table->total_flux(), flux);
 }
 
 TEST_F(EulumdatReader, RefusesBrokenFilesWithTheirLine) {

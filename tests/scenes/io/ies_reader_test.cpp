@@ -261,6 +261,32 @@ TEST_F(IesReader, IsDarkOutsideOfAnglesThatCoverLess) {
   EXPECT_EQ(b.table->intensity({0, std::sin(21 * pi / 180), -std::cos(21 * pi / 180)}), 0);
 }
 
+TEST_F(IesReader, RemarksAboveTheEditionDoNotHideIt) {
+  const double flux = read(kGood).table->total_flux();
+  const std::string second_factor = replaced(kGood, "0.5 1.0 40", "0.5 0.5 40");
+  for (const char* above : {"\n", "made by hand\n", "\n\n  \n"})
+    EXPECT_EQ(read(above + second_factor).table->total_flux(), flux) << "of 1986 half";
+  EXPECT_NEAR(read(replaced(second_factor, "IESNA:LM-63-2002", "IESNA:LM-63-1991 (R)")).table->total_flux(),
+              flux / 2, 1e-9);
+}
+
+TEST_F(IesReader, WhatOnlyServesForChecksRefusesNothing) {
+  const double flux = read(kGood).table->total_flux();
+  for (const char* lamps : {"0 800 2.0", "1 -2 2.0", "1 0 2.0"}) {
+    const MeasuredLuminaire l = read(replaced(kGood, "1 800 2.0", lamps));
+    EXPECT_EQ(l.table->total_flux(), flux) << lamps;
+    EXPECT_EQ(l.lamp_lumens, 0) << lamps;
+    EXPECT_THAT(l.warnings, ElementsAre(HasSubstr("unchecked"))) << lamps;
+  }
+  EXPECT_EQ(read(replaced(kGood, "0.5 1.0 40", "0.5 1.0 -1")).table->total_flux(), flux);
+}
+
+TEST_F(IesReader, NoiseBelowZeroIsDarkness) {
+  const MeasuredLuminaire l = read(replaced(kGood, "100 80 0", "100 80 -0.5"));
+  EXPECT_EQ(l.table->total_flux(), read(kGood).table->total_flux());
+  EXPECT_THAT(l.warnings, ElementsAre(HasSubstr("1 intensities slightly below 0")));
+}
+
 TEST_F(IesReader, RefusesBrokenFiles) {
   const struct {
     const char *from, *to, *at, *says;
@@ -271,8 +297,6 @@ TEST_F(IesReader, RefusesBrokenFiles) {
       {"TILT=NONE", "TILT=INCLUDE\n4\n1\n0\n1", "lamp.ies:5", "geometry"},
       {"TILT=NONE", "TILT=INCLUDE\n1\n2\n0 0\n1 1", "lamp.ies:7", "do not increase"},
       {"TILT=NONE", "TILT=INCLUDE\n1\n2\n0 1\n1 -1", "lamp.ies:8", "tilt factor"},
-      {"1 800 2.0", "0 800 2.0", "lamp.ies:5", "number of lamps"},
-      {"1 800 2.0", "1 -2 2.0", "lamp.ies:5", "lumens per lamp"},
       {"1 800 2.0", "1 800 0", "lamp.ies:5", "multiplier is 0"},
       {"1 800 2.0", "1 800 -1", "lamp.ies:5", "multiplier is -1"},
       {"1 800 2.0", "1 800 nan", "lamp.ies:5", "'nan' is not a number"},
@@ -286,7 +310,7 @@ TEST_F(IesReader, RefusesBrokenFiles) {
       {"3 2 1 2", "4 2 1 2", "lamp.ies:8", "do not increase"},
       {"3 2 1 2", "2 2 1 2", "lamp.ies:8", "do not increase"},
       {"0.5 1.0 40", "0 1.0 40", "lamp.ies:6", "ballast factor is 0"},
-      {"0.5 1.0 40", "0.5 1.0 -40", "lamp.ies:6", "watts"},
+      {"0.5 1.0 40\n", "", "lamp.ies:6", "input watts missing"},
       {"0 45 90\n", "0 90 45\n", "lamp.ies:7", "do not increase"},
       {"0 45 90\n", "-10 45 90\n", "lamp.ies:7", "-10 to 90"},
       {"0 45 90\n", "0 45 190\n", "lamp.ies:7", "0 to 190"},

@@ -29,9 +29,9 @@ Scene read_gltf_file(const std::filesystem::path& file) {
   return scene;
 }
 
-Scene read_ply(const std::filesystem::path& file) {
+Scene scene_of_ply(const std::filesystem::path& file) {
   Scene scene;
-  scene.surfaces.push_back(read_ply_surface(file));
+  scene.surfaces.push_back(read_ply(file).surface);
   return scene;
 }
 
@@ -188,7 +188,7 @@ TEST(NativeGltfFuzz, WholeRoomsAreAccepted) {
   EXPECT_NO_THROW(read_native(folder.write("room.json", kEveryFeature)));
   EXPECT_NO_THROW(read_gltf_file(folder.write("room.gltf", small_gltf().text())));
   EXPECT_NO_THROW(read_gltf_file(folder.write("room.glb", small_gltf().glb())));
-  EXPECT_NO_THROW(read_ply(folder.write("mesh.ply", kPly)));
+  EXPECT_NO_THROW(scene_of_ply(folder.write("mesh.ply", kPly)));
 }
 
 TEST(NativeGltfFuzz, NativeTruncated) {
@@ -247,7 +247,7 @@ TEST(NativeGltfFuzz, CompressedBytesMutated) {
 }
 
 TEST(NativeGltfFuzz, PlyMutated) {
-  Outcome outcome(read_ply, "mesh.ply");
+  Outcome outcome(scene_of_ply, "mesh.ply");
   feed_mutations(outcome, kPly, kMutations);
   expect_both(outcome);
 }
@@ -257,7 +257,7 @@ TEST(NativeGltfFuzz, NoiseIsRefused) {
   for (const auto& [name, read] : std::vector<std::pair<std::string, ReadFile>>{{"room.json", read_native},
                                                                                 {"room.gltf", read_gltf_file},
                                                                                 {"room.glb", read_gltf_file},
-                                                                                {"m.ply", read_ply}}) {
+                                                                                {"m.ply", scene_of_ply}}) {
     Outcome outcome(read, name);
     for (std::size_t i = 0; i < 100; ++i) {
       std::string noise(1 + random() % 400, '\0');

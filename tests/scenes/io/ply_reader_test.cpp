@@ -16,7 +16,7 @@ using test::TempFolder;
 
 Surface read_ply_text(const std::string& text) {
   const TempFolder folder;
-  return read_ply_surface(folder.write("mesh.ply", text));
+  return read_ply(folder.write("mesh.ply", text)).surface;
 }
 
 constexpr const char* kHeader =
@@ -73,6 +73,36 @@ TEST(PlyReader, ReadsBothByteOrdersAndNormals) {
   }
 }
 
+TEST(PlyReader, LeavesOutWhatIsNoFaceAndSaysSo) {
+  const TempFolder folder;
+  const std::string text =
+      "ply\nCreated by an old program\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+      "y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face "
+      "2\nproperty list uchar int vertex_indices\nproperty uchar red\nend_header\n0 0 0 nan nan nan\n1 0 0 "
+      "nan "
+      "nan nan\n0 1 0 nan nan nan\n2 0 1 255\n3 0 1 2 255\n";
+  const PlyMesh mesh = read_ply(folder.write("mesh.ply", text));
+  ASSERT_EQ(mesh.surface.faces.size(), 1U);
+  EXPECT_TRUE(mesh.surface.faces[0].normals.empty());
+  EXPECT_THAT(mesh.warnings, testing::ElementsAre(testing::HasSubstr("the first is face 0"),
+                                                  testing::HasSubstr("colours of faces")));
+}
+
+TEST(PlyReader, ReadsTriangleStrips) {
+  const Surface surface = read_ply_text(
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement "
+      "tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n"
+      "8 0 1 2 3 -1 1 4 3\n");
+  ASSERT_EQ(surface.faces.size(), 3U);
+  for (const Face& face : surface.faces) {
+    const Vec3 a = surface.positions[face.outer[0]];
+    const Vec3 b = surface.positions[face.outer[1]];
+    const Vec3 c = surface.positions[face.outer[2]];
+    EXPECT_GT((b - a).cross(c - a).z(), 0) << "all face the same way";
+  }
+}
+
 TEST(PlyReader, RefusesDamage) {
   const auto refused = [](const std::string& text, std::initializer_list<const char*> parts) {
     expect_input_error([&] { read_ply_text(text); }, parts);
@@ -107,7 +137,7 @@ TEST(PlyReader, EveryTruncationIsRefused) {
     const std::size_t last = whole.back() == '\n' ? whole.size() - 2 : whole.size() - 1;
     for (std::size_t length = 1; length <= last; ++length) {
       const auto file = folder.write("cut.ply", whole.substr(0, length));
-      EXPECT_THROW(read_ply_surface(file), InputError) << length;
+      EXPECT_THROW(read_ply(file), InputError) << length;
       std::filesystem::remove(file);
     }
   }
