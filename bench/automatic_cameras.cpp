@@ -11,8 +11,8 @@
 
 #include "bench/contact_sheet.h"
 #include "bench/program_options.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/room/room.h"
-#include "solver/run/schedule.h"
 #include "solver/solution/room_of_solution.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/still/default_cameras.h"

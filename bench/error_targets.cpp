@@ -12,9 +12,9 @@
 
 #include "bench/program_options.h"
 #include "scenes/io/scene_reader.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/progressive_solver.h"
 #include "solver/room/room.h"
-#include "solver/run/schedule.h"
 #include "solver/zoning/build_zones.h"
 #include "viewer_export/still/render_still.h"
 

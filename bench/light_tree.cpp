@@ -16,9 +16,9 @@
 #include <fmt/format.h>
 
 #include "bench/program_options.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/emit/area_luminaire.h"
 #include "solver/emit/selection.h"
-#include "solver/run/schedule.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/warp.h"
 

@@ -1,7 +1,7 @@
 # Many files are compiled as one: what they include is then read once, and templates that they share are made once, which
-# is most of the time that a single file takes. So names in anonymous namespaces differ within a library or program. What is
-# large is split, so that all cores have work; the preset dev compiles each file alone and so notices what a file forgets
-# to include.
+# is most of the time that a single file takes. So functions in anonymous namespaces of one library that have the same name
+# must take parameters that no compiler could confuse. What is large is split, so that all cores have work; the preset dev
+# compiles each file alone and so notices what a file forgets to include.
 set(REEMIT_UNITY_FILES 45 CACHE STRING "Files that are compiled as one, at most")
 
 function(reemit_unite target)

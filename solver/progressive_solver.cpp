@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 
 #include "scenes/model/error.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/gather/sampled_direct_light.h"
 #include "solver/matrix/matrix_solve.h"
 #include "solver/run/examination.h"
@@ -199,7 +200,7 @@ class ProgressiveSolver::Run {
   const Room& room() const { return room_.room; }
 
   void end(const ProgressCallback& progress, Examination examination) {
-    if (room_.is_dark()) return;
+    if (room_.is_dark() || std::exchange(has_ended_, true)) return;
     if (record().stopped == StopReason::kUnderWay) end_batches(StopReason::kInterrupted);
     arena_.execute([&] {
       gather_what_is_small(room_.room, direct_ && direct_->is_for(last_weight()), schedule_, interrupt_,
@@ -360,7 +361,8 @@ class ProgressiveSolver::Run {
   std::optional<StopToken> stop_;
   std::optional<SampledDirectLight> direct_;
   std::optional<BatchesAhead> ahead_;
-  bool drains_ = false;  // no more batches begin
+  bool drains_ = false;     // no more batches begin
+  bool has_ended_ = false;  // what follows the last batch is in
   double bound_ = kUnknown;
   double bound_over_error_ = 1;
   std::int64_t weight_of_bound_ = 0;  // when bound_ was looked at
@@ -395,29 +397,22 @@ const Room& ProgressiveSolver::room() const {
   return run_->room();
 }
 
-std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution) {
+std::optional<StopReason> rule_that_holds(const Scene& scene, const Solution& solution) {
   if (solution.record.stopped == StopReason::kNoLuminaire) return StopReason::kNoLuminaire;
   if (solution.sums.batches == 0 || solution.record.cut_off) return std::nullopt;
   const RoomTextures textures(scene, solution.mesh);
   const SurfaceModel surfaces(scene, solution.mesh, textures, 1);
-  double bound = 0;
-  {
-    // Puts back what was gathered, also if memory runs out meanwhile.
-    struct PutBack {
-      GatheredZones gathered;
-      ZoneSums& sums;
-      ~PutBack() { gathered.restore(sums); }
-    } put_back{{}, solution.sums};
-    put_back.gathered.keep(solution.sums, solution.gathered.zones);
-    solution.gathered.restore(solution.sums);
-    bound = zone_error(surfaces, solution.mesh, solution.sums).bound;
-  }
-
+  const auto bound_of = [&](const ZoneSums& sums) { return zone_error(surfaces, solution.mesh, sums).bound; };
+  const auto bound_of_packets = [&] {
+    ZoneSums sums = solution.sums;
+    solution.gathered.restore(sums);
+    return bound_of(sums);
+  };
   const BatchPlan plan(solution.settings, solution.mesh.zone_count(), solution.record.unit_packets);
   RunState state;
   state.batches = solution.sums.batches;
   state.weight = solution.sums.weight();
-  state.error = bound;
+  state.error = solution.gathered.zones.empty() ? bound_of(solution.sums) : bound_of_packets();
   state.unshot_share = solution.audit.worst_unshot_share();
   return StopRule(solution.settings, plan, solution.settings.time_limit_s).stop(state);
 }

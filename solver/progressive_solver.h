@@ -73,7 +73,8 @@ class ProgressiveSolver {
   /// The same with all that the record says about its noise, ready to be saved.
   const Solution& checkpoint();
   /// Ends the run, with light on zones too small for packets. An interrupt cuts the examination short: what
-  /// is not known then is empty in SolveRecord, and Solution::light_warnings says so of lost light. Once.
+  /// is not known then is empty in SolveRecord, and Solution::light_warnings says so of lost light. Does
+  /// nothing the second time.
   void end(const ProgressCallback& progress = {}, Examination examination = Examination::kWhole);
   /// The same, and hands over the solution. As the last call.
   Solution finish(const ProgressCallback& progress = {}, Examination examination = Examination::kWhole);
@@ -86,8 +87,8 @@ class ProgressiveSolver {
 };
 
 /// The stopping rule of its settings that a solution meets already, so that a run would add no batch to it;
-/// nothing if it would. The sums are changed meanwhile and put back.
-std::optional<StopReason> rule_that_holds(const Scene& scene, Solution& solution);
+/// nothing if it would.
+std::optional<StopReason> rule_that_holds(const Scene& scene, const Solution& solution);
 
 /// Who watches a solve.
 struct SolveWatch {

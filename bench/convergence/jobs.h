@@ -10,7 +10,7 @@
 #include "bench/convergence/reference.h"
 #include "scenes/model/camera.h"
 #include "scenes/model/scene.h"
-#include "solver/run/schedule.h"
+#include "scenes/model/stopwatch.h"
 
 namespace reemit::bench {
 

@@ -61,7 +61,7 @@ double rms_over_points(const PointValues& reference, const Fn& off) {
 PointValues reference_values(const DirectLight& light, const std::vector<SurfacePoint>& points,
                              const std::vector<float>& weights, int samples, std::uint64_t seed,
                              int threads) {
-  const CounterRng rng(seed, RngPurpose::kDirectLight);
+  const CounterRng rng(seed, RngPurpose::kSampledDirect);
   const int each = samples / kScrambles;
   return for_each_point(points.size(), threads, [&](std::size_t p) {
     std::vector<double> irradiance(weights.size());
@@ -85,7 +85,7 @@ PointValues reference_values(const DirectLight& light, const std::vector<Surface
 PointValues sampled_values(const DirectLight& light, const std::vector<SurfacePoint>& points,
                            const std::vector<float>& weights, int samples, std::uint64_t seed, int threads) {
   static_assert(DirectLight::kDimensions <= 4);
-  const CounterRng rng(seed, RngPurpose::kDirectLight);
+  const CounterRng rng(seed, RngPurpose::kSampledDirect);
   return for_each_point(points.size(), threads, [&](std::size_t p) {
     std::vector<float> parts(weights.size());
     double sum = 0;

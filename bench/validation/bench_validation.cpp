@@ -12,7 +12,7 @@
 #include "bench/validation/families.h"
 #include "bench/validation/plots.h"
 #include "bench/validation/report.h"
-#include "solver/run/schedule.h"
+#include "scenes/model/stopwatch.h"
 
 namespace {
 

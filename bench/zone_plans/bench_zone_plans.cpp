@@ -17,10 +17,10 @@
 #include "bench/zone_plans/plan_table.h"
 #include "mesh/build_mesh.h"
 #include "scenes/io/scene_reader.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/zone_bias_estimate.h"
 #include "solver/progressive_solver.h"
-#include "solver/run/schedule.h"
 #include "solver/zoning/build_zones.h"
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "mesh/zones/surface_side.h"
 #include "scenes/model/stop_token.h"
 #include "solver/shoot/packet_batch.h"
 
@@ -102,9 +103,7 @@ void LuminairePackets::weigh(const PacketRoom& transport, const PacketSources& e
   const std::size_t surfaces = solution_.surface_names.size();
   std::vector<WeightSums> of_side(2 * surfaces);
   std::vector<WeightSums> of_surface(surfaces);
-  const auto side_of = [&](ZoneId z) {
-    return 2 * mesh.zone_surface(z).index() + (mesh.zone_is_front(z) ? 1 : 0);
-  };
+  const auto side_of = [&](ZoneId z) { return surface_side(mesh, mesh.zone_side(z)); };
   for (std::size_t i = 0; i < squares.size(); ++i) {
     const ZoneId z(i);
     const WeightSums sums{mesh.zone_area(z) * powers[i], mesh.zone_area(z) * squares[i]};

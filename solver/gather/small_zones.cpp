@@ -15,6 +15,7 @@
 
 #include "solver/gather/gather_batch.h"
 #include "solver/gather/replicate_gather.h"
+#include "solver/solution/mean_light.h"
 #include "solver/tally/batch_statistics.h"
 #include "solver/tally/replicates.h"
 
@@ -235,18 +236,6 @@ GatheredLight gathered_light(const std::vector<ZoneReplicates>& by_band, bool di
   return result;
 }
 
-/// Incident power that one ray of the solve carried on average [W].
-double power_per_ray(const Solution& solution, bool direct_is_sampled) {
-  const std::size_t bands = solution.bands.count();
-  double power = 0;
-  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
-    for (std::size_t b = 0; b < bands; ++b)
-      power += solution.mesh.zone_area(ZoneId(z)) * (direct_is_sampled
-                                                         ? solution.indirect_irradiance(ZoneId(z), b).mean
-                                                         : solution.irradiance(ZoneId(z), b).mean);
-  return power / static_cast<double>(solution.record.rays);
-}
-
 /// True if gathering with `gain` times the rays of the pilot is foreseen to beat packets clearly.
 bool is_worthwhile(const GatheredLight& pilot, double gain, double area, double watts_per_ray) {
   const double variance_of_packets = pilot.brought.mean * watts_per_ray / area;
@@ -309,7 +298,10 @@ class SmallZoneRun {
         solution_(solution),
         gatherer_(room, solution, stop),
         packet_rays_(static_cast<double>(solution.record.rays)),
-        watts_per_ray_(power_per_ray(solution, limits.direct_is_sampled)),
+        watts_per_ray_(incident_power_per_ray(solution, limits.direct_is_sampled
+                                                            ? &Solution::indirect_irradiance
+                                                            : &Solution::irradiance)
+                           .sum()),
         affordable_(limits.solver_rays / cost_per_point(gatherer_.luminaires_weighed())) {}
 
   /// True if the clock had a say in what was gathered.
@@ -319,6 +311,7 @@ class SmallZoneRun {
         affordable_, std::min({kMostPointsAtAnyCost, kMostTimesTheRun * of_run, points_of_hopeless(zones)}));
     // A pilot takes one point per replicate; the smallest zones first if not all can have more than that.
     zones.resize(std::min(zones.size(), static_cast<std::size_t>(affordable_ / 3)));
+    if (zones.empty()) return false;
     std::vector<GatheredLight> pilots(zones.size());
     if (!pilot(zones, pilots)) return true;
     choose(zones, pilots);
@@ -391,8 +384,8 @@ class SmallZoneRun {
             return;
           }
           for (std::size_t b = 0; b < bands; ++b)
-            store_replicates(solution_.sums, chosen_[i].index() * bands + b, by_band[b].direct,
-                             by_band[b].indirect);
+            store_replicates(solution_.sums, chosen_[i].index() * solution_.sums.channels.count() + b,
+                             by_band[b].direct, by_band[b].indirect);
         });
     solution_.record.gathered_zones = gathered - surprises;
     count_rays(gathered * kRaysPerPoint * static_cast<std::uint64_t>(points));

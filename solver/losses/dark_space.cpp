@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/zones/surface_side.h"
 #include "solver/losses/probe_flight.h"
 #include "solver/sampling/counter_rng.h"
 #include "solver/sampling/warp.h"
@@ -14,18 +15,14 @@ namespace {
 constexpr std::uint32_t kSideRays = 1U << 14;
 constexpr std::uint32_t kSideRayStream = 3;  // of random numbers of probes
 
-/// Front and back of each surface.
-std::size_t face_of(const ZoneMesh& mesh, SideId side) {
-  return 2 * mesh.surface(side).index() + (mesh.shows_front(side) ? 0 : 1);
-}
-
-/// By face, whether a packet came to any of its zones.
+/// By surface_side, whether a packet came to any of its zones.
 std::vector<bool> lit_faces(const Solution& solution) {
   const ZoneMesh& mesh = solution.mesh;
   std::vector<bool> lit(2 * solution.surface_names.size(), false);
   for (std::size_t z = 0; z < mesh.zone_count(); ++z)
     for (std::size_t b = 0; b < solution.bands.count(); ++b)
-      if (solution.irradiance(ZoneId(z), b).mean > 0) lit[face_of(mesh, mesh.zone_side(ZoneId(z)))] = true;
+      if (solution.irradiance(ZoneId(z), b).mean > 0)
+        lit[surface_side(mesh, mesh.zone_side(ZoneId(z)))] = true;
   return lit;
 }
 
@@ -44,7 +41,7 @@ std::vector<Side> sides_with_zones(const Solution& solution, const SurfaceModel&
     if (!mesh.has_zones(side)) continue;
     const TriangleId t = triangle_of(side);
     const bool sealed = mesh.is_sealed(mesh.first_zone(t, is_front(side)));
-    sides.push_back({side, (sealed || !lit[face_of(mesh, side)]) && !surfaces.emits(t, is_front(side))});
+    sides.push_back({side, (sealed || !lit[surface_side(mesh, side)]) && !surfaces.emits(t, is_front(side))});
   }
   return sides;
 }
@@ -71,7 +68,7 @@ Outlooks look_out(const RayTracer& rays, const ZoneMesh& mesh, const std::vector
   double all_area = 0;
   for (const Side& side : sides) all_area += mesh.triangle_area(triangle_of(side.id));
   Outlooks found{std::vector<Outlook>(faces)};
-  const CounterRng rng(0, RngPurpose::kProbe);
+  const CounterRng rng(0, RngPurpose::kDarkSpace);
   double running = 0;
   std::uint32_t sent = 0;
   for (const auto& [side, is_dark] : sides) {
@@ -101,7 +98,7 @@ Outlooks look_out(const RayTracer& rays, const ZoneMesh& mesh, const std::vector
       found.lit_chords += outlook.chords;
       continue;
     }
-    Outlook& of_face = found.dark[face_of(mesh, side)];
+    Outlook& of_face = found.dark[surface_side(mesh, side)];
     of_face.area += area;
     of_face.chords += outlook.chords;
     of_face.rays += outlook.rays;

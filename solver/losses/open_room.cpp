@@ -19,7 +19,7 @@ constexpr std::uint32_t kWandererStream = 2;  // of random numbers of flights
 class Wanderers {
  public:
   explicit Wanderers(const PacketRoom& transport)
-      : transport_(transport), rng_(0, RngPurpose::kProbe), at_surface_(transport.channels().bands()) {}
+      : transport_(transport), rng_(0, RngPurpose::kOpenRoom), at_surface_(transport.channels().bands()) {}
 
   bool empty() const { return waiting_.empty(); }
   std::uint32_t left() const { return left_; }

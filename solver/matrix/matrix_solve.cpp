@@ -175,7 +175,9 @@ void store(const RowMatrix& direct, const RowMatrix& total, const ReplicateNoise
         direct_values[r] = direct(z, b) + noise.direct(z, at);
         indirect_values[r] = total(z, b) - direct(z, b) + noise.total(z, at) - noise.direct(z, at);
       }
-      store_replicates(sums, static_cast<std::size_t>(z * direct.cols() + b), direct_values, indirect_values);
+      store_replicates(sums,
+                       static_cast<std::size_t>(z) * sums.channels.count() + static_cast<std::size_t>(b),
+                       direct_values, indirect_values);
     }
 }
 

@@ -73,13 +73,13 @@ class Fan {
     float left = u * area_;
     for (std::size_t k = 0; k + 1 < count_; ++k) {
       if (left < triangle_[k].area) {
-        u = std::min(left / triangle_[k].area, 0x1.fffffep-1F);
+        u = std::min(left / triangle_[k].area, kLargestBelowOne);
         return triangle_[k];
       }
       left -= triangle_[k].area;
     }
     const FanTriangle& last = triangle_[count_ - 1];
-    u = std::clamp(left / last.area, 0.0F, 0x1.fffffep-1F);
+    u = std::clamp(left / last.area, 0.0F, kLargestBelowOne);
     return last;
   }
   float probability(const FanTriangle& t) const { return t.area / area_; }

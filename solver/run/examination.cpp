@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenes/model/interrupted.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/gather/discretisation.h"
 #include "solver/gather/plan_gathers.h"
 #include "solver/gather/radiance_field.h"

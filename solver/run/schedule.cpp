@@ -1,8 +1,6 @@
 #include "solver/run/schedule.h"
 
-#include <algorithm>
-#include <chrono>
-
+#include "scenes/model/stopwatch.h"
 #include "solver/gather/small_zones.h"
 
 namespace reemit {
@@ -14,27 +12,12 @@ double last_share(const Solution& solution) {
   return solution.sums.has_caustics() ? 0.1 : 0.05;
 }
 
-/// Beyond what a clock can count it is as good as for ever.
-StopToken::Clock::duration clock_duration(double seconds) {
-  constexpr double kLongest = 1e9;
-  const std::chrono::duration<double> span(std::min(seconds, kLongest));
-  return std::chrono::duration_cast<StopToken::Clock::duration>(span);
-}
-
 }  // namespace
 
 bool gathers_small_zones(const Solution& solution) {
   // What is gathered tells bands apart, not light groups.
   return solution.settings.gather_small_zones && solution.sums.channels.groups() == 1 &&
          small_zone_count(solution.mesh) > 0;
-}
-
-double seconds_since(StopToken::Clock::time_point start) {
-  return std::chrono::duration<double>(StopToken::Clock::now() - start).count();
-}
-
-StopToken::Clock::time_point seconds_ago(double seconds) {
-  return StopToken::Clock::now() - clock_duration(seconds);
 }
 
 Schedule::Schedule(Clock::time_point begin, const Solution& solution)

@@ -12,11 +12,6 @@ inline constexpr double kSmallZoneShare = 0.15;
 /// True if the run ends with gathering on zones too small for packets.
 bool gathers_small_zones(const Solution& solution);
 
-/// Wall time since then [s].
-double seconds_since(StopToken::Clock::time_point start);
-/// The moment so long before now [s].
-StopToken::Clock::time_point seconds_ago(double seconds);
-
 /// When the parts of a run must be over; never, without a time limit. A run that goes on begins as long
 /// before now as its earlier sittings took.
 struct Schedule {

@@ -15,10 +15,11 @@ struct Point2 {
   float x, y;
 };
 
+inline constexpr float kLargestBelowOne = 0x1.fffffep-1F;
+
 /// A number of [0,1) that fell into the interval [low, low + width), stretched over it so that it can be used
 /// again ([SWZ96] Fig. 8).
 inline float stretched(float u, float low, float width) {
-  constexpr float kLargestBelowOne = 0x1.fffffep-1F;
   return std::clamp((u - low) / width, 0.0F, kLargestBelowOne);
 }
 

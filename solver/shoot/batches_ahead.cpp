@@ -13,12 +13,16 @@ namespace {
 /// Memory that the accounts of all batches on their way may take [bytes].
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
-/// Of one batch: its books, and what zones have caught, by thread, and have yet to send on in a sweep.
+/// Of one batch: its books; what zones have caught, by thread, and have yet to send on in a sweep, with how
+/// many packets brought it; and two points of each zone that packets leave from.
 std::size_t bytes_of_batch(const PacketRoom& transport, int threads) {
-  constexpr std::size_t kAccountsPerValue = 3;
   const std::size_t values = transport.zones() * transport.channels().count();
-  return (kAccountsPerValue + account_copies(values, static_cast<std::size_t>(threads))) * values *
-         sizeof(std::int64_t);
+  const std::size_t parts = transport.scene().bends_light() ? 3 : 2;  // direct, indirect, caustic
+  const std::size_t copies = account_copies(values, static_cast<std::size_t>(threads));
+  constexpr std::size_t kCountedBeside = 2;
+  constexpr std::size_t kPoints = 2;
+  return sizeof(std::int64_t) *
+         ((parts + copies + 1) * values + (copies + kCountedBeside + kPoints) * transport.zones());
 }
 
 }  // namespace

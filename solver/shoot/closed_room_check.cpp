@@ -22,7 +22,7 @@ class WayOut {
       : transport_(transport),
         band_(band),
         numbers_(SamplingKind::kSobol, seed, 0, 0),
-        rng_(seed, RngPurpose::kProbe),
+        rng_(seed, RngPurpose::kClosedRoom),
         open_(transport.zones(), false) {}
 
   /// True if light of this source is absorbed or gets out; else surfaces() are those that it met.

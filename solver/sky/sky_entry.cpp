@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "solver/sampling/warp.h"
+
 namespace reemit {
 namespace {
 
@@ -192,7 +194,7 @@ std::size_t SkyEntry::invert(const Vec3& point, const Vec3& towards, Numbers& u)
                 : (azimuth + 2 * pi - low) / (high - low);
   const float* columns = &face.columns_until[cell.row * (table_->columns() + 1) + cell.column];
   u[3] = between(static_cast<double>(columns[0]), static_cast<double>(columns[1]), share);
-  for (double& number : u) number = std::clamp(number, 0.0, 0x1.fffffep-1);
+  for (double& number : u) number = std::clamp(number, 0.0, double{kLargestBelowOne});
   return f;
 }
 

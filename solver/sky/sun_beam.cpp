@@ -49,7 +49,7 @@ void SunBeam::invert(const Vec3& point, const Vec3& towards, Numbers& u) const {
       {static_cast<float>(towards.dot(tangent_) / sin_), static_cast<float>(towards.dot(bitangent_) / sin_)});
   u[2] = static_cast<double>(disk[0]);
   u[3] = static_cast<double>(disk[1]);
-  for (double& number : u) number = std::clamp(number, 0.0, 0x1.fffffep-1);
+  for (double& number : u) number = std::clamp(number, 0.0, double{kLargestBelowOne});
 }
 
 }  // namespace reemit

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/solution/file_damage.h"
+#include "solver/solution/hdf5_columns.h"
 
 namespace reemit {
 namespace {
@@ -41,24 +42,6 @@ std::vector<RunQuanta> read_quanta(const Hdf5Group& group, const std::string& na
   const auto high = group.read<std::int64_t>(high_name(name), shape);
   for (std::size_t i = 0; i < quanta.size(); ++i) quanta[i] += high[i] * kHigh;
   return quanta;
-}
-
-template <class T, class Function>
-std::vector<T> column(const std::vector<BandAudit>& bands, Function&& value_of) {
-  std::vector<T> values;
-  for (const BandAudit& band : bands) values.push_back(value_of(band));
-  return values;
-}
-
-template <class Function>
-std::vector<RunQuanta> flattened(const std::vector<BandAudit>& bands, Function&& values_of) {
-  std::vector<RunQuanta> flat;
-  for (const BandAudit& band : bands) flat.insert(flat.end(), values_of(band).begin(), values_of(band).end());
-  return flat;
-}
-
-bool all_finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
 /// Whether no sum of what the books of a band hold overflows, in whatever order it is taken.
@@ -101,12 +84,13 @@ void write_audit(const Hdf5Group& root, const Solution& solution) {
   put_column("roulette_net", &BandAudit::roulette_net, "created less destroyed by Russian roulette");
   group.write<double>("roulette_gain", column<double>(bands, std::mem_fn(&BandAudit::roulette_gain)),
                       {bands.size()}, "quanta", "created by Russian roulette");
-  write_quanta(group, "absorbed", flattened(bands, std::mem_fn(&BandAudit::absorbed)),
+  write_quanta(group, "absorbed", flattened<RunQuanta>(bands, std::mem_fn(&BandAudit::absorbed)),
                {bands.size(), surfaces}, "absorbed by each surface");
-  write_quanta(group, "absorbed_on_backs", flattened(bands, std::mem_fn(&BandAudit::absorbed_on_backs)),
+  write_quanta(group, "absorbed_on_backs",
+               flattened<RunQuanta>(bands, std::mem_fn(&BandAudit::absorbed_on_backs)),
                {bands.size(), surfaces}, "absorbed on the backs of one-sided faces");
-  write_quanta(group, "escaped", flattened(bands, std::mem_fn(&BandAudit::escaped)), {bands.size(), 6},
-               "left the room towards +x -x +y -y +z -z");
+  write_quanta(group, "escaped", flattened<RunQuanta>(bands, std::mem_fn(&BandAudit::escaped)),
+               {bands.size(), 6}, "left the room towards +x -x +y -y +z -z");
   group.write("warnings", solution.light_warnings, "what was found about light that is lost");
 }
 

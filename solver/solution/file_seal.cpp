@@ -7,29 +7,28 @@
 
 #include <fmt/format.h>
 
+#include "scenes/model/fnv1a.h"
+
 namespace reemit {
 namespace {
 
 constexpr std::string_view kName = "reemit seal ";
 constexpr std::size_t kSealBytes = kName.size() + 16 + 1;
-constexpr std::uint64_t kEmptyHash = 0xcbf29ce484222325ULL;
 
-std::uint64_t extend_hash(std::uint64_t hash, std::string_view bytes) {
-  for (const char c : bytes) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 0x100000001b3ULL;
-  }
-  return hash;
+void add(std::string_view bytes, Fnv1a& hash) {
+  for (const char c : bytes) hash.add(static_cast<unsigned char>(c));
 }
 
-std::string seal_with(std::uint64_t hash) {
-  return fmt::format("{}{:016x}\n", kName, hash);
+std::string seal_with(const Fnv1a& hash) {
+  return fmt::format("{}{:016x}\n", kName, hash.state());
 }
 
 }  // namespace
 
 std::string seal_of(std::string_view bytes) {
-  return seal_with(extend_hash(kEmptyHash, bytes));
+  Fnv1a hash;
+  add(bytes, hash);
+  return seal_with(hash);
 }
 
 bool ends_in_seal(const std::filesystem::path& file) {
@@ -46,12 +45,12 @@ Seal check_seal(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (code || size < kSealBytes || !in) return Seal::kMissing;
 
-  std::uint64_t hash = kEmptyHash;
+  Fnv1a hash;
   std::vector<char> block(std::size_t{1} << 20);
   for (std::uintmax_t left = size - kSealBytes; left > 0;) {
     const auto count = static_cast<std::size_t>(std::min<std::uintmax_t>(left, block.size()));
     if (!in.read(block.data(), static_cast<std::streamsize>(count))) return Seal::kMissing;
-    hash = extend_hash(hash, {block.data(), count});
+    add({block.data(), count}, hash);
     left -= count;
   }
   std::string seal(kSealBytes, '\0');

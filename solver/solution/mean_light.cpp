@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/zones/surface_side.h"
+
 namespace reemit {
 namespace {
 
@@ -88,9 +90,7 @@ class Sides {
  private:
   bool reflectance_varies() const { return !solution_.zone_reflectances.empty(); }
 
-  GroupedMean& side_of(ZoneId z) {
-    return sides_[2 * mesh_.zone_surface(z).index() + (mesh_.zone_shows_front(z) ? 0 : 1)];
-  }
+  GroupedMean& side_of(ZoneId z) { return sides_[surface_side(mesh_, mesh_.zone_side(z))]; }
 
   /// Of value zone * channels + channel in one group of batches.
   double of_group(std::size_t group, std::size_t i) const {
@@ -147,9 +147,10 @@ class Sides {
   void add_what_zones_reflect_beyond_the_mean() {
     // Reflectance of a zone over that of its material, which scatter() takes.
     const auto excess = [&](std::size_t i) {
-      const ZoneId z(i / bands_);
+      const ZoneId z(i / sums_.channels.count());
+      const std::size_t band = i % bands_;  // of each group the same
       const Spectrum& mean = solution_.zone_material(z).reflectance_of(mesh_.zone_shows_front(z));
-      return solution_.zone_reflectances[i] - mean[static_cast<Eigen::Index>(i % bands_)];
+      return solution_.zone_reflectance(z, band) - mean[static_cast<Eigen::Index>(band)];
     };
     add_up([&](std::size_t i) { return excess(i) * sums_.total(i); },
            [](GroupedMean& side) -> Spectrum& { return side.all.reflected; });
@@ -172,19 +173,6 @@ class Sides {
   std::size_t bands_;
   std::vector<GroupedMean> sides_;
 };
-
-/// Incident power that one ray of the packets carried on average, by band [W]; 0 without packets.
-Spectrum power_per_ray(const Solution& solution) {
-  const auto bands = static_cast<Eigen::Index>(solution.bands.count());
-  Spectrum power = Spectrum::Zero(bands);
-  const std::uint64_t rays = solution.record.rays - solution.gathered.rays;
-  if (solution.record.packets == 0 || rays == 0 || solution.sums.batches == 0) return power;
-  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
-    for (Eigen::Index b = 0; b < bands; ++b)
-      power[b] += solution.mesh.zone_area(ZoneId(z)) *
-                  solution.irradiance(ZoneId(z), static_cast<std::size_t>(b)).mean;
-  return power / static_cast<double>(rays);
-}
 
 /// Weights of the groups that have batches.
 struct GroupWeights {
@@ -249,10 +237,22 @@ MeanLight finished(const Solution& solution, const GroupedMean& grouped, const S
 
 }  // namespace
 
+Spectrum incident_power_per_ray(const Solution& solution, Solution::Irradiance irradiance) {
+  const auto bands = static_cast<Eigen::Index>(solution.bands.count());
+  Spectrum power = Spectrum::Zero(bands);
+  const std::uint64_t rays = solution.record.rays - solution.gathered.rays;
+  if (solution.record.packets == 0 || rays == 0 || solution.sums.batches == 0) return power;
+  for (std::size_t z = 0; z < solution.mesh.zone_count(); ++z)
+    for (Eigen::Index b = 0; b < bands; ++b)
+      power[b] += solution.mesh.zone_area(ZoneId(z)) *
+                  (solution.*irradiance)(ZoneId(z), static_cast<std::size_t>(b)).mean;
+  return power / static_cast<double>(rays);
+}
+
 RoomLight mean_light(const Solution& solution) {
   const std::vector<GroupedMean> sides = Sides(solution).gather();
   std::vector<GroupedMean> by_material(solution.materials.size(), GroupedMean(solution.bands.count()));
-  const Spectrum watts_per_ray = power_per_ray(solution);
+  const Spectrum watts_per_ray = incident_power_per_ray(solution);
   RoomLight room;
   for (std::size_t s = 0; s < solution.surface_names.size(); ++s) {
     const MaterialId material = solution.surface_materials[s];

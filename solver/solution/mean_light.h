@@ -36,4 +36,8 @@ struct RoomLight {
 /// Pre: the zones of `solution` are those of its surfaces and materials, as load_solution checks.
 RoomLight mean_light(const Solution& solution);
 
+/// Power of this irradiance on all zones per ray that packets took, by band [W]; 0 without packets.
+Spectrum incident_power_per_ray(const Solution& solution,
+                                Solution::Irradiance irradiance = &Solution::irradiance);
+
 }  // namespace reemit

@@ -79,19 +79,22 @@ double ZoneSums::squared_error(double sum, double cross, double squares) const {
 
 void GatheredZones::keep(const ZoneSums& from, std::vector<ZoneId> of_zones) {
   const std::size_t channels = from.channels.count();
-  zones = std::move(of_zones);
-  sums.clear();
-  group_total.clear();
-  for (const ZoneId z : zones)
-    for (std::size_t i = z.index() * channels; i < (z.index() + 1) * channels; ++i)
-      for (const std::vector<double>* column : from.columns()) sums.push_back((*column)[i]);
+  const auto columns = from.columns();
   const std::size_t values = from.direct.size();
+  std::vector<double> kept;
+  kept.reserve(of_zones.size() * channels * columns.size());
+  for (const ZoneId z : of_zones)
+    for (std::size_t i = z.index() * channels; i < (z.index() + 1) * channels; ++i)
+      for (const std::vector<double>* column : columns) kept.push_back((*column)[i]);
+  std::vector<float> kept_total;
+  kept_total.reserve(ZoneSums::kGroups * of_zones.size() * channels);
   for (std::size_t g = 0; g < ZoneSums::kGroups; ++g)
-    for (const ZoneId z : zones) {
-      const auto row =
-          from.group_total.begin() + static_cast<std::ptrdiff_t>(g * values + z.index() * channels);
-      group_total.insert(group_total.end(), row, row + static_cast<std::ptrdiff_t>(channels));
-    }
+    for (const ZoneId z : of_zones)
+      for (std::size_t c = 0; c < channels; ++c)
+        kept_total.push_back(from.group_total[g * values + z.index() * channels + c]);
+  zones = std::move(of_zones);
+  sums = std::move(kept);
+  group_total = std::move(kept_total);
 }
 
 void GatheredZones::restore(ZoneSums& to) const {

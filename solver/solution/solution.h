@@ -87,7 +87,7 @@ struct GatheredZones {
   std::vector<float> group_total;  ///< [group][zone][channel]
   std::uint64_t rays = 0;          ///< Traced to gather, part of SolveRecord::rays.
 
-  /// Keeps what the sums of these zones are.
+  /// Keeps what the sums of these zones are. Where memory runs out, what was kept before stays.
   void keep(const ZoneSums& sums, std::vector<ZoneId> of_zones);
   /// Puts it back.
   void restore(ZoneSums& sums) const;

@@ -9,6 +9,7 @@
 #include "solver/solution/file_damage.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/gather_plan_group.h"
+#include "solver/solution/hdf5_columns.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/shape_rows.h"
 #include "solver/solution/solution_file.h"
@@ -102,11 +103,6 @@ BandSet read_bands(const Hdf5Group& root) {
 
 std::uint64_t rows_of(const Hdf5Group& group, const char* name) {
   return group.shape(name).at(0);
-}
-
-template <class T>
-bool all_finite(const std::vector<T>& values) {
-  return std::all_of(values.begin(), values.end(), [](T x) { return std::isfinite(x); });
 }
 
 void read_materials(const Hdf5Group& root, Solution& solution) {

@@ -10,6 +10,7 @@
 #include "solver/solution/audit_group.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/gather_plan_group.h"
+#include "solver/solution/hdf5_columns.h"
 #include "solver/solution/hdf5_group.h"
 #include "solver/solution/hdf5_memory_file.h"
 #include "solver/solution/shape_rows.h"
@@ -74,6 +75,7 @@ void check_consistent(const Solution& solution) {
   const ZoneSums& sums = solution.sums;
   const std::size_t channels = sums.channels.count();
   require(sums.channels.bands() == bands, "sums of another number of bands");
+  require(sums.channels.groups() == 1, "sums of several light groups, which the file does not tell apart");
   for (const std::vector<double>* values : sums.columns())
     require(values->size() == solution.mesh.zone_count() * channels, "one sum per zone and channel expected");
   require(sums.group_total.size() == ZoneSums::kGroups * solution.mesh.zone_count() * channels,
@@ -89,21 +91,6 @@ void check_consistent(const Solution& solution) {
   for (const BandAudit& audit : solution.audit.bands)
     require(audit.absorbed.size() == surfaces && audit.absorbed_on_backs.size() == surfaces,
             "one absorbed power per surface expected");
-}
-
-template <class T, class Range, class Function>
-std::vector<T> flattened(const Range& range, Function&& values_of) {
-  std::vector<T> flat;
-  for (const auto& item : range)
-    for (const auto& value : values_of(item)) flat.push_back(static_cast<T>(value));
-  return flat;
-}
-
-template <class T, class Range, class Function>
-std::vector<T> column(const Range& range, Function&& value_of) {
-  std::vector<T> values;
-  for (const auto& item : range) values.push_back(static_cast<T>(value_of(item)));
-  return values;
 }
 
 template <class T>

@@ -1,7 +1,6 @@
 #include "solver/solution/solver_settings.h"
 
 #include <cmath>
-#include <limits>
 
 #include "scenes/model/error.h"
 
@@ -14,8 +13,8 @@ void check(const SolverSettings& s) {
   };
   require(s.error_target >= 0 && s.error_target < 1, "error", "a share below 1, such as 2%.");
   require(s.time_limit_s >= 0 && std::isfinite(s.time_limit_s), "time limit", "seconds, 0 for none.");
-  require(s.batch_packets <= std::numeric_limits<std::uint32_t>::max(), "packets of a batch",
-          "less than 2^32, 0 for as many as suit the number of zones.");
+  require(s.batch_packets <= kMostBatchPackets, "packets of a batch",
+          "at most 2^31, 0 for as many as suit the number of zones.");
   require(s.smallest_batch_count >= 2 && s.smallest_batch_count <= 65536, "smallest number of batches",
           "2 to 65536.");
   require(s.stop_share > 0 && s.stop_share <= 0.1, "share at which walks take over",

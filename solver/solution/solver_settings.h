@@ -15,6 +15,9 @@ enum class Reemission { kFromHits, kFromZones };
 /// packets in any case, as walks do.
 enum class DirectSource { kBest, kPackets };
 
+/// Packets of one batch are counted in 32 bits.
+inline constexpr std::uint64_t kMostBatchPackets = std::uint64_t{1} << 31;
+
 /// Settings of the zone solution. A limit of 0 means that this rule does not stop the run; the
 /// matrix method has no stopping rules.
 struct SolverSettings {
@@ -28,7 +31,7 @@ struct SolverSettings {
   /// Packets of all batches together, into which the power of luminaires is dealt out equally. Where direct
   /// light is sampled several of them travel together at first (BatchTask::first_together).
   std::uint64_t packets = 0;
-  std::uint64_t batch_packets = 0;  ///< Packets of one batch, below 2^32; 0 = from the number of zones.
+  std::uint64_t batch_packets = 0;  ///< Of one batch, up to kMostBatchPackets; 0 = from the number of zones.
   int smallest_batch_count = 16;    ///< Batches before an error is believed [2, 65536].
   double stop_share = 1e-5;  ///< Shooting: walks take over when unshot/emitted falls below this (0, 0.1].
   /// Zones too small to meet enough packets get their light by gathering when the packets are done.

@@ -28,8 +28,10 @@ double sealed_light_share(const Solution& solution) {
     double all = 0;
     double sealed = 0;
     for (std::size_t z = 0; z < mesh.zone_count(); ++z) {
-      const std::size_t k = z * bands + b;
-      const double power = mesh.zone_area(ZoneId(z)) * solution.sums.total(k);
+      const Channels& channels = solution.sums.channels;
+      const double power = mesh.zone_area(ZoneId(z)) * channels.over_groups(b, [&](std::size_t c) {
+        return solution.sums.total(z * channels.count() + c);
+      });
       all += power;
       if (mesh.is_sealed(ZoneId(z))) sealed += power;
     }

@@ -44,7 +44,7 @@ inline std::size_t current_copy() {
   return static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
 }
 
-/// `share` in [0,1] of `quanta` >= 0, rounded to the nearest.
+/// `share` >= 0 of `quanta` >= 0, rounded to the nearest; above 1 where roulette makes up for its odds.
 inline std::int64_t share_of(std::int64_t quanta, double share) {
   return static_cast<std::int64_t>(static_cast<double>(quanta) * share + 0.5);
 }

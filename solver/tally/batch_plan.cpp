@@ -56,14 +56,13 @@ BatchPlan::BatchPlan(const SolverSettings& settings, std::size_t zones, std::uin
     }
   }
   if (unit_packets > 0 && unit_packets != unit) {
-    unit = unit_packets;
+    unit = std::min(unit_packets, kMostBatchPackets);
     if (settings.packets > 0)
       weight_of_packets_ = static_cast<std::int64_t>(std::max<std::uint64_t>(settings.packets / unit, 1));
   }
-  unit_packets_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(unit, 1, std::uint64_t{1} << 31));
-  const std::int64_t most =
-      (std::int64_t{1} << 31) / unit_packets_;  // packets of one batch are counted in 32 bits
-  largest_weight_ = std::clamp<std::int64_t>(largest_weight_, 1, std::max<std::int64_t>(1, most));
+  unit_packets_ = static_cast<std::uint32_t>(std::max<std::uint64_t>(unit, 1));
+  const auto most = static_cast<std::int64_t>(kMostBatchPackets / unit_packets_);
+  largest_weight_ = std::clamp<std::int64_t>(largest_weight_, 1, most);
 }
 
 std::int64_t BatchPlan::next_weight(std::int64_t batches, std::int64_t done) const {

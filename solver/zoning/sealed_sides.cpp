@@ -95,11 +95,17 @@ class Reach {
       if (is_at_infinity(emitter)) is_outside_lit_ = true;
       std::uint32_t met[16];
       for (std::uint32_t first = 0; first < rays_per_light; first += 16) {
-        Ray16 rays;
+        alignas(64) float u[4][16];
         for (std::uint32_t k = 0; k < 16; ++k) {
-          const std::array<float, 4> u = rng_.uniform4(first + k, kNothing, 0);
-          const LightRay start = start_light_ray(emitter, u[0], u[1], u[2], u[3]);
-          rays.set(static_cast<int>(k), start.origin, start.direction);
+          const std::array<float, 4> numbers = rng_.uniform4(first + k, kNothing, 0);
+          for (std::size_t d = 0; d < 4; ++d) u[d][k] = numbers[d];
+        }
+        std::array<LightRay, 16> starts;
+        start_light_rays(emitter, {u[0], u[1], u[2], u[3]}, starts);
+        Ray16 rays;
+        for (int k = 0; k < 16; ++k) {
+          const LightRay& start = starts[static_cast<std::size_t>(k)];
+          rays.set(k, start.origin, start.direction);
         }
         look(rays, 16, met);
         for (const std::uint32_t side : met) join(static_cast<std::uint32_t>(light_), side);

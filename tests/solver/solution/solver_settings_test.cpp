@@ -31,7 +31,7 @@ TEST(SolverSettings, OutOfRangeAreRefusedBeforeARunBegins) {
     EXPECT_THROW(starts([&](SolverSettings& s) { s.stop_share = share; }), InputError) << share;
   for (const int count : {1, 0, -5, 65537})
     EXPECT_THROW(starts([&](SolverSettings& s) { s.smallest_batch_count = count; }), InputError) << count;
-  EXPECT_THROW(starts([](SolverSettings& s) { s.batch_packets = std::uint64_t{1} << 32; }), InputError);
+  EXPECT_THROW(starts([](SolverSettings& s) { s.batch_packets = kMostBatchPackets + 1; }), InputError);
   EXPECT_THROW(starts([](SolverSettings& s) { s.threads = -3; }), InputError);
 }
 
