@@ -14,6 +14,7 @@
 #include "viewer_export/cli/loading.h"
 #include "viewer_export/cli/messages.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/thread_limit.h"
 
 namespace reemit::cli {
@@ -45,10 +46,13 @@ DirectAudit compare_direct_light(const AuditOptions& options, const Solution& so
 
 ExitCode run_audit(const AuditOptions& options) {
   const Solution solution = load_solution(options.solution, options.style);
+  const std::vector<std::string> warnings = state_warnings(solution, options.solution);
+  if (!options.style.quiet) print_warnings(warnings);
   std::optional<DirectAudit> direct;
   if (options.direct) direct = compare_direct_light(options, solution);
   if (options.style.json) {
     nlohmann::ordered_json document = audit_json(solution.audit, solution.surface_names);
+    document["warnings"] = warnings;
     if (direct) document["direct"] = direct_audit_json(*direct, solution);
     print_json(document);
   } else {

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/losses/open_room.h"
-#include "solver/run/schedule.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"
@@ -23,6 +23,7 @@
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/text_table.h"
 #include "viewer_export/cli/thread_limit.h"
 #include "viewer_export/formats/export_table.h"
@@ -57,20 +58,23 @@ std::string worst_text(const VertexData& data) {
   return fmt::format(" ({} on '{}')", percent_text(data.worst.error), worst_name(data));
 }
 
-void report(const ExportOptions& options, const VertexData& data, double seconds) {
+void report(const ExportOptions& options, const VertexData& data, const std::vector<std::string>& warnings,
+            bool interrupted, double seconds) {
   if (options.style.json) {
     auto files = nlohmann::ordered_json::array();
     for (const std::filesystem::path& output : options.outputs) files.push_back(output.string());
     nlohmann::ordered_json json{{"file", files.front()},
                                 {"files", files},
-                                {"values", options.vertex.average_zones ? "zones" : "gather"},
+                                {"values", data.gathered ? "gather" : "zones"},
                                 {"vertices", data.vertex_count()},
                                 {"triangles", data.triangles.size()},
                                 {"smoothed", data.smoothed},
                                 {"error", known_error(data.info)},
                                 {"worst_surface", worst_name(data)},
                                 {"worst_surface_error", data.worst.error},
-                                {"seconds", seconds}};
+                                {"seconds", seconds},
+                                {"interrupted", interrupted},
+                                {"warnings", warnings}};
     add_zones(json, data.info.zones);
     print_json(json);
     return;
@@ -180,6 +184,8 @@ ExitCode run_export(const ExportOptions& options) {
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   for (const std::filesystem::path& output : options.outputs) check_keeps_room(output, scene);
   note_what_colours_lack(options, scene);
+  const std::vector<std::string> warnings = state_warnings(solution, options.solution);
+  if (!options.style.quiet) print_warnings(warnings);
   VertexSettings settings = options.vertex;
   for (const std::string& name : options.surfaces)
     add_surfaces_named(name, solution.surface_names, settings.only);
@@ -219,7 +225,7 @@ ExitCode run_export(const ExportOptions& options) {
                    ? "interrupted; vertices not yet reached hold the mean of their zones"
                    : "interrupted; all vertices hold the mean of their zones, which had less noise");
   }
-  report(options, data, seconds_since(start));
+  report(options, data, warnings, interrupt.requested(), seconds_since(start));
   return ExitCode::kDone;
 }
 

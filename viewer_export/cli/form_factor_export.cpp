@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/model/error.h"
-#include "solver/run/schedule.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/solution/file_seal.h"
 #include "solver/solution/solution_file.h"
 #include "viewer_export/cli/interrupt.h"

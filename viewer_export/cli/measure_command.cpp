@@ -15,8 +15,8 @@
 #include "scenes/io/common/text_parse.h"
 #include "scenes/io/common/up_direction.h"
 #include "scenes/model/error.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/losses/open_room.h"
-#include "solver/run/schedule.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
 #include "viewer_export/cli/error_text.h"
@@ -26,6 +26,7 @@
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/text_table.h"
 #include "viewer_export/cli/thread_limit.h"
 #include "viewer_export/points/measured_light.h"
@@ -95,26 +96,23 @@ void check_output(const MeasureOptions& options) {
   for (const std::filesystem::path& file : options.points) check_output_file(*options.output, file);
 }
 
-/// Of all that is measured: points no light comes to, which may lie inside of something.
-std::string dark_points(const MeasuredLight& light) {
+std::string dark_points_text(const MeasuredLight& light) {
   std::size_t dark = 0;
   std::optional<Vec3> first;
-  std::size_t point = 0;
-  for (const PointSet& set : light.sets)
-    for (std::size_t i = 0; i < set.size(); ++i, ++point) {
-      if (light.illuminance[point].all > 0) continue;
-      ++dark;
-      if (!first) first = set.places[i];
-    }
+  for (std::size_t s = 0; s < light.sets.size(); ++s) {
+    const std::vector<std::size_t>& of_set = light.summaries[s].dark_points;
+    dark += of_set.size();
+    if (!first && !of_set.empty()) first = light.sets[s].places[of_set.front()];
+  }
   if (!first) return "";
   return fmt::format(
       "no light comes to {} of the points, the first at ({:.6g}, {:.6g}, {:.6g}) m: do they lie inside of "
-      "something, or face a wall that they lie on?",
+      "something, or face a wall that they lie on? Means and least values count them",
       dark, first->x(), first->y(), first->z());
 }
 
 void print_notes(const MeasuredLight& light, double error_target) {
-  if (const std::string dark = dark_points(light); !dark.empty()) print_note(dark);
+  if (const std::string dark = dark_points_text(light); !dark.empty()) print_note(dark);
   if (light.limited_by_zones) print_note(light.has_photons ? kPhotonsTooNoisy : kZonesTooNoisy);
   if (const std::string missed = missed_by_zones("the points", error_target, light.info.zones);
       !missed.empty())
@@ -134,7 +132,7 @@ std::string text_of(const MeasuredLight& light) {
   return table.text();
 }
 
-nlohmann::ordered_json json_of(const MeasuredLight& light) {
+nlohmann::ordered_json json_of(const MeasuredLight& light, const std::vector<std::string>& warnings) {
   auto sets = nlohmann::ordered_json::array();
   for (std::size_t s = 0; s < light.sets.size(); ++s) {
     const SetSummary& of_set = light.summaries[s];
@@ -145,9 +143,10 @@ nlohmann::ordered_json json_of(const MeasuredLight& light) {
                     {"least_illuminance", of_set.least},
                     {"most_illuminance", of_set.most},
                     {"uniformity", of_set.uniformity()},
+                    {"dark_points", of_set.dark_points},
                     {"error", of_set.error}});
   }
-  nlohmann::ordered_json json{{"sets", sets}, {"error", known_error(light.info)}};
+  nlohmann::ordered_json json{{"sets", sets}, {"error", known_error(light.info)}, {"warnings", warnings}};
   add_zones(json, light.info.zones);
   return json;
 }
@@ -160,6 +159,8 @@ ExitCode run_measure(const MeasureOptions& options) {
   const Solution solution = load_solution(options.solution, options.style);
   const Scene scene = load_room_of(solution, options.solution, options.room, options.style);
   if (options.output) check_keeps_room(*options.output, scene);
+  const std::vector<std::string> warnings = state_warnings(solution, options.solution);
+  if (!options.style.quiet) print_warnings(warnings);
   std::vector<PointSet> sets = point_sets(options, up_direction(scene));
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
@@ -175,7 +176,7 @@ ExitCode run_measure(const MeasureOptions& options) {
   if (!options.style.quiet) print_notes(light, options.settings.error_target);
   const double seconds = seconds_since(start);
   if (options.style.json) {
-    nlohmann::ordered_json json = json_of(light);
+    nlohmann::ordered_json json = json_of(light, warnings);
     if (options.output) json["file"] = options.output->string();
     json["seconds"] = seconds;
     print_json(json);

@@ -16,9 +16,9 @@
 #include "scenes/io/images/image_library.h"
 #include "scenes/model/error.h"
 #include "scenes/model/memory.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/losses/open_room.h"
 #include "solver/progressive_solver.h"
-#include "solver/run/schedule.h"
 #include "viewer_export/cli/camera_choice.h"
 #include "viewer_export/cli/command_options.h"
 #include "viewer_export/cli/commands.h"
@@ -29,6 +29,7 @@
 #include "viewer_export/cli/option_values.h"
 #include "viewer_export/cli/output_path.h"
 #include "viewer_export/cli/progress.h"
+#include "viewer_export/cli/solution_report.h"
 #include "viewer_export/cli/step_note.h"
 #include "viewer_export/cli/text_table.h"
 #include "viewer_export/cli/thread_limit.h"
@@ -131,8 +132,10 @@ class Renderer {
   bool interrupted() const { return interrupt_.requested(); }
 
   /// Prints the one document of --json.
-  void finish() const {
-    if (options_.style.json) print_json(nlohmann::ordered_json{{"pictures", pictures_}});
+  void finish(std::size_t wanted, const std::vector<std::string>& warnings) const {
+    if (options_.style.json)
+      print_json(nlohmann::ordered_json{
+          {"pictures", pictures_}, {"pictures_wanted", wanted}, {"warnings", warnings}});
   }
 
  private:
@@ -162,11 +165,17 @@ class Renderer {
   void report(const Job& job, const StillImage& image, const WrittenImage& written, double seconds) {
     const std::string integrator = to_string(options_.still.integrator);
     if (options_.style.json) {
-      nlohmann::ordered_json picture{{"file", job.file.string()},  {"camera", job.camera.name},
-                                     {"width_px", image.width},    {"height_px", image.height},
-                                     {"integrator", integrator},   {"samples_per_pixel", mean_samples(image)},
-                                     {"smoothed", image.smoothed}, {"error", known_error(image.info)},
-                                     {"seconds", seconds},         {"peak_memory_bytes", peak_memory()}};
+      nlohmann::ordered_json picture{{"file", job.file.string()},
+                                     {"camera", job.camera.name},
+                                     {"width_px", image.width},
+                                     {"height_px", image.height},
+                                     {"integrator", integrator},
+                                     {"samples_per_pixel", mean_samples(image)},
+                                     {"smoothed", image.smoothed},
+                                     {"error", known_error(image.info)},
+                                     {"seconds", seconds},
+                                     {"peak_memory_bytes", peak_memory()},
+                                     {"interrupted", image.interrupted}};
       add_zones(picture, image.info.zones);
       if (written.tone_mapped) picture["exposure_ev"] = written.tone_map.exposure_ev();
       pictures_.push_back(std::move(picture));
@@ -273,6 +282,10 @@ ExitCode run_render(RenderOptions options) {
   const auto [scene, solution] = load_source(options);
   Room room = build_room(scene, solution.mesh, options.style);
   if (is_open(solution.audit)) room.believe_misses();
+  const std::vector<std::string> warnings = options.still.integrator == Integrator::kPath
+                                                ? std::vector<std::string>()
+                                                : state_warnings(solution, options.files.front());
+  if (!options.style.quiet) print_warnings(warnings);
   const std::vector<Job> jobs = plan(options, choose_cameras(options.camera, room, into_folder));
   if (into_folder) make_output_directory(options.output);
   for (const Job& job : jobs) {
@@ -292,8 +305,8 @@ ExitCode run_render(RenderOptions options) {
                     "(zone values where it had none)",
                     done, jobs.size()));
   }
-  renderer.finish();
-  return ExitCode::kDone;
+  renderer.finish(jobs.size(), warnings);
+  return done < jobs.size() ? ExitCode::kInterrupted : ExitCode::kDone;
 }
 
 /// The formats by their names: {"exr", ".exr"}.

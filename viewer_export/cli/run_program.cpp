@@ -1,9 +1,11 @@
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -106,6 +108,14 @@ ExitCode run_program(int argc, const char* const* argv) {
     return fail(kMemoryAdvice, ExitCode::kNoResources);
   } catch (const std::length_error&) {
     return fail(kMemoryAdvice, ExitCode::kNoResources);
+  } catch (const std::filesystem::filesystem_error& problem) {
+    return fail(problem.what(), ExitCode::kBadInput);
+  } catch (const std::system_error& problem) {  // of threads, in the main
+    return fail(
+        fmt::format("the system gives no further threads or memory ({})\n  Raise its limits (ulimit -u, "
+                    "ulimit -v, those of the container), or use fewer --threads.",
+                    problem.what()),
+        ExitCode::kNoResources);
   } catch (
       const std::exception& problem) {  // InputError, OutputError, and what a library throws on bad input
     return fail(problem.what(), ExitCode::kBadInput);

@@ -29,29 +29,31 @@ Json unshot_shares(const EnergyAudit& audit) {
 
 Json record_json(const Solution& solution) {
   const SolveRecord& record = solution.record;
-  Json json{{"stopped", to_string(record.stopped)},
-            {"packets", record.packets},
-            {"rays", record.rays},
-            {"seconds", record.seconds},
-            {"error", record.error},
-            {"error_bound", record.error_bound},
-            {"error_95th_percentile", record.error_95th_percentile},
-            {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
-            {"zones", solution.mesh.zone_count()},
-            {"unreached_zones", record.unreached_zones},
-            {"gathered_zones", record.gathered_zones},
-            {"batches", solution.sums.batches},
-            {"seed", solution.settings.seed},
-            {"method", to_string(solution.settings.method)},
-            {"sampling", to_string(solution.settings.sampling)},
-            {"reemission", to_string(solution.settings.reemission)},
-            {"direct", to_string(solution.settings.direct)},
-            {"unshot_share", unshot_shares(solution.audit)},
-            {"balanced", solution.audit.balanced()},
-            {"bands", solution.bands.names()},
-            {"room", solution.room_path},
-            {"room_files", room_files(solution)},
-            {"room_hash", solution.room_hash}};
+  Json json{
+      {"stopped", to_string(record.stopped)},
+      {"packets", record.packets},
+      {"rays", record.rays},
+      {"seconds", record.seconds},
+      {"error", record.error},
+      {"error_bound", record.error_bound},
+      {"error_95th_percentile", record.error_95th_percentile},
+      {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
+      {"zones", solution.mesh.zone_count()},
+      {"unreached_zones", record.unreached_zones},
+      {"gathered_zones", record.gathered_zones},
+      {"batches", solution.sums.batches},
+      {"error_target", solution.settings.error_target > 0 ? Json(solution.settings.error_target) : Json()},
+      {"seed", solution.settings.seed},
+      {"method", to_string(solution.settings.method)},
+      {"sampling", to_string(solution.settings.sampling)},
+      {"reemission", to_string(solution.settings.reemission)},
+      {"direct", to_string(solution.settings.direct)},
+      {"unshot_share", unshot_shares(solution.audit)},
+      {"balanced", solution.audit.balanced()},
+      {"bands", solution.bands.names()},
+      {"room", solution.room_path},
+      {"room_files", room_files(solution)},
+      {"room_hash", solution.room_hash}};
   add_zones(json, record.gather_bias);
   return json;
 }
@@ -143,6 +145,17 @@ std::vector<std::string> solve_warnings(const Solution& solution) {
   return warnings;
 }
 
+std::vector<std::string> state_warnings(const Solution& solution, const std::filesystem::path& file) {
+  std::vector<std::string> warnings = solve_warnings(solution);
+  if (solution.record.stopped == StopReason::kUnderWay)
+    warnings.push_back(
+        fmt::format("{} is a checkpoint of a run that has not come to its end: its noise is still {}. reemit "
+                    "solve --resume {} "
+                    "goes on with it.",
+                    file.string(), percent_text(solution.record.error), file.string()));
+  return warnings;
+}
+
 std::string solve_line(const Solution& solution) {
   const SolveRecord& record = solution.record;
   const std::string effort = solution.form_factors ? fmt::format("{} zones", solution.mesh.zone_count())
@@ -159,8 +172,8 @@ std::string solve_line(const Solution& solution) {
 Json solve_json(const Scene& scene, const Solution& solution, const std::filesystem::path& file) {
   Json json = record_json(solution);
   json["warnings"] = scene.warnings;
-  for (const auto* more : {&solution.mesh_report.warnings, &solution.light_warnings})
-    for (const std::string& warning : *more) json["warnings"].push_back(warning);
+  for (const auto& more : {solution.mesh_report.warnings, solution.light_warnings, solve_warnings(solution)})
+    for (const std::string& warning : more) json["warnings"].push_back(warning);
   json["notes"] = scene.notes;
   json["solution"] = file.string();
   json["peak_memory_bytes"] = peak_memory();
@@ -216,7 +229,8 @@ Json solution_json(const Solution& solution, const std::filesystem::path& file,
   add_shared_zones(json, solution.mesh, sealed_light_share(solution));
   json["ready_for_views"] = is_ready_for_views(solution);
   json["warnings"] = solution.mesh_report.warnings;
-  for (const std::string& warning : solution.light_warnings) json["warnings"].push_back(warning);
+  for (const auto& more : {solution.light_warnings, solve_warnings(solution)})
+    for (const std::string& warning : more) json["warnings"].push_back(warning);
   return json;
 }
 

@@ -18,6 +18,9 @@ nlohmann::ordered_json form_factor_json(const FormFactorReport& report);
 /// error that is not known because there was one batch only.
 std::vector<std::string> solve_warnings(const Solution& solution);
 
+/// The same for those who use the solution later, and that it is but a checkpoint.
+std::vector<std::string> state_warnings(const Solution& solution, const std::filesystem::path& file);
+
 /// Where the rows of form factors do not add up.
 std::vector<std::string> form_factor_warnings(const FormFactorReport& report);
 

@@ -162,7 +162,7 @@ bool has_ended(const SolveRecord& record) {
 }
 
 /// Whether a run that goes on would have nothing to do.
-bool is_done(const SolveOptions& options, Start& start) {
+bool is_done(const SolveOptions& options, const Start& start) {
   if (!has_ended(start.solution.record)) return false;
   return !has_stopping_rule(options.solver) || rule_that_holds(start.scene, start.solution);
 }
@@ -246,7 +246,12 @@ Solution solve_with_progress(Start& start, const SolveOptions& options, std::opt
     watch.checkpoint_s = options.checkpoint_s;
     watch.checkpoint = [&](const Solution& solution) {
       progress.begin_step(0, "saving a checkpoint");
-      write_output([&] { save_solution(solution, options.output, Packing(&signal_arrived())); });
+      try {
+        write_output([&] { save_solution(solution, options.output, Packing(&signal_arrived())); });
+      } catch (const OutputError& problem) {
+        print_warnings({fmt::format("{}\n  The run goes on; the next checkpoint is tried in {:g} s.",
+                                    problem.what(), options.checkpoint_s)});
+      }
     };
   }
   const StepNote note(fmt::format("solving {} zones", start.solution.mesh.zone_count()), options.style);
@@ -256,9 +261,11 @@ Solution solve_with_progress(Start& start, const SolveOptions& options, std::opt
   return solved;
 }
 
-/// Ends a run that had nothing to add to the solution it was to go on from.
-ExitCode leave_as_it_was(const Scene& scene, const Solution& solution, const SolveOptions& options) {
+/// Ends a run that had nothing to add to the solution it was to go on from; `stopped`: why.
+ExitCode leave_as_it_was(const Scene& scene, Solution solution, const SolveOptions& options,
+                         StopReason stopped) {
   if (options.output != options.resume) save(solution, options);
+  solution.record.stopped = stopped;
   report(scene, solution, options);
   return ExitCode::kDone;
 }
@@ -268,7 +275,8 @@ ExitCode run_solve(const SolveOptions& options) {
   Start start = begin_run(options);
   if (!options.resume.empty() && is_done(options, start)) {
     note_done(start.solution, options);
-    return leave_as_it_was(start.scene, start.solution, options);
+    const StopReason stopped = start.solution.record.stopped;
+    return leave_as_it_was(start.scene, std::move(start.solution), options, stopped);
   }
   std::optional<RunLog> log;
   if (!options.log.empty())
@@ -287,14 +295,17 @@ ExitCode run_solve(const SolveOptions& options) {
     throw Interrupted("interrupted in the first batch");
   if (!options.resume.empty() && has_ended(before) && !before.cut_off &&
       solution.record.packets == before.packets) {
+    if (solution.record.stopped == StopReason::kInterrupted)
+      throw Interrupted("interrupted before a further batch was done");
     // What follows the last batch was taken out to go on, and there was no time to do it again.
+    const StopReason stopped = solution.record.stopped;
     solution = load_solution(options.resume, options.style);
     if (!options.room.empty()) keep_room_paths(options.room, solution);
     if (!options.style.quiet)
       print_note(
           "there was no time for another batch of packets; the solution stays as it was (give it more "
           "--time)");
-    return leave_as_it_was(start.scene, solution, options);
+    return leave_as_it_was(start.scene, std::move(solution), options, stopped);
   }
   save(solution, options);
   report(start.scene, solution, options);

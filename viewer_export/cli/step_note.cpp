@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "scenes/model/memory.h"
-#include "solver/run/schedule.h"
+#include "scenes/model/stopwatch.h"
 #include "viewer_export/cli/messages.h"
 
 namespace reemit::cli {

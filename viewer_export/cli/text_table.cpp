@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -80,10 +79,6 @@ std::string percent_text(double share) {
 std::string rough_percent_text(double share) {
   const double percent = 100 * share;
   return percent >= 99.5 ? fmt::format("{:.0f} %", percent) : fmt::format("{:.2g} %", percent);
-}
-
-double known_error(const ExportInfo& info) {
-  return info.error > 0 ? info.error : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace reemit::cli

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "scenes/model/bands.h"
-#include "viewer_export/output/export_info.h"
 
 namespace reemit::cli {
 
@@ -41,8 +40,5 @@ void add_band_cells(std::vector<std::string>& cells, const Spectrum& value);
 std::string percent_text(double share);
 /// With two digits: of an estimate from few points.
 std::string rough_percent_text(double share);
-
-/// The achieved error of exported values; infinite where it is not known, which JSON shows as null.
-double known_error(const ExportInfo& info);
 
 }  // namespace reemit::cli

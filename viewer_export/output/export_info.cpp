@@ -1,6 +1,8 @@
 #include "viewer_export/output/export_info.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -31,6 +33,12 @@ void state_origin(const Scene& scene, const Solution& solution, ExportInfo& info
   info.room = scene.source.empty() ? scene.name : scene.source;
   info.room_hash = solution.room_hash;
   info.seed = solution.settings.seed;
+  info.stopped = to_string(solution.record.stopped);
+  info.error_is_known = std::isfinite(solution.record.error);
+}
+
+double known_error(const ExportInfo& info) {
+  return info.error_is_known && info.error > 0 ? info.error : std::numeric_limits<double>::infinity();
 }
 
 std::string one_line(std::string text) {
@@ -41,6 +49,7 @@ std::string one_line(std::string text) {
 }
 
 std::vector<std::pair<std::string, InfoValue>> describe_values(const ExportInfo& info, const BandSet& bands) {
+  const double error = known_error(info);
   std::vector<std::pair<std::string, InfoValue>> lines{
       {"program", "reemit " + info.program_version},
       {"room", info.room},
@@ -49,8 +58,9 @@ std::vector<std::pair<std::string, InfoValue>> describe_values(const ExportInfo&
       {"bands", fmt::format("{}", fmt::join(bands.names(), " "))},
       {"luminance", bands.efficacy_statement()},
       {"seed", info.seed},
-      {"relative error by noise", info.error > 0 ? InfoValue(info.error) : InfoValue("not known")},
+      {"relative error by noise", std::isfinite(error) ? InfoValue(error) : InfoValue("not known")},
       {"relative error by zones", zones_value(info.zones)}};
+  if (!info.stopped.empty()) lines.emplace_back("solve stopped", info.stopped);
   lines.insert(lines.end(), info.settings.begin(), info.settings.end());
   for (auto& [name, value] : lines) {
     name = one_line(std::move(name));

@@ -21,7 +21,11 @@ struct ExportInfo {
   std::string room;        ///< Name or path of the room file.
   std::string room_hash;   ///< content_hash of the room.
   std::uint64_t seed = 0;  ///< Of the zone solution.
+  std::string stopped;     ///< Why the solve ended, in words; empty where no zone was read.
   double error = 0;        ///< Relative standard error of the exported values, as a fraction; 0 = not known.
+  /// False where the solution has one batch alone, whose error nobody knows: what the spread of gathers says
+  /// is not all of it then.
+  bool error_is_known = true;
   /// What the zones add to that; nothing if it is not known.
   std::optional<ZoneBias> zones = std::nullopt;
   /// Further settings worth keeping, in the order they are written: {"gather rays", 256}.
@@ -30,6 +34,9 @@ struct ExportInfo {
 
 /// Says of which solution and room something is.
 void state_origin(const Scene& scene, const Solution& solution, ExportInfo& info);
+
+/// ExportInfo::error; +infinity if it is not known, which JSON shows as null.
+double known_error(const ExportInfo& info);
 
 /// The text with control characters replaced by spaces: a line break would end a comment of a file header
 /// early.

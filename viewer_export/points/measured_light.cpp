@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <string>
@@ -247,7 +248,10 @@ SetSummary Measurer::summary(std::size_t first, std::size_t last,
       std::minmax_element(illuminance.begin() + static_cast<std::ptrdiff_t>(first),
                           illuminance.begin() + static_cast<std::ptrdiff_t>(last),
                           [](const Irradiance& a, const Irradiance& b) { return a.all < b.all; });
-  return {mean_of_set, std::sqrt(squared_error), least->all, most->all, error_of(first, last)};
+  SetSummary summary{mean_of_set, std::sqrt(squared_error), least->all, most->all, error_of(first, last), {}};
+  for (std::size_t i = first; i < last; ++i)
+    if (!(illuminance[i].all > 0)) summary.dark_points.push_back(i - first);
+  return summary;
 }
 
 MeasuredLight Measurer::result(std::vector<PointSet> sets) const {
@@ -310,6 +314,9 @@ MeasuredLight measure_light(const Room& room, const Solution& solution, std::vec
     light = measurer.result(std::move(sets));
   });
   describe(room.scene(), solution, settings, light);
+  if (!light.info.error_is_known)
+    for (SetSummary& of_set : light.summaries)
+      of_set.standard_error = of_set.error = std::numeric_limits<double>::infinity();
   return light;
 }
 

@@ -32,9 +32,11 @@ struct Irradiance {
 /// Of the points of one set [lx].
 struct SetSummary {
   double mean = 0;
-  double standard_error = 0;  ///< Of the mean; knows what errors of points have in common.
+  double standard_error =
+      0;  ///< Of the mean, +infinity if not known; knows what errors of points have in common.
   double least = 0, most = 0;
   double error = 0;  ///< Relative, rms over its points: sqrt(sum s^2 / sum E^2), worst band.
+  std::vector<std::size_t> dark_points;  ///< That no light comes to, by their places in the set.
   double uniformity() const { return mean > 0 ? least / mean : 0; }  ///< Least over mean.
 };
 

@@ -10,11 +10,12 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "scenes/model/stop_token.h"
-#include "solver/run/schedule.h"
+#include "scenes/model/stopwatch.h"
 #include "solver/solution/thread_count.h"
 #include "viewer_export/output/refinement.h"
 #include "viewer_export/still/smoothed_refinement.h"
@@ -250,11 +251,21 @@ class Rendering {
 };
 
 ExportInfo describe_still(const Scene& scene, const Solution& solution, const StillSettings& settings,
-                          const StillImage& image, double error) {
+                          const Camera& camera, const StillImage& image, double error) {
   ExportInfo info;
   state_origin(scene, solution, info);
+  if (settings.integrator == Integrator::kPath) {
+    info.stopped.clear();
+    info.error_is_known = true;
+  }
   info.error = std::isfinite(error) ? error : 0;
-  info.settings = {{"integrator", to_string(settings.integrator)},
+  const auto point = [](const Vec3& p) { return fmt::format("{:.9g} {:.9g} {:.9g}", p.x(), p.y(), p.z()); };
+  info.settings = {{"camera", camera.name},
+                   {"eye [m]", point(camera.eye)},
+                   {"look at [m]", point(camera.look_at)},
+                   {"up", point(camera.up)},
+                   {"vertical field of view [deg]", camera.vertical_fov_deg},
+                   {"integrator", to_string(settings.integrator)},
                    {"pixel filter", to_string(settings.filter)},
                    {"still seed", settings.seed}};
   if (settings.integrator != Integrator::kZones)
@@ -289,7 +300,7 @@ StillImage render_still(const StillLight& light, const Camera& camera, const Sti
     std::optional<ZoneBias> zones;
     if (!interrupt) zones = renderer.zone_bias(film);
     image = smoothed ? *std::move(smoothed) : film.finish();
-    image.info = describe_still(room.scene(), light.solution(), settings, image,
+    image.info = describe_still(room.scene(), light.solution(), settings, camera, image,
                                 image.smoothed ? image.info.error : rendering.error());
     image.info.zones = zones;
     if (rendering.has_zone_values())

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/run_program.h"
 #include "tests/support/small_rooms.h"
@@ -87,6 +88,55 @@ TEST(Interrupt, PartOfAFirstBatchReplacesNoSolution) {
   EXPECT_EQ(run.exit_code, 130);
   EXPECT_THAT(run.err, HasSubstr("interrupted in the first batch; nothing was written"));
   EXPECT_TRUE(read_bytes(output) == previous);
+}
+
+std::string solve_for_no_time(const TempFolder& folder) {
+  const std::string solution = (folder / "room.h5").string();
+  const ProgramRun run =
+      run_reemit({"solve", (folder / "room.json").string(), "-o", solution, "--time", "0.000001s", "--json"});
+  EXPECT_EQ(run.exit_code, 0);
+  const auto document = nlohmann::json::parse(run.out);
+  EXPECT_THAT(document["warnings"].dump(), HasSubstr("still on its way"));
+  EXPECT_THAT(document["warnings"].dump(), HasSubstr("after one batch"));
+  return solution;
+}
+
+TEST(Interrupt, WhatIsMadeOfAPartOfABatchSaysSo) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const std::string solution = solve_for_no_time(folder);
+  const std::string out = (folder / "out").string();
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"measure", solution, "--grid", "0.2,0.2,0.2", "0.5,0,0", "0,0,0.5", "2x2"},
+        {"export", solution, "-o", out + ".csv", "--samples", "16"},
+        {"render", solution, "-o", out + ".png", "--size", "16x12", "--spp", "1"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.push_back("--json");
+    const ProgramRun run = run_reemit(arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto document = nlohmann::json::parse(run.out);
+    EXPECT_THAT(document["warnings"].dump(), HasSubstr("after one batch")) << run.out;
+    EXPECT_THAT(run.err, HasSubstr("after one batch"));
+    const auto& result = document.contains("pictures") ? document["pictures"][0] : document;
+    EXPECT_TRUE(result["error"].is_null()) << run.out;
+  }
+}
+
+/// Of two pictures in a folder one is not made.
+TEST(Interrupt, PicturesThatAreMissingAreNotDone) {
+  const TempFolder folder;
+  folder.write("room.json", small_json_room());
+  const std::string solution = solve_small_room(folder, "room.h5").string();
+  RunningProgram program({"render", solution, "--camera", "all", "--size", "512x512", "--error", "0.01%",
+                          "-o", (folder / "pictures/").string(), "--format", "png", "--json", "--verbose"});
+  for (int i = 0; i < 2000 && program.errors_so_far().find("rendering") == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  program.send(SIGTERM);
+  const ProgramRun run = program.wait();
+  const auto document = nlohmann::json::parse(run.out);
+  const bool all = document["pictures"].size() == document["pictures_wanted"];
+  EXPECT_EQ(run.exit_code, all ? 0 : 130);
+  EXPECT_TRUE(document["pictures"][0]["interrupted"].get<bool>());
 }
 
 TEST(Interrupt, KilledRunKeepsThePreviousSolution) {

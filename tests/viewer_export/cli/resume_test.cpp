@@ -134,6 +134,7 @@ TEST(ResumedProgram, WithoutTimeForABatchTheSolutionStaysAsItWas) {
   const ProgramRun run = run_reemit({"solve", "--resume", solution.string(), "--time", "0.000001s"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("stays as it was"));
+  EXPECT_THAT(run.out, HasSubstr("stopped: time limit reached")) << "this run, not the one before";
   EXPECT_TRUE(read_bytes(solution) == before);
   const fs::path other = folder / "other.h5";
   EXPECT_EQ(run_reemit({"solve", "--resume", solution.string(), "--time", "0.000001s", "-o", other.string()})
