@@ -5,8 +5,8 @@ Usage: random_rooms.py PROGRAM [--seed N] [--count N] [--packets N] [--keep FOLD
 
 A room is a box or an L with three to nine things (boxes, cylinders, cones, balls, sheets, rods, disks, shelves, tubes; matt,
 mirrors, gloss, metal, opal, panes and balls of glass), up to three more that are half there, have only a front or two
-different sides, one to four luminaires of any shape, at times a measured one, and at times a window or a hole with a sky behind
-it. The same number gives the same room on any machine. Of every room
+different sides, one to four luminaires of any shape, at times a measured one or a lamp in an opal globe or shade, and at times a
+window or a hole with a sky behind it. The same number gives the same room on any machine. Of every room
 
 - the direct light that packets brought must be what shadow rays find (reemit audit --direct);
 - the books must balance, and nothing may come to backs but to those of things that have only a front;
@@ -14,11 +14,13 @@ it. The same number gives the same room on any machine. Of every room
   all rooms together within 4 standard errors or 1 %;
 - the light on every side of every surface, but for the inside of glass, must be what random walks (solve --method walk) bring,
   within 7 standard errors or 2 %: with 15 degrees of freedom at most four of a million differ by more; of all rooms together within
-  4 standard errors or 0.5 %.
+  4 standard errors or 0.5 %;
+- with --stills, the indirect light of a gathered still must be that of a path-traced one, in each of its 4 x 3 parts within 7
+  standard errors or 8 % of the light in the brightest, the whole within 5 or 3 %; of all rooms together within 4 standard errors or 1 %.
 
---planted 0.02 makes what was gathered and what walks brought 2 % more, which must be noticed both times.
+--planted 0.02 makes what was gathered and what walks brought 2 % more, which must be noticed each time.
 Exit code 0: all of this held; 1: it did not, and the rooms are named. With --keep the rooms stay, for
-bench_hit_paths FOLDER/*.json. Needs h5py and numpy.
+bench_hit_paths FOLDER/*.json. Needs h5py and numpy, --stills also OpenImageIO.
 """
 import argparse
 import json
@@ -31,7 +33,7 @@ import tempfile
 import h5py
 import numpy
 
-EVEN_WITHOUT_NOISE = 0.005  # what small zones of one room may be off by
+EVEN_WITHOUT_NOISE = 0.005  # what small zones or the still of one room may be off by
 GLASS_BODY = "glass ball"  # how bodies of glass begin
 ODD_SHEET = "odd sheet"  # how things begin that may have a back that only absorbs
 MEASURED_LUMINAIRE = pathlib.Path(__file__).resolve().parent.parent / "docs/examples/downlight.ies"
@@ -68,6 +70,7 @@ class Maker:
         if self.draw.random() < 0.3:
             self.add_measured_luminaire()
         text = {"format": "reemit-room", "version": 1, "bands": "rgb", "materials": self.materials, "objects": self.objects}
+        self.add_opal_lamp(random.Random(f"opal lamp of {len(self.objects)} things, {self.size}"))
         if self.draw.random() < 0.4:
             sky = self.open_window()
             if sky:
@@ -172,6 +175,21 @@ class Maker:
         x, up, z = self.size
         self.lights.append({"type": "ies", "name": "measured", "file": str(MEASURED_LUMINAIRE), "mount": "ceiling",
                             "position": [self.between(0.2, 0.8) * x, up, self.between(0.2, 0.8) * z]})
+
+    def add_opal_lamp(self, draw):
+        """A bulb in a globe or a shade, which are bright on both sides."""
+        if draw.random() < 0.6:
+            return
+        share = draw.uniform(0.3, 0.45)
+        self.materials["shade"] = {"reflectance": share, "diffuse_transmittance": share}
+        self.materials["bulb"] = {"reflectance": 0.5, "radiance": 100 * 30 ** draw.random()}
+        x, y, z = (draw.uniform(0.3, 0.7) * length for length in self.size)
+        radius = draw.uniform(0.08, 0.2)
+        self.add("bulb", "bulb", sphere={"center": [x, y, z], "radius": 0.25 * radius})
+        if draw.random() < 0.5:
+            self.add("globe", "shade", sphere={"center": [x, y, z], "radius": radius})
+        else:
+            self.add("shade", "shade", cylinder={"base": [x, y - radius, z], "top": [x, y + radius, z], "radius": radius, "caps": "none"})
 
     def open_window(self):
         """Puts a window into one wall of a box and returns the sky behind it; None if the room is no box."""
@@ -280,10 +298,57 @@ def compare_with_walks(shot, walked, planted):
     return faults, (difference / flux, squares ** 0.5 / flux) if flux > 0 else None
 
 
+def indirect_light(picture):
+    """Of the 4 x 3 parts of a still: mean of the indirect light of all bands and its standard error [W/(m2 sr)]."""
+    import OpenImageIO
+    image = OpenImageIO.ImageBuf(str(picture))
+    names = list(image.spec().channelnames)
+    values = image.get_pixels(OpenImageIO.FLOAT)
+    rows, columns = values.shape[:2]
+    parts = []
+    for layer in ("indirect.", "stderr."):
+        of_bands = values[:, :, [names.index(layer + band) for band in "RGB"]].sum(axis=2)
+        if layer == "stderr.":
+            of_bands = of_bands ** 2
+        parts.append(of_bands.reshape(3, rows // 3, 4, columns // 4).mean(axis=(1, 3)))
+    return parts[0], (parts[1] / (rows // 3 * (columns // 4))) ** 0.5
+
+
+def hides_light_from_paths(room):
+    """Whether lights without area or the sun are seen over mirrors or glass, which path tracing does not find."""
+    bends = {"mirror", "satin", "metal", "solid"} & {thing["material"] for thing in room["objects"]}
+    return bool(bends) and ("lights" in room or "sun" in room.get("sky", {}))
+
+
+def compare_stills(program, folder, solution, planted):
+    """Which parts of a gathered still differ from the path-traced one, and the deviation of the whole with its error."""
+    stills = []
+    for integrator, samples in (("gather", "128"), ("path", "512")):
+        picture = f"{solution}.{integrator}.exr"
+        run_json(program, folder, "render", solution, "--integrator", integrator, "--spp", samples, "--smooth", "off", "--size", "64x48",
+                 "-o", picture)
+        stills.append(indirect_light(folder / picture))
+        (folder / picture).unlink()
+    (gathered, gathered_error), (traced, traced_error) = stills
+    gathered = gathered * (1 + planted)
+    error = numpy.hypot(gathered_error, traced_error)
+    far = abs(gathered - traced) > numpy.maximum(7 * error, 0.08 * traced.max())
+    faults = [f"still, part {tuple(part)}: {gathered[tuple(part)]:.4g} gathered, {traced[tuple(part)]:.4g} +- {error[tuple(part)]:.2g} traced"
+              for part in numpy.argwhere(far)]
+    whole = traced.sum()
+    if not whole > 0:
+        return faults, None
+    deviation, error = gathered.sum() / whole - 1, (error ** 2).sum() ** 0.5 / whole
+    if abs(deviation) > max(5 * error, 0.03):
+        faults.append(f"still: {100 * deviation:+.1f} +- {100 * error:.1f} % by gathering")
+    return faults, (deviation, error)
+
+
 def examine(program, number, folder, options):
-    """What is wrong with the solution of one room, and the deviations of its small zones and of walks with their errors, or None."""
+    """What is wrong with the solution of one room, and the deviations of its small zones, of walks and of a still with their errors, or None."""
     room = f"random_{number}.json"
-    (folder / room).write_text(json.dumps(Maker(number).room(), indent=1))
+    made = Maker(number).room()
+    (folder / room).write_text(json.dumps(made, indent=1))
     solution, walks = f"random_{number}.h5", f"random_{number}_walks.h5"
     packets = ("--packets", str(options.packets))
     faults = []
@@ -293,9 +358,12 @@ def examine(program, number, folder, options):
         audit = run_json(program, folder, "audit", solution, "--direct", good_codes=(0, 1))
         walked, deviation_of_walks = compare_with_walks(light_on_surfaces(program, folder, solution),
                                                         light_on_surfaces(program, folder, walks), options.planted)
+        of_still, deviation_of_still = ([], None)
+        if options.stills and not hides_light_from_paths(made):
+            of_still, deviation_of_still = compare_stills(program, folder, solution, options.planted)
     except RuntimeError as fault:
-        return [str(fault)], None, None
-    faults += walked
+        return [str(fault)], None, None, None
+    faults += walked + of_still
     if not audit["balanced"]:
         faults.append("the books do not balance")
     if any(sum(surface["absorbed_on_backs_W"]) > 0 and not surface["name"].startswith(ODD_SHEET) for surface in audit["surfaces"]):
@@ -311,13 +379,13 @@ def examine(program, number, folder, options):
         (folder / solution).unlink()
         (folder / walks).unlink()
     if small is None or not small[0] > 0:
-        return faults, None, deviation_of_walks
+        return faults, None, deviation_of_walks, deviation_of_still
     packets, packets_error, gathered, gathered_error = small
     deviation = gathered * (1 + options.planted) / packets - 1
     error = numpy.hypot(packets_error, gathered_error) / packets
     if abs(deviation) > max(5 * error, 0.03):
         faults.append(f"small zones: {100 * deviation:+.1f} +- {100 * error:.1f} % by gathering")
-    return faults, (deviation, error), deviation_of_walks
+    return faults, (deviation, error), deviation_of_walks, deviation_of_still
 
 
 def mean_of_rooms(deviations, without_noise):
@@ -338,24 +406,27 @@ def main():
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--packets", type=int, default=2_000_000)
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the rooms and their solutions")
-    parser.add_argument("--planted", type=float, default=0, help="share by which small zones and walks are made brighter")
+    parser.add_argument("--stills", action="store_true", help="compare a gathered and a path-traced still of each as well")
+    parser.add_argument("--planted", type=float, default=0, help="share by which what is compared is made brighter")
     options = parser.parse_args()
     program = str(pathlib.Path(options.program).resolve())
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
         bad = 0
-        of_small_zones, of_walks = [], []
+        of_small_zones, of_walks, of_stills = [], [], []
         for number in range(options.seed, options.seed + options.count):
-            faults, small, walks = examine(program, number, folder, options)
+            faults, small, walks, still = examine(program, number, folder, options)
             of_small_zones += [small] if small else []
             of_walks += [walks] if walks else []
+            of_stills += [still] if still else []
             bad += bool(faults)
-            print(f"room {number}: small zones {in_words(small)}, walks {in_words(walks)}" + "".join(f"\n  {fault}" for fault in faults),
+            print(f"room {number}: small zones {in_words(small)}, walks {in_words(walks)}, still {in_words(still)}" + "".join(f"\n  {fault}" for fault in faults),
                   flush=True)
     # What reads zones differs a little from what packets do; walks and packets do not differ.
     for what, deviations, without_noise, allowed in (("small zones", of_small_zones, EVEN_WITHOUT_NOISE, 0.01),
-                                                     ("walks", of_walks, 0, 0.005)):
+                                                     ("walks", of_walks, 0, 0.005),
+                                                     ("stills", of_stills, EVEN_WITHOUT_NOISE, 0.01)):
         if not deviations:
             continue
         mean, error = mean_of_rooms(deviations, without_noise)

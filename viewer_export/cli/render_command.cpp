@@ -149,8 +149,8 @@ class Renderer {
     if (image.limited_by_zones)
       print_note(fmt::format(
           "{}: {}", job.camera.name,
-          image.smoothed ? "more samples hardly lessen what smoothing leaves; solve to a lower --error, or "
-                           "give render an --error, which samples until it holds"
+          image.smoothed ? "more samples hardly lessen what smoothing leaves; give render an --error, which "
+                           "samples until it holds"
           : options_.still.integrator == Integrator::kPath ? kPathsTooNoisy
                                                            : kZonesTooNoisy));
     // The rest is for those who named a target.

@@ -193,6 +193,7 @@ std::vector<GlassBody> settle_material(Scene& scene, MaterialId material) {
   MaterialId pane;
   std::size_t open = 0;
   std::string first;
+  bool any_round = false;
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     Surface& surface = scene.surfaces[s];
     if (surface.material != material) continue;
@@ -200,7 +201,7 @@ std::vector<GlassBody> settle_material(Scene& scene, MaterialId material) {
       if (std::holds_alternative<Sphere>(surface.shapes[k]))
         bodies.push_back(ball(surface, s, k));
       else
-        is_open[s] = true;
+        any_round = is_open[s] = true;
     if (!is_open[s]) continue;
     if (!pane.valid()) pane = pane_of(scene, material);
     surface.material = pane;
@@ -209,9 +210,11 @@ std::vector<GlassBody> settle_material(Scene& scene, MaterialId material) {
   if (open > 0)
     scene.warnings.push_back(
         fmt::format("material '{}' is solid glass, but {} surface(s) of it enclose no body, the first '{}': "
-                    "they are taken "
-                    "as thin panes, which light crosses straight on.",
-                    scene.materials[material.index()].name, open, first));
+                    "they are taken as thin panes, which light crosses straight on.{}",
+                    scene.materials[material.index()].name, open, first,
+                    any_round ? " Of exact round shapes only spheres are bodies: give cylinders and cones "
+                                "\"segments\"."
+                              : ""));
   // What shares a surface with a pane has become one.
   std::erase_if(bodies, [&](const GlassBody& body) {
     return std::any_of(body.members.begin(), body.members.end(),

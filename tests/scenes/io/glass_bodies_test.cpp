@@ -111,6 +111,11 @@ TEST(GlassBodies, OpenOnesBecomePanesWithAWarning) {
     }
   EXPECT_EQ(solid, 1U);
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("enclose no body, the first 'sheet'")));
+  EXPECT_THAT(scene.warnings, Not(Contains(HasSubstr("segments"))));
+  const Scene round = read_whole(with_material(
+      kGlass,
+      R"({"name": "tumbler", "material": "m", "cylinder": {"base": [0, 0, 0], "top": [0, 1, 0], "radius": 1}})"));
+  EXPECT_THAT(round.warnings, Contains(HasSubstr("give cylinders and cones \"segments\"")));
 }
 
 TEST(GlassBodies, FrontsAreTurnedOutwards) {
