@@ -20,6 +20,9 @@ namespace {
 constexpr std::uint32_t kCausticPacketsPerTask = 1U << 14;
 /// Packets between mirrors end there: what is left of them lights nothing that could be seen.
 constexpr std::uint32_t kMostSteps = 1024;
+/// Inside of glass sooner: a ten thousandth of what comes in goes round in a ball so often, and of the light
+/// of a luminaire that stands in one what is reflected totally for ever.
+constexpr std::uint32_t kMostStepsInGlass = 128;
 constexpr std::uint32_t kAll16 = 0xffff;
 
 /// Of packets first .. first+15 of those that there are, by bit. Pre: first is a multiple of 16.
@@ -248,6 +251,7 @@ void CausticShooter::follow(const Packet& packet, std::vector<float>& power, con
     if (bent && takes_light(surfaces, hit))
       keep(result.on_surfaces, from + hit.distance * along, x.normal, hit.triangle);
     if (!is_mirror(surfaces, hit.triangle, hit.front)) return;
+    if (n >= kMostStepsInGlass && !hit.front && surfaces.specular(hit.triangle).is_body()) return;
     const std::array<float, 4> u = choice.uniform4(packet.id, packet.batch, n + 1);
     if (!surfaces.specular(hit.triangle).choose(x, u[0], {u[1], u[2]}, Survival::kRoulette, step)) return;
     if (step.is_wide) return;

@@ -98,7 +98,8 @@ void SpecularPackets::carry_on(const PacketBlock& block, const Hit16& hits, int 
   const std::int64_t* power = &block.power[static_cast<std::size_t>(lane) * values];
   const std::size_t surface = mesh_.triangle(t).surface.index();
   bool jumps = false;
-  const bool ends = block.way[lane].steps + 1 == kMostSteps;
+  const bool is_in_glass = specular.is_body() && !hits.front[lane];
+  const bool ends = block.way[lane].steps + 1 >= (is_in_glass ? kMostStepsInGlass : kMostSteps);
   channels_.for_each([&](std::size_t c, std::size_t band) {
     power_[c] =
         share_of(power[c], static_cast<double>(way_.share()[band]) / static_cast<double>(way_.chance));

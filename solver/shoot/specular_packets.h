@@ -29,7 +29,8 @@ class SpecularPackets {
   /// Takes from a packet's power, per channel, what a body of glass absorbed on the way to what it met.
   void attenuate(const SpecularWay& way, const Hit16& hits, int lane, std::int64_t* power) const;
   /// Sends the packet of a lane on from what it met, into `next`, if it met such a surface and is chosen.
-  /// `step` tells the flights of a batch apart. It ends after kMostSteps as unshot.
+  /// `step` tells the flights of a batch apart. It ends after kMostSteps as unshot, inside of glass after
+  /// kMostStepsInGlass.
   void carry_on(const PacketBlock& block, const Hit16& hits, int lane, std::uint32_t step,
                 WaitingPackets& next);
   /// The same by a given number, uniform in [0,most): the ways on have the chance `most` in all at most.
@@ -48,6 +49,9 @@ class SpecularPackets {
 
   /// Mirrors that face each other may send a packet to and fro for ever.
   static constexpr std::uint32_t kMostSteps = 1U << 17;
+  /// Where a luminaire stands in a ball of clear glass, much of its light is reflected totally for ever,
+  /// always at the same angle. What gets out at all does so sooner.
+  static constexpr std::uint32_t kMostStepsInGlass = 1U << 10;
 
   const RayTracer& rays_;
   const SurfaceModel& surfaces_;

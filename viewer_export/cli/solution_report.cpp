@@ -133,7 +133,8 @@ std::vector<std::string> solve_warnings(const Solution& solution) {
     warnings.push_back(fmt::format(
         "{} of the emitted power was still on its way when the run stopped ({}): radiosities are too low by "
         "about that. "
-        "Give it more time; light in sealed parts of high reflectance needs 1/(1 - reflectance) bounces.",
+        "Give it more time; light in sealed parts of high reflectance needs 1/(1 - reflectance) bounces, and "
+        "some of the light of a luminaire inside a body of clear glass never gets out.",
         percent_text(solution.audit.worst_unshot_share()), to_string(solution.record.stopped)));
   if (solution.form_factors)
     for (std::string& warning : form_factor_warnings(*solution.form_factors))

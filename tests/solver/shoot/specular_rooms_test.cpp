@@ -211,6 +211,33 @@ TEST(SpecularRooms, GreyGlassTakesWhatBeerSays) {
   }
 }
 
+TEST(SpecularRooms, WhatABallOfGlassKeepsOfALampInsideIsUnshot) {
+  // A ray that starts a from the middle at the angle t to the radius meets the ball at the sine a sin t / r,
+  // every time again, and never gets out where n times that is above 1: the share sqrt(1 - (r / (n a))^2).
+  constexpr double kRadius = 0.2, kFromMiddle = 0.16, kIndex = 1.5;
+  RoomBuilder room;
+  const MaterialId black = room.material("black", 0);
+  room.box(Vec3::Zero(), {1, 1, 1}, {black, black, black, black, black, black}, 2);
+  Material glass;
+  glass.reflectance = one_band(0);
+  glass.emitted_radiance = one_band(0);
+  glass.two_sided = true;
+  glass.non_diffuse.angle_law = AngleLaw::kDielectric;
+  glass.non_diffuse.index_of_refraction = kIndex;
+  glass.non_diffuse.specular_transmittance = one_band(1);
+  glass.non_diffuse.is_solid = true;
+  room.scene().materials.push_back(glass);
+  const Vec3 middle(0.5, 0.5, 0.5);
+  room.shape(MaterialId(room.scene().materials.size() - 1), Sphere{middle, kRadius}, 8);
+  room.scene().lights = {PointLight{"bulb", middle + kFromMiddle * Vec3::UnitX(), room.flat(1)}};
+  const double kept = std::sqrt(1 - std::pow(kRadius / (kIndex * kFromMiddle), 2));
+  for (const SolveMethod method : kMethods) {
+    const Solution s = solved(room, method, 4'000);
+    EXPECT_NEAR(s.audit.worst_unshot_share(), kept, 0.03);
+    EXPECT_TRUE(s.audit.balanced());
+  }
+}
+
 TEST(SpecularRooms, LightOverMirrorsIsCausticThroughPanesDirectThroughOpalSheetsIndirect) {
   struct Parts {
     double direct = 0, caustic = 0, indirect = 0;
