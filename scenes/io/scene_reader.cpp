@@ -39,12 +39,13 @@ const Reader& reader_for(const std::filesystem::path& file) {
     if (extension == reader.extension) return reader;
   std::string known;
   for (const Reader& reader : kReaders) known += fmt::format(" {}", reader.extension);
-  throw InputError(
-      file.string(),
-      extension.empty() ? "the file name has no extension, so its format is not known"
-                        : fmt::format("'{}' is not a known room format", extension),
-      "Known extensions:" + known +
-          (extension == ".ply" ? "; a PLY mesh is an object of a JSON room, by its \"file\"" : ""));
+  if (extension == ".ply") known += "; a PLY mesh is an object of a JSON room, by its \"file\"";
+  if (extension == ".ies" || extension == ".ldt")
+    known += "; a measured luminaire is a light of a JSON room, by its \"file\" (\"type\": \"ies\")";
+  throw InputError(file.string(),
+                   extension.empty() ? "the file name has no extension, so its format is not known"
+                                     : fmt::format("'{}' is not a known room format", extension),
+                   "Known extensions:" + known);
 }
 
 /// Whether `other` may be one room with `first`.

@@ -44,32 +44,37 @@ BatchesAhead::BatchesAhead(const PacketRoom& transport, const PacketSources& emi
 
 BatchesAhead::~BatchesAhead() {
   needless_ = true;
-  for (Flight& flight : flights_) flight.done.wait();
+  for (OnItsWay& next : on_their_way_) next.done.wait();
 }
 
 std::int64_t BatchesAhead::weight() const {
   std::int64_t sum = 0;
-  for (const Flight& flight : flights_) sum += flight.batch->weight;
+  for (const OnItsWay& next : on_their_way_) sum += next.batch->weight;
   return sum;
 }
 
 void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64_t weight,
                          const StopToken& stop, DirectInstead direct) {
-  Flight flight;
+  OnItsWay next;
   if (spare_.empty()) {
-    flight.batch = std::make_unique<Batch>(Batch{transport_.new_books()});
+    next.batch = std::make_unique<Batch>(Batch{transport_.new_books()});
   } else {
-    flight.batch = std::move(spare_.back());
+    next.batch = std::move(spare_.back());
     spare_.pop_back();
   }
-  flight.batch->weight = weight;
-  flight.done = std::async(std::launch::async, [this, number, packets, batch = flight.batch.get(),
-                                                token = stop.or_when(needless_), direct = std::move(direct)] {
+  next.batch->weight = weight;
+  next.done = std::async(std::launch::async, [this, number, packets, batch = next.batch.get(),
+                                              token = stop.or_when(needless_), direct = std::move(direct)] {
     using BatchClock = StopToken::Clock;
     const BatchClock::time_point begin = BatchClock::now();
     batch->books.clear();
-    BatchTask task{transport_, emission_, settings_, number, packets, &token};
-    task.first_together = direct.first_together;
+    const BatchTask task{.transport = transport_,
+                         .emission = emission_,
+                         .settings = settings_,
+                         .batch = number,
+                         .packets = packets,
+                         .stop = &token,
+                         .first_together = direct.first_together};
     tbb::task_arena arena(threads_per_batch_);
     arena.execute([&] {
       batch->whole = settings_.method == SolveMethod::kShooting ? shoot_batch(task, batch->books)
@@ -78,14 +83,14 @@ void BatchesAhead::start(std::uint32_t number, std::uint32_t packets, std::int64
     });
     batch->seconds = std::chrono::duration<double>(BatchClock::now() - begin).count();
   });
-  flights_.push_back(std::move(flight));
+  on_their_way_.push_back(std::move(next));
 }
 
 std::unique_ptr<BatchesAhead::Batch> BatchesAhead::take() {
-  Flight flight = std::move(flights_.front());
-  flights_.pop_front();
-  flight.done.get();
-  return std::move(flight.batch);
+  OnItsWay next = std::move(on_their_way_.front());
+  on_their_way_.pop_front();
+  next.done.get();
+  return std::move(next.batch);
 }
 
 }  // namespace reemit

@@ -31,9 +31,9 @@ class BatchesAhead {
   BatchesAhead(const BatchesAhead&) = delete;
   BatchesAhead& operator=(const BatchesAhead&) = delete;
 
-  bool empty() const { return flights_.empty(); }
-  bool full() const { return flights_.size() == most_; }
-  std::int64_t batches() const { return static_cast<std::int64_t>(flights_.size()); }
+  bool empty() const { return on_their_way_.empty(); }
+  bool full() const { return on_their_way_.size() == most_; }
+  std::int64_t batches() const { return static_cast<std::int64_t>(on_their_way_.size()); }
   std::int64_t weight() const;  ///< Of all batches on their way (BatchPlan).
 
   /// Starts a batch. `direct` may be empty; it is not asked for batches that are cut off. Pre: not full().
@@ -52,7 +52,7 @@ class BatchesAhead {
   void give_back(std::unique_ptr<Batch> batch) { spare_.push_back(std::move(batch)); }
 
  private:
-  struct Flight {
+  struct OnItsWay {
     std::unique_ptr<Batch> batch;
     std::future<void> done;
   };
@@ -63,7 +63,7 @@ class BatchesAhead {
   std::size_t most_ = 1;
   int threads_per_batch_ = 1;
   std::atomic<bool> needless_{false};
-  std::deque<Flight> flights_;
+  std::deque<OnItsWay> on_their_way_;
   std::vector<std::unique_ptr<Batch>> spare_;
 };
 

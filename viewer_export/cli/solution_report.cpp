@@ -29,31 +29,31 @@ Json unshot_shares(const EnergyAudit& audit) {
 
 Json record_json(const Solution& solution) {
   const SolveRecord& record = solution.record;
-  Json json{
-      {"stopped", to_string(record.stopped)},
-      {"packets", record.packets},
-      {"rays", record.rays},
-      {"seconds", record.seconds},
-      {"error", record.error},
-      {"error_bound", record.error_bound},
-      {"error_95th_percentile", record.error_95th_percentile},
-      {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
-      {"zones", solution.mesh.zone_count()},
-      {"unreached_zones", record.unreached_zones},
-      {"gathered_zones", record.gathered_zones},
-      {"batches", solution.sums.batches},
-      {"error_target", solution.settings.error_target > 0 ? Json(solution.settings.error_target) : Json()},
-      {"seed", solution.settings.seed},
-      {"method", to_string(solution.settings.method)},
-      {"sampling", to_string(solution.settings.sampling)},
-      {"reemission", to_string(solution.settings.reemission)},
-      {"direct", to_string(solution.settings.direct)},
-      {"unshot_share", unshot_shares(solution.audit)},
-      {"balanced", solution.audit.balanced()},
-      {"bands", solution.bands.names()},
-      {"room", solution.room_path},
-      {"room_files", room_files(solution)},
-      {"room_hash", solution.room_hash}};
+  const double target = solution.settings.error_target;
+  Json json{{"stopped", to_string(record.stopped)},
+            {"packets", record.packets},
+            {"rays", record.rays},
+            {"seconds", record.seconds},
+            {"error", record.error},
+            {"error_bound", record.error_bound},
+            {"error_95th_percentile", record.error_95th_percentile},
+            {"discretisation", record.discretisation ? Json(*record.discretisation) : Json(nullptr)},
+            {"zones", solution.mesh.zone_count()},
+            {"unreached_zones", record.unreached_zones},
+            {"gathered_zones", record.gathered_zones},
+            {"batches", solution.sums.batches},
+            {"error_target", target > 0 ? Json(target) : Json()},
+            {"seed", solution.settings.seed},
+            {"method", to_string(solution.settings.method)},
+            {"sampling", to_string(solution.settings.sampling)},
+            {"reemission", to_string(solution.settings.reemission)},
+            {"direct", to_string(solution.settings.direct)},
+            {"unshot_share", unshot_shares(solution.audit)},
+            {"balanced", solution.audit.balanced()},
+            {"bands", solution.bands.names()},
+            {"room", solution.room_path},
+            {"room_files", room_files(solution)},
+            {"room_hash", solution.room_hash}};
   add_zones(json, record.gather_bias);
   return json;
 }
@@ -150,10 +150,9 @@ std::vector<std::string> state_warnings(const Solution& solution, const std::fil
   std::vector<std::string> warnings = solve_warnings(solution);
   if (solution.record.stopped == StopReason::kUnderWay)
     warnings.push_back(
-        fmt::format("{} is a checkpoint of a run that has not come to its end: its noise is still {}. reemit "
-                    "solve --resume {} "
-                    "goes on with it.",
-                    file.string(), percent_text(solution.record.error), file.string()));
+        fmt::format("{0} is a checkpoint of a run that has not come to its end: its noise is still {1}. "
+                    "'reemit solve --resume {0}' goes on with it.",
+                    file.string(), percent_text(solution.record.error)));
   return warnings;
 }
 

@@ -89,6 +89,7 @@ TEST(SceneReader, RefusesWhatIsNoRoomFile) {
   EXPECT_THAT(refusal(folder.write("room.xyz", "x")),
               AllOf(HasSubstr("'.xyz'"), HasSubstr(".json .obj .gltf .glb .mgf")));
   EXPECT_THAT(refusal(folder.write("room", "x")), HasSubstr("no extension"));
+  EXPECT_THAT(refusal(folder.write("lamp.ies", "x")), HasSubstr("a light of a JSON room"));
   EXPECT_THAT(refusal("/dev/null"), HasSubstr("regular file"));
   EXPECT_THAT(refusal(folder.write("bare.mgf", "# nothing\n")), HasSubstr("no faces"));
 }
