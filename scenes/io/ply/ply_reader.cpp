@@ -180,17 +180,19 @@ bool is_vertex_list(const PlyProperty& property) {
   return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-/// The vertices that element number `i` names; `restarts`: numbers below 0 are let through.
-std::vector<std::int64_t> read_indices(const PlyProperty& property, std::uint64_t vertices, std::uint64_t i,
-                                       bool restarts, PlyBody& body) {
-  std::vector<std::int64_t> indices(body.next_list_length(property));
-  for (std::int64_t& index : indices) {
+/// Of a strip: another one begins.
+constexpr std::uint32_t kRestart = 0xffffffff;
+
+/// The vertices that element number `i` names; `restarts`: numbers below 0 are kRestart, else refused.
+void read_indices(const PlyProperty& property, std::uint64_t vertices, std::uint64_t i, bool restarts,
+                  PlyBody& body, std::vector<std::uint32_t>& indices) {
+  indices.resize(body.next_list_length(property));
+  for (std::uint32_t& index : indices) {
     const double value = body.next(property.type);
     if (!(value < double(vertices)) || value != std::floor(value) || (value < 0 && !restarts))
       body.fail(fmt::format("face {} names vertex {}, but there are {} vertices", i, value, vertices));
-    index = static_cast<std::int64_t>(value);
+    index = value < 0 ? kRestart : static_cast<std::uint32_t>(value);
   }
-  return indices;
 }
 
 void read_faces(const PlyElement& element, std::uint64_t vertices, PlyBody& body, PlyMesh& mesh) {
@@ -200,8 +202,7 @@ void read_faces(const PlyElement& element, std::uint64_t vertices, PlyBody& body
     Face face;
     for (const PlyProperty& property : element.properties) {
       if (is_vertex_list(property)) {
-        const std::vector<std::int64_t> indices = read_indices(property, vertices, i, false, body);
-        face.outer.assign(indices.begin(), indices.end());
+        read_indices(property, vertices, i, false, body, face.outer);
       } else {
         body.skip(property);
       }
@@ -226,18 +227,19 @@ void read_faces(const PlyElement& element, std::uint64_t vertices, PlyBody& body
 /// Every three vertices in a row are a triangle, the second and each other after it wound the other way;
 /// numbers below 0 begin a new strip.
 void read_strips(const PlyElement& element, std::uint64_t vertices, PlyBody& body, PlyMesh& mesh) {
+  std::vector<std::uint32_t> strip;
   for (std::uint64_t i = 0; i < element.count; ++i)
     for (const PlyProperty& property : element.properties) {
       if (!is_vertex_list(property)) {
         body.skip(property);
         continue;
       }
-      const std::vector<std::int64_t> strip = read_indices(property, vertices, i, true, body);
+      read_indices(property, vertices, i, true, body, strip);
       std::size_t begin = 0;
       for (std::size_t k = 0; k < strip.size(); ++k) {
-        if (strip[k] < 0) begin = k + 1;
-        if (strip[k] < 0 || k < begin + 2) continue;
-        const auto at = [&](std::size_t back) { return static_cast<std::uint32_t>(strip[k - back]); };
+        if (strip[k] == kRestart) begin = k + 1;
+        if (k < begin + 2) continue;
+        const auto at = [&](std::size_t back) { return strip[k - back]; };
         if (at(0) == at(1) || at(1) == at(2) || at(0) == at(2)) continue;  // turns the strip
         const bool is_turned = (k - begin) % 2 == 1;
         Face face;

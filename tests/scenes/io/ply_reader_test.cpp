@@ -103,6 +103,14 @@ TEST(PlyReader, ReadsTriangleStrips) {
   }
 }
 
+TEST(PlyReader, AnyNumberBelowZeroBeginsAStrip) {
+  const Surface surface = read_ply_text(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int double vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+      "7 0 1 -1e300 -inf 0 1 2\n");
+  EXPECT_EQ(surface.faces.size(), 1U);
+}
+
 TEST(PlyReader, RefusesDamage) {
   const auto refused = [](const std::string& text, std::initializer_list<const char*> parts) {
     expect_input_error([&] { read_ply_text(text); }, parts);
