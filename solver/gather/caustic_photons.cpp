@@ -8,8 +8,9 @@ namespace reemit {
 bool CausticPhotons::is_on_face(std::uint32_t i, const Place& place, float radius) const {
   if (in_air) return triangles[i] == place.triangle;
   constexpr float kFlat = 0.15F;
-  return normals[i].dot(place.normal) > kSameFace &&
-         std::fabs((places[i] - place.at).dot(place.normal)) < kFlat * radius;
+  const Vec3f way = places[i] - place.at;
+  return normals[i].dot(place.normal) > kSameFace && std::fabs(way.dot(place.normal)) < kFlat * radius &&
+         is_level(place.normal, normals[i], way);
 }
 
 void CausticPhotons::append(const CausticPhotons& more) {

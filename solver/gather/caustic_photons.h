@@ -1,7 +1,10 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "mesh/zones/side.h"
 #include "scenes/model/vec.h"
@@ -10,6 +13,15 @@ namespace reemit {
 
 /// Least cosine between normals of points of one face, or of faces that go on about as each other do.
 inline constexpr float kSameFace = 0.8F;
+
+/// True if places of these unit normals, `way` apart, may lie on one face: neither stands higher over the
+/// other's plane than a face that bends from the one normal to the other could bring it. What lies over a
+/// face at a hair's breadth, as the housing of a lamp under a cupboard, is not of that face.
+inline bool is_level(const Vec3f& normal, const Vec3f& other_normal, const Vec3f& way) {
+  constexpr float kRounding = 3e-6F;  // of places, normalised
+  const float most = way.norm() * normal.cross(other_normal).norm() + kRounding;
+  return std::fabs(way.dot(normal)) < most && std::fabs(way.dot(other_normal)) < most;
+}
 
 /// Packets of luminaires that came to Lambertian surfaces, or crossed sheets in the air, over mirrors, glass
 /// or narrow gloss.

@@ -1,16 +1,23 @@
 #include "solver/gather/direct_light.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
+
+#include "solver/sampling/warp.h"
 
 namespace reemit {
 namespace {
 
 /// Shadow rays end after so many panes.
 constexpr int kMostPanes = 256;
+/// Of so many luminaires each gets a ray of its own from a point in the air. A ray that chooses one knows
+/// nothing of what hides them: a dim lamp beside bright ones behind a wall would be asked too seldom.
+constexpr std::size_t kMostAskedOneByOne = 64;
 
 /// pdf / (pdf + way^2 / area), without a division by 0.
 float share_of_lobe(float area, float way, float pdf_per_sr) {
@@ -54,12 +61,22 @@ DirectLight::Arrival DirectLight::estimate(const Vec3f& origin, const Vec3f& nor
   float inverse_probability = 0;
   std::size_t entry = 0;
   if (!choice.pick(u_choice, entry, inverse_probability)) return {};
+  return arrival(origin, normal, is_above, entry, {u_choice, u[1], u[2]}, inverse_probability);
+}
+
+template <class IsAbove>
+DirectLight::Arrival DirectLight::arrival(const Vec3f& origin, const Vec3f& normal, const IsAbove& is_above,
+                                          std::size_t entry, const std::array<float, kDimensions>& u,
+                                          float inverse_probability) const {
   LuminaireSample sample;
-  if (!table_.sample(entry, origin, normal, u_choice, u[1], sample)) return {};
+  if (!table_.sample(entry, origin, normal, u[0], u[1], sample)) return {};
   const Vec3f towards = sample.towards(origin);
   if (!is_above(towards)) return {};
   Arrival light{table_.strength(entry), sample.factor * inverse_probability, entry, towards, {}, {}};
-  if (!passes(origin, sample, light.panes)) return {};
+  // From one place to a lamp without area all rays are alike, and only the numbers tell them apart.
+  std::uint32_t chance = 0;
+  for (const float number : u) chance = 0x9e3779b9U * chance + std::bit_cast<std::uint32_t>(number);
+  if (!passes(origin, sample, chance, light.panes)) return {};
   if (sky_ != nullptr && table_.is_sky(entry) && sky_->is_coloured()) {
     std::vector<float> colour;
     sky_->colour(towards, colour);
@@ -74,11 +91,12 @@ DirectLight::Arrival DirectLight::estimate(const Vec3f& origin, const Vec3f& nor
   return light;
 }
 
-bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample,
+bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample, std::uint32_t chance,
                          std::vector<float>& panes) const {
   // Where light may cross panes, whether anything is met would be followed by what it is.
   if (!surfaces_->any_transmits())
-    return sample.at_infinity ? rays_->escapes(origin, sample.target) : rays_->visible(origin, sample.target);
+    return sample.at_infinity ? rays_->escapes(origin, sample.target, chance)
+                              : rays_->visible(origin, sample.target, chance);
   std::optional<SpecularStep> step;  // of the first pane on
   Vec3f from = origin;
   for (int crossed = 0; crossed < kMostPanes; ++crossed) {
@@ -87,8 +105,8 @@ bool DirectLight::passes(const Vec3f& origin, const LuminaireSample& sample,
     if (!(distance > 0)) return true;
     const Vec3f direction = sample.at_infinity ? way : Vec3f(way / distance);
     Hit hit;
-    if (!(sample.at_infinity ? rays_->closest(from, direction, hit)
-                             : rays_->first_on_way(from, direction, distance, hit)))
+    if (!(sample.at_infinity ? rays_->closest(from, direction, hit, chance)
+                             : rays_->first_on_way(from, direction, distance, hit, chance)))
       return true;
     if (!surfaces_->is_specular(hit.triangle, hit.front) || !surfaces_->specular(hit.triangle).is_pane())
       return false;
@@ -115,9 +133,22 @@ void DirectLight::add_sample(const SurfacePoint& x, const std::array<float, kDim
 void DirectLight::add_sample(const MeasuringPoint& x, const std::array<float, kDimensions>& u,
                              const float* weight, float* sum) const {
   if (empty()) return;
-  const LuminaireChoice choice(table_, selection_, x.place, x.normal, u[2]);
   const auto is_above = [&](const Vec3f& towards) { return towards.dot(x.normal) > 0; };
-  add(estimate(x.place, x.normal, is_above, choice, u), weight, sum);
+  if (table_.size() > kMostAskedOneByOne) {
+    const LuminaireChoice choice(table_, selection_, x.place, x.normal, u[2]);
+    add(estimate(x.place, x.normal, is_above, choice, u), weight, sum);
+    return;
+  }
+  for (std::size_t entry = 0; entry < table_.size(); ++entry) {
+    // Numbers of their own for each, still evenly spread: moved by multiples of the golden ratio.
+    std::array<float, kDimensions> own = u;
+    const auto turn = static_cast<float>(entry) * (std::numbers::phi_v<float> - 1);
+    for (float& number : own) {
+      number += turn;
+      number = std::min(number - std::floor(number), kLargestBelowOne);
+    }
+    add(arrival(x.place, x.normal, is_above, entry, own, 1), weight, sum);
+  }
 }
 
 void DirectLight::weigh(const SurfacePoint& x, float* weights) const {

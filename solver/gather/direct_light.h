@@ -50,7 +50,7 @@ class DirectLight {
   void add_sample(const SurfacePoint& x, const std::array<float, kDimensions>& u, const float* weight,
                   float* sum) const;
 
-  /// The same at a point in the air.
+  /// The same at a point in the air, of few luminaires by a ray to each.
   void add_sample(const MeasuringPoint& x, const std::array<float, kDimensions>& u, const float* weight,
                   float* sum) const;
 
@@ -124,8 +124,10 @@ class DirectLight {
   void add_lobe_of(const SurfacePoint& x, SpecularWayOn way, const SurfacePoint& lit,
                    const std::array<float, kDimensions>& u, const CausticShare& counted, const float* weight,
                    float* sum) const;
-  /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival.
-  bool passes(const Vec3f& origin, const LuminaireSample& sample, std::vector<float>& panes) const;
+  /// Whether light comes straight from the luminaire to the origin of a shadow ray; `panes` as of Arrival,
+  /// `chance` as of RayTracer::visible.
+  bool passes(const Vec3f& origin, const LuminaireSample& sample, std::uint32_t chance,
+              std::vector<float>& panes) const;
   /// The share of the light of an entry that comes from `towards` which shadow rays count at a lobe with this
   /// density.
   float left_by_lobe(const Arrival& light, const SpecularStep& step, const CausticShare& counted) const;
@@ -136,6 +138,10 @@ class DirectLight {
   template <class IsAbove>
   Arrival estimate(const Vec3f& origin, const Vec3f& normal, const IsAbove& is_above,
                    const LuminaireChoice& choice, const std::array<float, kDimensions>& u) const;
+  /// What comes of one luminaire; `inverse_probability` of its having been chosen.
+  template <class IsAbove>
+  Arrival arrival(const Vec3f& origin, const Vec3f& normal, const IsAbove& is_above, std::size_t entry,
+                  const std::array<float, kDimensions>& u, float inverse_probability) const;
   /// Calls back with the number and the estimate of each of `count` samples at one point.
   template <class Numbers, class CallBack>
   void estimate_all(const SurfacePoint& x, int count, const Numbers& numbers,

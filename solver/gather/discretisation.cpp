@@ -21,6 +21,15 @@ constexpr std::size_t kProbesPerTask = 64;
 /// An estimate that may as well be this many times larger says nothing, unless all it can be is small.
 constexpr double kMostUncertain = 2;
 constexpr double kSmallEnough = 0.03;
+/// Added to the number of a half: random numbers of what is gathered on the other side of a sheet.
+constexpr int kOfOtherSide = 4;
+
+/// What of the light on its other side comes through diffusely, by band; null: nothing does.
+const float* diffuse_transmittance(const Room& room, const SurfacePoint& x) {
+  if (!room.surfaces().is_specular(x.triangle, x.front)) return nullptr;
+  const SpecularSurface& surface = room.surfaces().specular(x.triangle);
+  return surface.diffuses() ? surface.diffuse_transmittance().data() : nullptr;
+}
 
 }  // namespace
 
@@ -46,19 +55,27 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
     if (stop.requested()) return;
     const std::size_t first = c * kProbesPerTask;
     const std::size_t last = std::min(first + kProbesPerTask, probes.size());
-    std::vector<float> found((last - first) * kFieldHalves * 2 * bands, 0.0F);
+    // By probe, half and side: direct, indirect, by band.
+    std::vector<float> found((last - first) * kFieldHalves * 4 * bands, 0.0F);
+    std::vector<const float*> through(last - first, nullptr);
     GatherBatch batch(gather, kEffort.gathers);
     float* next = found.data();
     for (std::size_t i = first; i < last; ++i) {
       const std::array<float, 4> u = rng.uniform4(i, kOfProbes, 0);
       const SurfacePoint x = point_in_zone(room, probes[i].zone, {u[0], u[1]});
-      for (std::size_t half = 0; half < kFieldHalves; ++half, next += 2 * bands) {
-        const PointSampler sampler(seed, RngPurpose::kDiscretisation, i, static_cast<int>(half),
+      through[i - first] = diffuse_transmittance(room, x);
+      const auto gather_at = [&](const SurfacePoint& at, int replicate, std::uint32_t part, float* light) {
+        const PointSampler sampler(seed, RngPurpose::kDiscretisation, i, replicate,
                                    std::countr_zero(static_cast<unsigned>(kEffort.points)));
-        const auto part = static_cast<std::uint32_t>(half);
         add_replicate(
-            direct, sampler, kEffort, {i, part, 0, part}, [&](const auto&) { return x; }, batch, next,
-            next + bands);
+            direct, sampler, kEffort, {i, static_cast<std::uint32_t>(replicate), 0, part},
+            [&](const auto&) { return at; }, batch, light, light + bands);
+      };
+      for (int half = 0; half < static_cast<int>(kFieldHalves); ++half, next += 4 * bands) {
+        const auto part = static_cast<std::uint32_t>(half);
+        gather_at(x, half, part, next);
+        if (through[i - first] != nullptr)
+          gather_at(other_side(room.rays(), x), half + kOfOtherSide, part, next + 2 * bands);
       }
     }
     batch.flush();
@@ -68,10 +85,14 @@ std::optional<double> discretisation_error(const Room& room, const Solution& sol
         double difference = probes[i].area;
         double value = probes[i].area;
         for (std::size_t half = 0; half < kFieldHalves; ++half) {
-          const float* light = &found[((i - first) * kFieldHalves + half) * 2 * bands];
-          const double rho = static_cast<double>(reflectance[b]);
-          const double at_point = rho * (static_cast<double>(light[b]) / std::numbers::pi +
-                                         static_cast<double>(light[bands + b]));
+          const float* light = &found[((i - first) * kFieldHalves + half) * 4 * bands];
+          const auto radiance = [&](const float* of_side) {
+            return static_cast<double>(of_side[b]) / std::numbers::pi +
+                   static_cast<double>(of_side[bands + b]);
+          };
+          double at_point = static_cast<double>(reflectance[b]) * radiance(light);
+          if (const float* share = through[i - first]; share != nullptr)
+            at_point += static_cast<double>(share[b]) * radiance(light + 2 * bands);
           const double of_zone = static_cast<double>(field.reflected(probes[i].zone, half)[b]);
           difference *= at_point - of_zone;
           value *= of_zone;

@@ -105,6 +105,12 @@ FaceEnds::Kernel FaceEnds::kernel(const Vec3f& normal, const Vec3f& place, float
   const float phi = 2 * std::numbers::pi_v<float> * turn;
   const Eigen::Rotation2Df rotation(phi);
   Eigen::Vector<float, KernelPatch::kPlaces> on_face;
+  const auto goes_on = [&](const Ray16& down, const Hit16& below, int lane) {
+    const Vec3f there = side_normal(*rays_, TriangleId(below.triangle[lane]), below.u[lane], below.v[lane],
+                                    below.front[lane]);
+    const Vec3f met = down.origin(lane) - below.distance[lane] * normal;
+    return there.dot(normal) > kSameFace && is_level(normal, there, met - place);
+  };
   // Finds out about 16 places, from the first on by steps; true if all lie on the face.
   const auto look = [&](int first, int step) {
     Ray16 along;
@@ -124,10 +130,7 @@ FaceEnds::Kernel FaceEnds::kernel(const Vec3f& normal, const Vec3f& place, float
     if (beside_wall) rays_->closest16(along, 16, between);
     bool all = true;
     for (int lane = 0; lane < 16; ++lane) {
-      const bool met =
-          below.distance[lane] < 2.5F * lift && side_normal(*rays_, TriangleId(below.triangle[lane]),
-                                                            below.u[lane], below.v[lane], below.front[lane])
-                                                        .dot(normal) > kSameFace;
+      const bool met = below.distance[lane] < 2.5F * lift && goes_on(down, below, lane);
       const bool hidden = beside_wall && between.distance[lane] < way[static_cast<std::size_t>(lane)];
       on_face[first + lane * step] = met && !hidden ? 1 : 0;
       all = all && met && !hidden;

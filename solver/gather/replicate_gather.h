@@ -26,6 +26,7 @@ struct ReplicateEffort {
   int points = 1;   ///< Places, each with one shadow ray.
   int gathers = 1;  ///< Gather rays from each of them.
   int first = 0;    ///< Places that this replicate had before; best a multiple of points, a power of two.
+  bool with_shadow_rays = true;  ///< Else nothing is added to what is direct.
 
   /// Of each of `replicates` that together send so many rays, each number rounded up; places are a power of
   /// two. All >= 1.
@@ -54,7 +55,7 @@ void add_replicate(const DirectLight& light, const PointSampler& sampler, const 
   const std::uint32_t first_path = key.path;
   for (int i = effort.first; i < effort.first + effort.points; ++i) {
     const auto x = place(sampler.place(i));
-    light.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), direct);
+    if (effort.with_shadow_rays) light.add_sample(x, sampler.light(i, 0, 1), light_weight.data(), direct);
     if (batch.aims()) {
       key.path = first_path + static_cast<std::uint32_t>(i);
       batch.aim(x, sampler.bright(i), key, ray_weight.data(), indirect, caustic);

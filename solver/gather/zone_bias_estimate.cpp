@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -42,6 +44,15 @@ void add_difference(const HemisphereGather& gather, const PathTracer& path, cons
   batch.flush();
 }
 
+/// Square of the mean, the least that leaving out one of them makes it.
+double square_without_one(const std::array<double, kBiasReplicates>& values) {
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  double least = std::numeric_limits<double>::infinity();
+  for (const double value : values)
+    least = std::min(least, std::pow((sum - value) / (kBiasReplicates - 1), 2));
+  return least;
+}
+
 }  // namespace
 
 ZoneBiasEffort ZoneBiasEffort::of(double rays) {
@@ -75,23 +86,30 @@ std::optional<ZoneBias> estimate_zone_bias(const HemisphereGather& gather, const
   ZoneBias worst;
   for (std::size_t b = 0; b < bands; ++b) {
     double square = 0;
-    double variance = 0;  // of `square`
+    double variance = 0;      // of `square`
+    double without_rare = 0;  // `square`, of each group without one of its replicates
     for (std::size_t g = 0; g < ZoneBiasEffort::kGroups; ++g) {
       const std::size_t first = g * points.size() / ZoneBiasEffort::kGroups;
       const std::size_t last = (g + 1) * points.size() / ZoneBiasEffort::kGroups;
-      const ReplicateMean mean = mean_of_replicates(kBiasReplicates, parts, [&](std::size_t r) {
-        double sum = 0;
+      std::array<double, kBiasReplicates> of_replicate{};
+      for (std::size_t r = 0; r < kBiasReplicates; ++r) {
         for (std::size_t i = first; i < last; ++i)
-          sum += scale[i * bands + b] * static_cast<double>(differences[i * of_point + r * bands + b]);
-        return sum / static_cast<double>(ZoneBiasEffort::kPointsPerGroup);
-      });
+          of_replicate[r] +=
+              scale[i * bands + b] * static_cast<double>(differences[i * of_point + r * bands + b]);
+        of_replicate[r] /= static_cast<double>(ZoneBiasEffort::kPointsPerGroup);
+      }
+      const ReplicateMean mean =
+          mean_of_replicates(kBiasReplicates, parts, [&](std::size_t r) { return of_replicate[r]; });
       const double error2 = mean.squared_error;
+      without_rare += (square_without_one(of_replicate) - error2) / ZoneBiasEffort::kGroups;
       square += (mean.mean * mean.mean - error2) / ZoneBiasEffort::kGroups;
       variance += (4 * mean.mean * mean.mean + 2 * error2) * error2 /
                   (ZoneBiasEffort::kGroups * ZoneBiasEffort::kGroups);
     }
-    const ZoneBias bias{std::sqrt(std::max(0.0, square)),
-                        std::sqrt(std::max(0.0, square) + 2 * std::sqrt(variance))};
+    // Paths that are rare and bright, as those by the circle of a narrow spot, come to one replicate and make
+    // up a difference that no other has.
+    const double best = without_rare > 0 ? std::max(0.0, square) : 0.0;
+    const ZoneBias bias{std::sqrt(best), std::sqrt(std::max(0.0, square) + 2 * std::sqrt(variance))};
     if (bias.bound > worst.bound) worst = bias;
   }
   return worst;

@@ -16,6 +16,15 @@ struct Powers {
 
   explicit Powers(std::size_t surfaces) : absorbed(surfaces), absorbed_on_backs(surfaces) {}
 
+  /// By how much all that left is more.
+  void scale_leaks(double factor) {
+    for (double& watts : escaped) watts *= factor;
+    for (double& watts : absorbed_on_backs) watts *= factor;
+  }
+  double leaked() const {
+    return std::accumulate(escaped.begin(), escaped.end(), 0.0) +
+           std::accumulate(absorbed_on_backs.begin(), absorbed_on_backs.end(), 0.0);
+  }
   /// Shares out power by where rays went; none if none of them left the zones.
   void leak(double watts, std::span<const LeakAccount> leaks) {
     const auto rays = std::accumulate(leaks.begin(), leaks.end(), 0.0,
@@ -44,6 +53,7 @@ void book_matrix_solution(const PacketRoom& transport, const PacketSources& emis
     if (!(emission.watts_per_quantum[b] > 0)) continue;
     const auto column = static_cast<Eigen::Index>(b);
     Powers powers(transport.surfaces());
+    double unseen = 0;  // left from zones none of whose rays did [W]
     for (std::size_t i = 0; i < factors.zones(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const SurfaceId surface = transport.mesh().zone_surface(ZoneId(i));
@@ -53,8 +63,15 @@ void book_matrix_solution(const PacketRoom& transport, const PacketSources& emis
           (1 - transport.surface_model().reflectance(ZoneId(i), transport.mesh().zone_triangle(ZoneId(i)),
                                                      transport.mesh().zone_is_front(ZoneId(i)))[b]) *
           irradiance(row, column);
-      powers.leak(area * radiosity(row, column) * std::max(0.0, 1 - row_sums(row)), factors.leaks().of(i));
+      const double lacking = area * radiosity(row, column) * (1 - row_sums(row));
+      if (factors.leaks().closed(i))
+        unseen += lacking;
+      else
+        powers.leak(std::max(0.0, lacking), factors.leaks().of(i));
     }
+    // Through a small opening little leaves from many zones, and that goes where the rays of others went.
+    // What rows are off by sampling is of either sign and cancels.
+    if (unseen > 0 && powers.leaked() > 0) powers.scale_leaks(1 + unseen / powers.leaked());
     for (const LuminaireLeak& loss : light_losses) powers.leak(std::max(0.0, loss.watts(column)), loss.leaks);
 
     const auto quanta = [&](double watts) {

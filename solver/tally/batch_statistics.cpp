@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "solver/solution/opposite_zones.h"
 #include "solver/tally/error_bound.h"
 #include "solver/tally/replicates.h"
 
@@ -148,8 +149,8 @@ constexpr std::size_t kChunk = 4096;
 
 /// Sums over zones for one channel.
 struct ChannelError {
-  double noise = 0;   // sum A rho^2 s^2
-  double signal = 0;  // sum A (rho E)^2
+  double noise = 0;   // sum A s^2
+  double signal = 0;  // sum A B^2
   /// Inner products of the deviations of the batch groups from the mean, for largest_error_quotient.
   std::array<double, kGroups * kGroups> products{};
 };
@@ -162,22 +163,45 @@ std::size_t groups_with_batches(const ZoneSums& sums) {
   return std::min(kGroups, static_cast<std::size_t>(sums.batches));
 }
 
-/// Adds the inner products of value i with weight `weight` to the upper half of the table.
-void add_products(const ZoneSums& sums, std::size_t i, double mean, double weight, ChannelError& part) {
+/// Irradiance that a zone sends on: its own by reflection, that of zones behind it by transmission.
+struct SentOn {
+  std::size_t value;  // of the sums
+  double mean;        // [W/m2]
+  double share;
+};
+
+/// Adds the inner products of what a zone sends out to the upper half of the table.
+void add_products(const ZoneSums& sums, const std::vector<SentOn>& sent, double area, ChannelError& part) {
   const std::size_t groups = groups_with_batches(sums);
   std::array<double, kGroups> deviation{};
   for (std::size_t g = 0; g < groups; ++g) {
     const auto w = static_cast<double>(sums.group_weight[g]);
-    const auto total = static_cast<double>(sums.group_total[g * sums.direct.size() + i]);
-    deviation[g] = (total / w - mean) * std::sqrt(w);
+    for (const SentOn& light : sent) {
+      const auto total = static_cast<double>(sums.group_total[g * sums.direct.size() + light.value]);
+      deviation[g] += light.share * (total / w - light.mean) * std::sqrt(w);
+    }
   }
   for (std::size_t g = 0; g < groups; ++g)
     for (std::size_t h = g; h < groups; ++h)
-      part.products[g * groups + h] += weight * deviation[g] * deviation[h];
+      part.products[g * groups + h] += area * deviation[g] * deviation[h];
 }
 
 /// What errors are those of.
-enum class ErrorOf { kReflectedLight, kIrradiance };
+enum class ErrorOf { kScatteredLight, kIrradiance };
+
+/// The zones behind one whose light comes through it diffusely, and what does, by band; empty of others.
+struct Behind {
+  std::vector<ZoneShare> zones;
+  const float* transmittance = nullptr;
+};
+
+Behind behind_zone(const SurfaceModel& surfaces, const ZoneMesh& mesh, ZoneId zone) {
+  const TriangleId triangle = mesh.zone_triangle(zone);
+  if (!surfaces.any_specular() || !surfaces.is_specular(triangle, mesh.zone_is_front(zone))) return {};
+  const SpecularSurface& surface = surfaces.specular(triangle);
+  if (!surface.diffuses()) return {};
+  return {opposite_zones(mesh, zone), surface.diffuse_transmittance().data()};
+}
 
 /// By channel. Partial sums of fixed chunks are added in order: the same bits on any number of threads.
 std::vector<ChannelError> channel_errors(ErrorOf what, const SurfaceModel& surfaces, const ZoneMesh& mesh,
@@ -188,19 +212,33 @@ std::vector<ChannelError> channel_errors(ErrorOf what, const SurfaceModel& surfa
   const auto w = static_cast<double>(sums.weight());
   std::vector<ChannelError> parts(chunks * channels);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    std::vector<SentOn> sent;
     for (std::size_t z = chunk * kChunk; z < std::min(zones, (chunk + 1) * kChunk); ++z) {
       const double area = mesh.zone_area(ZoneId(z));
+      const Behind behind =
+          what == ErrorOf::kScatteredLight ? behind_zone(surfaces, mesh, ZoneId(z)) : Behind{};
       const double* reflectance =
           surfaces.reflectance(ZoneId(z), mesh.zone_triangle(ZoneId(z)), mesh.zone_is_front(ZoneId(z)));
       sums.channels.for_each([&](std::size_t c, std::size_t band) {
-        const std::size_t i = z * channels + c;
-        const double mean = sums.total(i) / w;
-        if (mean == 0) return;
-        const double r = what == ErrorOf::kReflectedLight ? reflectance[band] : 1;
+        sent.clear();
+        double radiosity = 0;
+        double variance = 0;  // of it; what comes from either side is taken as independent
+        const auto add = [&](std::size_t zone, double share) {
+          const std::size_t i = zone * channels + c;
+          const double mean = sums.total(i) / w;
+          if (mean == 0) return;
+          sent.push_back({i, mean, share});
+          radiosity += share * mean;
+          variance += share * share * variance_of_mean(sums, i);
+        };
+        add(z, what == ErrorOf::kScatteredLight ? reflectance[band] : 1);
+        for (const ZoneShare& other : behind.zones)
+          add(other.zone.index(), other.share * static_cast<double>(behind.transmittance[band]));
+        if (radiosity == 0) return;
         ChannelError& part = parts[chunk * channels + c];
-        part.noise += area * r * r * variance_of_mean(sums, i);
-        part.signal += area * r * r * mean * mean;
-        if (with_groups) add_products(sums, i, mean, area * r * r, part);
+        part.noise += area * variance;
+        part.signal += area * radiosity * radiosity;
+        if (with_groups) add_products(sums, sent, area, part);
       });
     }
   });
@@ -219,12 +257,12 @@ std::vector<ChannelError> channel_errors(ErrorOf what, const SurfaceModel& surfa
   return result;
 }
 
-/// Of reflected light, or where nothing reflects any, as in rooms that are black to be measured in, of
-/// irradiance.
+/// Of what surfaces reflect and let through diffusely, or where none do, as in rooms that are black to be
+/// measured in, of irradiance.
 std::vector<ChannelError> channel_errors(const SurfaceModel& surfaces, const ZoneMesh& mesh,
                                          const ZoneSums& sums, bool with_groups) {
   std::vector<ChannelError> errors =
-      channel_errors(ErrorOf::kReflectedLight, surfaces, mesh, sums, with_groups);
+      channel_errors(ErrorOf::kScatteredLight, surfaces, mesh, sums, with_groups);
   const bool is_black =
       std::all_of(errors.begin(), errors.end(), [](const ChannelError& sum) { return sum.signal == 0; });
   return is_black ? channel_errors(ErrorOf::kIrradiance, surfaces, mesh, sums, with_groups) : errors;

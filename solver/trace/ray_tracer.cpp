@@ -129,8 +129,8 @@ float RayTracer::read_hit(std::uint32_t geometry, std::uint32_t primitive, float
   return height;
 }
 
-std::uint32_t RayTracer::key_of(const Vec3f& origin, const Vec3f& direction) {
-  std::uint32_t key = 0x9e3779b9U;
+std::uint32_t RayTracer::key_of(const Vec3f& origin, const Vec3f& direction, std::uint32_t chance) {
+  std::uint32_t key = 0x9e3779b9U ^ chance;
   for (const Vec3f* v : {&origin, &direction})
     for (const float x : *v) key = mixed_bits(key ^ std::bit_cast<std::uint32_t>(x));
   return key | 1U;  // 0 stands for none
@@ -202,8 +202,8 @@ bool RayTracer::nearest(const Vec3f& origin, const Vec3f& direction, float far, 
   return true;
 }
 
-bool RayTracer::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const {
-  const std::uint32_t key = cut_out_key(origin, direction);
+bool RayTracer::closest(const Vec3f& origin, const Vec3f& direction, Hit& hit, std::uint32_t chance) const {
+  const std::uint32_t key = cut_out_key(origin, direction, chance);
   const auto trace = [&](const Vec3f& d, Hit& found) { return nearest(origin, d, kInfinity, key, found); };
   const auto number = [](const Hit& found) { return static_cast<std::uint32_t>(found.triangle.index()); };
   const bool any = trace(direction, hit);
@@ -359,25 +359,26 @@ void RayTracer::look_again16(const Ray16& rays, int count, Hit16& hits) const {
   }
 }
 
-bool RayTracer::first_on_way(const Vec3f& origin, const Vec3f& direction, float distance, Hit& hit) const {
+bool RayTracer::first_on_way(const Vec3f& origin, const Vec3f& direction, float distance, Hit& hit,
+                             std::uint32_t chance) const {
   const float far = shortened(distance);
-  if (!nearest(origin, direction, far, cut_out_key(origin, direction), hit)) return false;
+  if (!nearest(origin, direction, far, cut_out_key(origin, direction, chance), hit)) return false;
   // From within, curved shapes are met sooner than the ray origins on them.
   return !is_curved(hit.triangle) || hit.distance < far - static_cast<float>(ShapeTarget::kSooner);
 }
 
-bool RayTracer::visible(const Vec3f& from, const Vec3f& to) const {
+bool RayTracer::visible(const Vec3f& from, const Vec3f& to, std::uint32_t chance) const {
   const Vec3f d = to - from;
   const float distance = d.norm();
   if (!(distance > 0)) return true;
   const Vec3f direction = d / distance;
-  RTCRay ray = make_ray(from, direction, 0, shortened(distance), cut_out_key(from, direction));
+  RTCRay ray = make_ray(from, direction, 0, shortened(distance), cut_out_key(from, direction, chance));
   occluded1(embree_->scene(), ray);
   return ray.tfar >= 0;
 }
 
-bool RayTracer::escapes(const Vec3f& origin, const Vec3f& direction) const {
-  const std::uint32_t key = cut_out_key(origin, direction);
+bool RayTracer::escapes(const Vec3f& origin, const Vec3f& direction, std::uint32_t chance) const {
+  const std::uint32_t key = cut_out_key(origin, direction, chance);
   RTCRay ray = make_ray(origin, direction, 0, kInfinity, key);
   occluded1(embree_->scene(), ray);
   if (ray.tfar < 0) return false;

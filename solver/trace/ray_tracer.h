@@ -104,7 +104,9 @@ class RayTracer {
   Vec3f ray_origin(TriangleId t, float u, float v, bool front, Vec3f& front_normal) const;
 
   /// Nearest hit along a ray of unit direction, after a second look if needed. False if there is none.
-  bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
+  /// `chance`, here and below: what decides at cut-outs beside origin and direction, for rays that are sent
+  /// between the same places again and again.
+  bool closest(const Vec3f& origin, const Vec3f& direction, Hit& hit, std::uint32_t chance = 0) const;
   /// Nearest hit that is not the back of a one-sided triangle: what a camera sees.
   bool closest_for_camera(const Vec3f& origin, const Vec3f& direction, Hit& hit) const;
   /// Nearest hits of the first `count` <= 16 rays. The caller looks twice, with look_again16 or full blocks.
@@ -146,27 +148,28 @@ class RayTracer {
     return second_direction(direction, hits.triangle[lane], hits.u[lane], hits.v[lane]);
   }
   /// What decides whether a ray passes cut-outs, for its second look to decide alike; 0 in rooms without.
-  std::uint32_t cut_out_key(const Vec3f& origin, const Vec3f& direction) const {
-    return cut_outs_ == nullptr ? 0 : key_of(origin, direction);
+  std::uint32_t cut_out_key(const Vec3f& origin, const Vec3f& direction, std::uint32_t chance = 0) const {
+    return cut_outs_ == nullptr ? 0 : key_of(origin, direction, chance);
   }
   std::uint32_t cut_out_key(const Ray16& rays, int lane) const {
     if (cut_outs_ == nullptr) return 0;
-    return rays.key[lane] != 0 ? rays.key[lane] : key_of(rays.origin(lane), rays.direction(lane));
+    return rays.key[lane] != 0 ? rays.key[lane] : key_of(rays.origin(lane), rays.direction(lane), 0);
   }
   /// Nearest hit on the way to a ray origin at this distance along a unit direction, without a second look,
   /// as `visible` has it. False if there is none.
-  bool first_on_way(const Vec3f& origin, const Vec3f& direction, float distance, Hit& hit) const;
+  bool first_on_way(const Vec3f& origin, const Vec3f& direction, float distance, Hit& hit,
+                    std::uint32_t chance = 0) const;
   /// True if nothing lies between two ray origins (made by ray_origin, or free points such as a lamp or an
   /// eye).
-  bool visible(const Vec3f& from, const Vec3f& to) const;
+  bool visible(const Vec3f& from, const Vec3f& to, std::uint32_t chance = 0) const;
   /// True if a ray of unit direction leaves the room without a hit.
-  bool escapes(const Vec3f& origin, const Vec3f& direction) const;
+  bool escapes(const Vec3f& origin, const Vec3f& direction, std::uint32_t chance = 0) const;
 
   const ZoneMesh& mesh() const { return *mesh_; }
 
  private:
   std::uint32_t shape_of(TriangleId t) const { return mesh_->triangle(t).shape; }
-  static std::uint32_t key_of(const Vec3f& origin, const Vec3f& direction);
+  static std::uint32_t key_of(const Vec3f& origin, const Vec3f& direction, std::uint32_t chance);
   Vec3 curved_point(TriangleId t, float u, float v) const;
   Vec3f curved_normal(TriangleId t, float u, float v) const;
   Vec3f curved_ray_origin(TriangleId t, float u, float v, bool front, Vec3f& front_normal) const;

@@ -19,6 +19,11 @@ void add_zones(nlohmann::ordered_json& json, const std::optional<ZoneBias>& zone
 inline constexpr const char* kZonesTooNoisy =
     "the noise of the zone solution keeps the error above the target; solve to a lower --error";
 
+/// The same where all that is known is that samples did not lessen the error.
+inline constexpr const char* kSamplesDoNotHelp =
+    "more samples hardly lessen the error, which stays above the target: most of it is the noise of the zone "
+    "solution (solve to a lower --error), or few samples bring much of the light (give their number)";
+
 /// What to say where a path-traced still misses its target: rare samples carry much of the light.
 inline constexpr const char* kPathsTooNoisy =
     "more samples hardly lessen the error, as a few of them bring much of the light, and what is stated may "

@@ -211,7 +211,7 @@ ExitCode run_export(const ExportOptions& options) {
     });
 
   if (data.limited_by_zones && !options.style.quiet) {
-    print_note(kZonesTooNoisy);
+    print_note(kSamplesDoNotHelp);
   }
   if (const std::size_t dark = dark_vertices(data); dark > 0 && !options.style.quiet)
     print_note(fmt::format(

@@ -106,14 +106,18 @@ std::string dark_points_text(const MeasuredLight& light) {
   }
   if (!first) return "";
   return fmt::format(
-      "no light comes to {} of the points, the first at ({:.6g}, {:.6g}, {:.6g}) m: do they lie inside of "
-      "something, or face a wall that they lie on? Means and least values count them",
+      "no ray found light at {} of the points, the first at ({:.6g}, {:.6g}, {:.6g}) m: do they lie inside "
+      "of something, or face a wall that they lie on? Light through a small opening takes more --samples. "
+      "Means and least values count them",
       dark, first->x(), first->y(), first->z());
 }
 
 void print_notes(const MeasuredLight& light, double error_target) {
   if (const std::string dark = dark_points_text(light); !dark.empty()) print_note(dark);
-  if (light.limited_by_zones) print_note(light.has_photons ? kPhotonsTooNoisy : kZonesTooNoisy);
+  if (light.limited_by_zones)
+    print_note(light.has_photons ? kPhotonsTooNoisy : kZonesTooNoisy);
+  else if (error_target > 0 && light.info.error > error_target)
+    print_note("the error is above the target after the most rays that a point can get");
   if (const std::string missed = missed_by_zones("the points", error_target, light.info.zones);
       !missed.empty())
     print_note(missed);

@@ -152,7 +152,7 @@ class Renderer {
           image.smoothed ? "more samples hardly lessen what smoothing leaves; give render an --error, which "
                            "samples until it holds"
           : options_.still.integrator == Integrator::kPath ? kPathsTooNoisy
-                                                           : kZonesTooNoisy));
+                                                           : kSamplesDoNotHelp));
     // The rest is for those who named a target.
     if (options_.still.error_target == 0 || options_.still.most_mean_spp > 0) return;
     if (!image.limited_by_zones && image.info.error > options_.still.error_target && !interrupted())

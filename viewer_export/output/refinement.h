@@ -18,7 +18,8 @@ class RefinedPart {
 
   /// `excess`: squared error of the part over what is aimed at, `excess_of_all` likewise of the whole, which
   /// may be good enough before all its parts are. `has_doubled`: the samples, since this was true before or
-  /// since they began. A part that has stopped does not begin again.
+  /// since they began, and nothing tells that the noise is theirs. A part that has stopped does not begin
+  /// again.
   void look(double excess, double excess_of_all, bool has_doubled) {
     if (!is_active_) return;
     if (has_doubled) {

@@ -32,6 +32,14 @@ constexpr std::size_t kReplicates = ZoneSums::kGroups;
 /// Fixed, so that packets of rays are the same for any number of threads.
 constexpr std::size_t kPointsOfTask = 16;
 constexpr int kMostPlaces = 1 << 14;
+/// Shadow rays end where their own error is so small a share of what is asked for, but not before so many
+/// places: light that few of them meet is not to be missed.
+constexpr double kLeastOfDirect = 0.35;
+constexpr int kLeastWithShadowRays = 64;
+/// Where nothing was found at any point of a set: light may come through a small opening.
+constexpr int kMostInTheDark = 1024;
+/// Noise is that of the zones where rays have less than so much of it.
+constexpr double kRaysOfStalled = 0.7;
 
 void check(const PointSet& set) {
   const auto fail = [&](const std::string& problem, const char* advice) {
@@ -121,9 +129,26 @@ class Measurer {
     return ReplicateEffort::of(settings_.gather_rays, settings_.light_samples, static_cast<int>(kReplicates));
   }
   int most_places() const;
-  double error_of(std::size_t first, std::size_t last) const;
+  /// Standard errors of points relative to their light, rms, worst band: of all of it, of what is direct, and
+  /// what of the first is noise of rays, as the last doubling of them tells.
+  struct Noise {
+    double all = 0;
+    double direct = 0;
+    double rays = 0;
+
+    void take(const Noise& other) {
+      if (other.all > all) {
+        all = other.all;
+        rays = other.rays;
+      }
+      direct = std::max(direct, other.direct);
+    }
+  };
+  Noise noise_of(std::size_t first, std::size_t last) const;
+  Noise worst_noise(const std::vector<PointSet>& sets) const;
   void gather(std::size_t first, std::size_t last, int first_place, int places);
-  double worst_error(const std::vector<PointSet>& sets) const;
+  /// Whether no ray has found light at any point of some set.
+  bool any_is_dark(const std::vector<PointSet>& sets) const;
 
   const Room& room_;
   const MeasureSettings& settings_;
@@ -134,6 +159,10 @@ class Measurer {
   HemisphereGather gather_;
   std::size_t bands_;
   std::vector<float> means_;  // by point, replicate, direct and indirect, band
+  int most_with_shadow_rays_ = std::numeric_limits<int>::max();  // places; others only gather
+  // What of the squared errors is noise of rays: the squares of the changes by the last doubling, as the two
+  // halves of the rays are independent. Too much where sequences are even.
+  std::vector<double> of_rays_;  // by point, band
   bool limited_by_zones_ = false;
 };
 
@@ -147,7 +176,8 @@ void Measurer::gather(std::size_t first, std::size_t last, int first_place, int 
   const std::size_t values = 2 * bands_;
   std::vector<float> found((last - first) * kReplicates * values, 0.0F);
   GatherBatch batch(gather_, effort().gathers);
-  const ReplicateEffort of_replicate{places, effort().gathers, first_place};
+  const bool with_shadow_rays = first_place < most_with_shadow_rays_;
+  const ReplicateEffort of_replicate{places, effort().gathers, first_place, with_shadow_rays};
   const int log2_places = std::countr_zero(static_cast<unsigned>(most_places()));
   const std::vector<float> over_pi(bands_, std::numbers::inv_pi_v<float>);  // to mean radiance
   float* next = found.data();
@@ -165,7 +195,19 @@ void Measurer::gather(std::size_t first, std::size_t last, int first_place, int 
   batch.flush();
   const float share = static_cast<float>(places) / static_cast<float>(first_place + places);
   float* means = &means_[first * kReplicates * values];
-  for (std::size_t k = 0; k < found.size(); ++k) means[k] += share * (found[k] - means[k]);
+  std::fill_n(&of_rays_[first * bands_], (last - first) * bands_, 0.0);
+  for (std::size_t r = 0; r < (last - first) * kReplicates; ++r)
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const std::size_t direct = r * values + b;
+      const std::size_t indirect = direct + bands_;
+      const float more_direct = with_shadow_rays ? share * (found[direct] - means[direct]) : 0;
+      const float more_indirect = share * (found[indirect] - means[indirect]);
+      means[direct] += more_direct;
+      means[indirect] += more_indirect;
+      const double change =
+          static_cast<double>(more_direct) + std::numbers::pi * static_cast<double>(more_indirect);
+      of_rays_[(first + r / kReplicates) * bands_ + b] += change * change / (kReplicates * kReplicates);
+    }
 }
 
 void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgress& progress) {
@@ -173,6 +215,7 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
   check_memory(fmt::format("{} points", points_.size()), static_cast<double>(values * sizeof(float)),
                available_memory());
   means_.assign(values, 0.0F);
+  of_rays_.assign(points_.size() * bands_, 0.0);
   const std::size_t chunks = (points_.size() + kPointsOfTask - 1) / kPointsOfTask;
   const bool has_target = settings_.error_target > 0;
   double share_done = 0;
@@ -191,36 +234,57 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
     if (stop_.requested()) throw Interrupted("measuring was interrupted");
     done += more;
     if (!has_target) return;
-    const double excess = std::pow(worst_error(sets) / RefinedPart::aim(settings_.error_target), 2);
+    const Noise noise = worst_noise(sets);
+    const double excess = std::pow(noise.all / RefinedPart::aim(settings_.error_target), 2);
     share_done = std::min(1.0, 1 / excess);
-    all.look(excess, excess, true);
+    if (done >= kLeastWithShadowRays && done < most_with_shadow_rays_ &&
+        noise.direct < kLeastOfDirect * settings_.error_target)
+      most_with_shadow_rays_ = done;
+    if (done < kMostInTheDark && any_is_dark(sets)) continue;
+    all.look(excess, excess, noise.rays < kRaysOfStalled * noise.all);
   }
   limited_by_zones_ = all.is_stalled();
 }
 
-double Measurer::error_of(std::size_t first, std::size_t last) const {
-  double worst = 0;
+Measurer::Noise Measurer::noise_of(std::size_t first, std::size_t last) const {
+  Noise worst;
   for (std::size_t b = 0; b < bands_; ++b) {
-    double errors = 0;
+    double all = 0;
+    double direct = 0;
+    double rays = 0;
     double values = 0;
     for (std::size_t i = first; i < last; ++i) {
       const ReplicateMean light = mean([&](std::size_t r) { return irradiance(i, r, b); });
-      errors += light.squared_error;
+      all += light.squared_error;
       values += light.mean * light.mean;
+      direct += mean([&](std::size_t r) { return static_cast<double>(part(i, r).direct[b]); }).squared_error;
+      rays += of_rays_[i * bands_ + b];
     }
-    if (values > 0) worst = std::max(worst, std::sqrt(errors / values));
+    if (!(values > 0)) continue;
+    worst.take({std::sqrt(all / values), std::sqrt(direct / values), std::sqrt(rays / values)});
   }
   return worst;
 }
 
-double Measurer::worst_error(const std::vector<PointSet>& sets) const {
-  double worst = 0;
+Measurer::Noise Measurer::worst_noise(const std::vector<PointSet>& sets) const {
+  Noise worst;
   std::size_t first = 0;
   for (const PointSet& set : sets) {
-    worst = std::max(worst, error_of(first, first + set.size()));
+    worst.take(noise_of(first, first + set.size()));
     first += set.size();
   }
   return worst;
+}
+
+bool Measurer::any_is_dark(const std::vector<PointSet>& sets) const {
+  std::size_t first = 0;
+  for (const PointSet& set : sets) {
+    const auto begin = means_.begin() + static_cast<std::ptrdiff_t>(first * kReplicates * 2 * bands_);
+    first += set.size();
+    const auto end = means_.begin() + static_cast<std::ptrdiff_t>(first * kReplicates * 2 * bands_);
+    if (std::all_of(begin, end, [](float light) { return light == 0; })) return true;
+  }
+  return false;
 }
 
 template <class OfBands>
@@ -248,9 +312,13 @@ SetSummary Measurer::summary(std::size_t first, std::size_t last,
       std::minmax_element(illuminance.begin() + static_cast<std::ptrdiff_t>(first),
                           illuminance.begin() + static_cast<std::ptrdiff_t>(last),
                           [](const Irradiance& a, const Irradiance& b) { return a.all < b.all; });
-  SetSummary summary{mean_of_set, std::sqrt(squared_error), least->all, most->all, error_of(first, last), {}};
+  SetSummary summary{mean_of_set, std::sqrt(squared_error),  least->all,
+                     most->all,   noise_of(first, last).all, {}};
   for (std::size_t i = first; i < last; ++i)
     if (!(illuminance[i].all > 0)) summary.dark_points.push_back(i - first);
+  // Rays that find nothing do not tell how much light they missed.
+  if (summary.dark_points.size() == last - first)
+    summary.standard_error = summary.error = std::numeric_limits<double>::infinity();
   return summary;
 }
 

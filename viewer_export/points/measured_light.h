@@ -35,8 +35,10 @@ struct SetSummary {
   double standard_error =
       0;  ///< Of the mean, +infinity if not known; knows what errors of points have in common.
   double least = 0, most = 0;
-  double error = 0;  ///< Relative, rms over its points: sqrt(sum s^2 / sum E^2), worst band.
-  std::vector<std::size_t> dark_points;  ///< That no light comes to, by their places in the set.
+  /// Relative, rms over its points: sqrt(sum s^2 / sum E^2), worst band. +infinity if not known, as where
+  /// all points are dark.
+  double error = 0;
+  std::vector<std::size_t> dark_points;  ///< Where no ray found light, by their places in the set.
   double uniformity() const { return mean > 0 ? least / mean : 0; }  ///< Least over mean.
 };
 

@@ -54,10 +54,10 @@ RoomBuilder room_with(bool mirror, double lamp_at, bool screen = false) {
   return room;
 }
 
-/// Irradiance of the floor by what `rays` gather rays find [W/m2].
-double gathered(const HemisphereGather& gather, const Vec3& at, std::size_t number, std::uint32_t rays) {
+/// Irradiance at a point by what `rays` gather rays find [W/m2].
+double gathered(const HemisphereGather& gather, const SurfacePoint& x, std::size_t number,
+                std::uint32_t rays) {
   const CounterRng rng(4, RngPurpose::kHemisphere);
-  const SurfacePoint x = floor_point(gather.room(), at.x(), at.y());
   const float weight = 1.0F / static_cast<float>(rays);
   float sum = 0;
   GatherBatch batch(gather);
@@ -67,6 +67,10 @@ double gathered(const HemisphereGather& gather, const Vec3& at, std::size_t numb
   }
   batch.flush();
   return std::numbers::pi * static_cast<double>(sum);
+}
+/// The same of the floor.
+double gathered(const HemisphereGather& gather, const Vec3& at, std::size_t number, std::uint32_t rays) {
+  return gathered(gather, floor_point(gather.room(), at.x(), at.y()), number, rays);
 }
 
 /// Irradiance over the mirror by what is gathered at points of the floor, over that of the image.
@@ -135,6 +139,28 @@ TEST(CausticPower, DoesNotReadThroughWhatStandsOnAFace) {
   }
   // Without a look for the screen, 0.17.
   EXPECT_LT(shadow, 0.01 * open);
+}
+
+TEST(CausticMap, DoesNotReachWhatLiesAHairsBreadthBelow) {
+  RoomBuilder room = room_with(true, 1);
+  const MaterialId cover = room.material("cover", 0.5, 0, true);
+  constexpr double kAbove = 2e-4;
+  room.quad(cover, {Vec3(1, -2, kAbove), Vec3(3, -2, kAbove), Vec3(3, 2, kAbove), Vec3(1, 2, kAbove)}, 4);
+  const Solution dark = test::dark_solution(room);
+  const Room walls(room.scene(), dark.mesh);
+  const DirectLight direct(walls);
+  const RadianceField field(walls, dark);
+  const HemisphereGather gather(field, direct, GatherSettings{.close_hit = 0, .caustics = true});
+  double open = 0;
+  for (std::size_t i = 0; i < 100; ++i) {
+    const double y = -1.8 + 3.6 * static_cast<double>(i) / 99;
+    Hit under;
+    ASSERT_TRUE(
+        walls.rays().closest(walls.rays().normalised(Vec3(2, y, kAbove / 2)), -Vec3f::UnitZ(), under));
+    EXPECT_EQ(gathered(gather, surface_point(walls.rays(), under, -Vec3f::UnitZ()), i, 64), 0);
+    open += gathered(gather, {0.9, y, 0}, i, 64);
+  }
+  EXPECT_GT(open, 0);
 }
 
 /// A floor, and a round lamp above it, if asked for inside of a ball of glass about it.

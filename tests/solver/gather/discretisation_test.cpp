@@ -54,6 +54,18 @@ TEST(Discretisation, does_not_depend_on_the_noise) {
   EXPECT_NEAR(few / many, 1, 0.15);
 }
 
+// Half of the light of an opal sheet comes from behind it, at its points as in its zones. Without it, 60 %.
+TEST(Discretisation, counts_what_comes_through_a_sheet) {
+  test::RoomBuilder room = lit_cube(8);
+  const MaterialId opal = room.material("opal", 0.4, 0, true);
+  room.scene().materials[opal.index()].non_diffuse.diffuse_transmittance = Spectrum::Constant(1, 0.6);
+  room.quad(opal, {Vec3(0, 0, .5), Vec3(1, 0, .5), Vec3(1, 1, .5), Vec3(0, 1, .5)}, 8);
+  const auto of_sheet = solution_of(room, 1'000'000).record.discretisation;
+  const auto without = solution_of(lit_cube(8), 1'000'000).record.discretisation;
+  ASSERT_TRUE(of_sheet && without);
+  EXPECT_LT(*of_sheet, 2 * *without);
+}
+
 TEST(Discretisation, is_unknown_where_noise_hides_it) {
   const test::VariableFurnace furnace(8);
   const Solution s = solution_of(furnace.room(), 2'000);

@@ -222,6 +222,38 @@ TEST(ZoneError, of_a_room_that_reflects_nothing_is_that_of_irradiance) {
   EXPECT_GT(found.record.error_bound, found.record.error);
 }
 
+// What a sheet lets through is sent on as well: the error is that of Solution::radiosity, over all that is
+// not emitted. Reflected light alone has half as much again.
+TEST(ZoneError, counts_what_opal_sheets_let_through) {
+  test::RoomBuilder room;
+  const MaterialId dark = room.material("dark", 0.02);
+  const MaterialId lamp = room.material("lamp", 0.02, 1);
+  room.box(Vec3::Zero(), Vec3::Ones(), {dark, dark, dark, dark, lamp, dark}, 4);
+  const MaterialId opal = room.material("opal", 0, 0, true);
+  room.scene().materials[opal.index()].non_diffuse.diffuse_transmittance = Spectrum::Constant(1, 0.6);
+  room.quad(opal, {Vec3(0, 0, .5), Vec3(1, 0, .5), Vec3(1, 1, .5), Vec3(0, 1, .5)}, 4);
+  const Solution found = run(room, 100'000, 1);
+  double noise = 0;
+  double signal = 0;
+  double reflected_noise = 0;
+  double reflected_signal = 0;
+  for (std::size_t i = 0; i < found.mesh.zone_count(); ++i) {
+    const ZoneId z(i);
+    const double area = found.mesh.zone_area(z);
+    const Estimate radiosity = found.radiosity(z, 0);
+    noise += area * std::pow(radiosity.stderr_of_mean, 2);
+    signal += area * std::pow(radiosity.mean - found.emitted_radiosity(z, 0), 2);
+    const Estimate irradiance = found.irradiance(z, 0);
+    const double reflectance = found.zone_reflectance(z, 0);
+    reflected_noise += area * std::pow(reflectance * irradiance.stderr_of_mean, 2);
+    reflected_signal += area * std::pow(reflectance * irradiance.mean, 2);
+  }
+  const double stated = std::sqrt(noise / signal);
+  EXPECT_NEAR(found.record.error, stated, 1e-6 * stated);
+  EXPECT_GT(std::sqrt(reflected_noise / reflected_signal), 1.2 * stated);
+  EXPECT_GE(found.record.error_bound, found.record.error);
+}
+
 TEST(EnergyAudit, books_hold_more_than_any_run_sends) {
   // Batches of a bright room in which power changes hands 10,000 times over; 63 bits hold 2^21 of them.
   constexpr std::int64_t kMost = std::int64_t{1} << 40;
