@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <stdexcept>
 
@@ -44,6 +45,14 @@ void refuse_too_many(std::size_t zones) {
 struct RowCounts {
   std::uint64_t facing = 0, open = 0, walled = 0, clear = 0, hidden = 0, sampled = 0, rays = 0;
 };
+
+/// Of the zones that see others: backs of outer walls see none. 0 if none does.
+double lowest_of_seeing(const Eigen::VectorXd& sums) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const double sum : sums)
+    if (sum > 0) lowest = std::min(lowest, sum);
+  return std::isfinite(lowest) ? lowest : 0;
+}
 
 }  // namespace
 
@@ -176,7 +185,7 @@ class FormFactorBuilder {
     const Eigen::VectorXd sums = result_.row_sums();
     RowSums s;
     if (sums.size() == 0) return s;
-    s.lowest = sums.minCoeff();
+    s.lowest = lowest_of_seeing(sums);
     s.highest = sums.maxCoeff();
     double squares = 0;
     std::size_t count = 0;
@@ -248,7 +257,7 @@ FormFactors join_cells(const FormFactors& cells, const ZoneMesh& mesh) {
   joined.report_ = cells.report_;
   joined.report_.zones = zones;
   const Eigen::VectorXd sums = joined.row_sums();
-  joined.report_.after.lowest = sums.size() > 0 ? sums.minCoeff() : 0;
+  joined.report_.after.lowest = lowest_of_seeing(sums);
   joined.report_.after.highest = sums.size() > 0 ? sums.maxCoeff() : 0;
   return joined;
 }
