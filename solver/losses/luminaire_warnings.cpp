@@ -27,10 +27,12 @@ std::string warning_of(const OpeningLoss& loss, const Scene& scene) {
   if (loss.is_shut_in)
     return fmt::format("{}: none of its light gets out of {}, which is closed around it; move it", name,
                        surface);
-  if (loss.touching > 0)
-    return fmt::format(
-        "{} lies in {}: {} of its light is lost and {} falls on the very point it stands on; move it off",
-        name, surface, share_text(loss.lost), share_text(loss.touching));
+  if (loss.touching > 0) {
+    const std::string lost =
+        loss.lost > 0 ? fmt::format("{} of its light is lost and ", share_text(loss.lost)) : "";
+    return fmt::format("{} lies in {}: {}{} of its light falls on the very point it stands on; move it off",
+                       name, surface, lost, share_text(loss.touching));
+  }
   const std::string lost = fmt::format("{}: {} of its light is lost, because ", name, share_text(loss.lost));
   const bool crosses = 2 * loss.beyond > loss.lost;
   if (loss.seen <= 0) return lost + fmt::format("it lies in or behind {}; move it", surface);

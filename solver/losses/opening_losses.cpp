@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "scenes/model/opening_reach.h"
+#include "solver/emit/light_places.h"
 #include "solver/emit/punctual_emitter.h"
 #include "solver/losses/probe_flight.h"
 #include "solver/shoot/packet_sources.h"
@@ -35,34 +36,14 @@ std::optional<SurfaceId> between(const PacketRoom& transport, const Vec3f& from,
   return transport.mesh().surface(hit.triangle, hit.front);
 }
 
-/// A face that a light stands on, closer than rays can tell apart.
-struct Contact {
-  SurfaceId surface;
-  bool front = true;  ///< The side that the light stands on.
-  Vec3f normal;       ///< Of that side.
-};
-constexpr float kTouching = 4 * RayTracer::kLift;
+/// From a light that was moved before a face, how far away that is met.
+constexpr float kTouching = 200 * static_cast<float>(kLightClearance);
 
-std::optional<Contact> contact_of(const PacketRoom& transport, const PunctualLight& light,
-                                  const Vec3f& point) {
-  if (std::holds_alternative<PhotometricLight>(light)) return std::nullopt;  // these start off their opening
-  for (int k = 0; k < 3; ++k) {
-    const Vec3f axis = Vec3f::Unit(k);
-    Hit hit;
-    if (!transport.rays().closest(point - kTouching * axis, axis, hit) || hit.distance > 2 * kTouching)
-      continue;
-    const BaseTriangle& face = transport.mesh().triangle(hit.triangle);
-    Contact contact{face.surface, true, transport.rays().normal(hit.triangle, hit.u, hit.v)};
-    // On a face with two like sides a spot stands on the one it shines away from.
-    const auto* spot = std::get_if<SpotLight>(&light);
-    if (face.two_sided && spot != nullptr && spot->direction.cast<float>().dot(contact.normal) < 0) {
-      contact.front = false;
-      contact.normal = -contact.normal;
-      contact.surface = transport.mesh().surface(hit.triangle, false);
-    }
-    return contact;
-  }
-  return std::nullopt;
+/// The surface that a light was moved off; none if it was not.
+std::optional<SurfaceId> surface_moved_off(const PacketRoom& transport, const Vec3f& from, const Vec3f& to) {
+  Hit hit;
+  if (from == to || !transport.rays().closest(to, (from - to).normalized(), hit)) return std::nullopt;
+  return transport.mesh().surface(hit.triangle, hit.front);
 }
 
 /// Looks from both sides of the faces that a light meets. One outside of a room meets faces with the open
@@ -119,28 +100,23 @@ class SideLooks {
 /// Books where the packets of one light end.
 class OpeningBooks {
  public:
-  /// `thin` [normalised]: of spaces that a luminaire should not be shut in.
-  OpeningBooks(const PacketRoom& transport, const PunctualLight& light, const Vec3f& mouth, float thin)
+  /// `thin` [normalised]: of spaces that a luminaire should not be shut in. `contact`: what it stands on.
+  OpeningBooks(const PacketRoom& transport, const Vec3f& mouth, float thin,
+               const std::optional<SurfaceId>& contact)
       : transport_(transport),
         mouth_(mouth),
         thin_(thin),
-        contact_(contact_of(transport, light, mouth)),
+        contact_(contact),
         looks_(transport.rays(), transport.surface_model()) {}
 
   void add(const ProbeRay& probe) {
     ++packets_;
-    std::optional<SurfaceId> cutter = between(transport_, probe.origin, mouth_);
+    const std::optional<SurfaceId> cutter = between(transport_, probe.origin, mouth_);
     const SurfaceId met =
         probe.met ? transport_.mesh().surface(probe.hit.triangle, probe.hit.front) : SurfaceId();
-    if (contact_ && probe.direction.dot(contact_->normal) < 0) {
-      if (probe.met && probe.hit.front == contact_->front && met == contact_->surface &&
-          probe.hit.distance < kTouching) {
-        ++touching_;
-        return;
-      }
-      cutter = contact_->surface;
-    }
-    if (cutter) {
+    if (contact_ && probe.met && probe.hit.distance < kTouching && !is_back(transport_, probe.hit)) {
+      ++touching_;
+    } else if (cutter) {
       ++beyond_;
       ++takers_[*cutter];
     } else if (probe.met && is_back(transport_, probe.hit)) {
@@ -163,7 +139,7 @@ class OpeningBooks {
       loss.lost = 1;
       loss.surface = SurfaceId();
     } else if (contact_) {
-      loss.surface = contact_->surface;
+      loss.surface = *contact_;
     } else if (met == packets_ && on_backs_ == 0 && looks_.within_thin_space(thin_)) {
       loss.is_shut_in = true;
       loss.lost = 1;
@@ -187,16 +163,15 @@ class OpeningBooks {
   const PacketRoom& transport_;
   Vec3f mouth_;
   float thin_;
-  std::optional<Contact> contact_;
+  std::optional<SurfaceId> contact_;
   SideLooks looks_;
   Counts takers_, seers_;
   std::uint32_t packets_ = 0, on_backs_ = 0, beyond_ = 0, touching_ = 0, seen_ = 0;
 };
 
 OpeningLoss loss_of(const PacketRoom& transport, std::uint32_t light, const PunctualEmitter& emitter,
-                    const Vec3f& mouth, float thin, std::uint32_t packets) {
-  const PunctualLight& source = transport.scene().lights[light];
-  OpeningBooks books(transport, source, mouth, thin);
+                    const std::optional<SurfaceId>& contact, float thin, std::uint32_t packets) {
+  OpeningBooks books(transport, mouth_of_light(emitter), thin, contact);
   const SobolSequence numbers(light);
   Ray16 rays;
   for (std::uint32_t first = 0; first < packets; first += 16) {
@@ -224,13 +199,20 @@ std::vector<OpeningLoss> opening_losses(const PacketRoom& transport, const StopT
   const auto metres = static_cast<float>(transport.rays().metres_per_unit());
   const auto least_extent = static_cast<float>(bounds(transport.scene()).size().minCoeff()) / metres;
   const float thin = std::min(kThinMetres / metres, kThinShare * least_extent);
+  const std::vector<PunctualLight> before_faces = lights_before_faces(transport.scene(), transport.rays());
   for (std::size_t l = 0; l < lights.size(); ++l) {
     end_if_requested(stop);
-    // Where it is meant to be, not where its rays start.
-    const PunctualEmitter emitter = make_punctual_emitter(lights[l], transport.rays());
-    if (is_at_infinity(emitter)) continue;
+    // Where it is meant to be: an opening that is cut by a face loses what lies beyond. A lamp without size
+    // stands before the face that it lies in, and what it sends towards that lands on it around the lamp.
+    const PunctualEmitter meant = make_punctual_emitter(lights[l], transport.rays());
+    if (is_at_infinity(meant)) continue;
+    const bool has_size = std::holds_alternative<PhotometricLight>(lights[l]);
+    const PunctualEmitter emitter =
+        has_size ? meant : make_punctual_emitter(before_faces[l], transport.rays());
+    const std::optional<SurfaceId> contact =
+        surface_moved_off(transport, mouth_of_light(meant), mouth_of_light(emitter));
     const OpeningLoss loss =
-        loss_of(transport, static_cast<std::uint32_t>(l), emitter, mouth_of_light(emitter), thin, packets);
+        loss_of(transport, static_cast<std::uint32_t>(l), emitter, contact, thin, packets);
     if (loss.lost > kLeastLoss || loss.touching > 0) losses.push_back(loss);
   }
   return losses;

@@ -38,7 +38,7 @@ double sample_filter(PixelFilter filter, double u) {
 std::size_t Film::bytes_per_pixel(std::size_t bands, std::size_t replicates, bool caustics) {
   // Finishing turns three of the replicates into layers.
   const std::size_t layers = (caustics ? 4 : 3) + std::max<std::size_t>(replicates, 3);
-  return (layers * bands + 8) * sizeof(float) + 1;
+  return (layers * bands + 9) * sizeof(float) + 1;
 }
 
 Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, std::size_t parts,
@@ -55,6 +55,7 @@ Film::Film(const BandSet& bands, int width, int height, std::size_t replicates, 
     allocate_planes(by_band, pixels * bands_);
     image_.samples.assign(pixels, 0.0F);
     image_.luminous.assign(pixels, 0.0F);
+    image_.mirroring.assign(pixels, 0.0F);
     image_.depth.assign(pixels, 0.0F);
     image_.normal.assign(3 * pixels, 0.0F);
     seen_.assign(pixels, 0.0F);
@@ -91,6 +92,7 @@ void Film::add(std::size_t pixel, std::size_t replicate, const PixelBlock& block
   ++blocks_[pixel];
   image_.samples[pixel] += samples;
   image_.luminous[pixel] += static_cast<float>(block.luminous);
+  image_.mirroring[pixel] += static_cast<float>(block.mirroring);
   image_.depth[pixel] += static_cast<float>(block.depth);
   for (std::size_t k = 0; k < 3; ++k)
     image_.normal[3 * pixel + k] += static_cast<float>(block.normal[static_cast<Eigen::Index>(k)]);
@@ -147,7 +149,10 @@ void Film::complete_geometry(StillImage& image, std::size_t pixel) const {
   const float length = normal.norm();
   if (length > 0) normal /= length;
   const float samples = image.samples[pixel];
-  if (samples > 0) image.luminous[pixel] /= samples;
+  if (samples > 0) {
+    image.luminous[pixel] /= samples;
+    image.mirroring[pixel] /= samples;
+  }
   // The variance of a block's mean falls as its samples, or faster.
   const float of_mean = blocks_[pixel] > 1 ? 1 / (samples * static_cast<float>(blocks_[pixel] - 1)) : 0.0F;
   for (std::size_t k = pixel * bands_; k < (pixel + 1) * bands_; ++k)

@@ -35,6 +35,7 @@ struct PixelBlock {
   double depth = 0;      ///< Sum over samples that saw something [m].
   int seen = 0;          ///< Samples that saw something.
   int luminous = 0;      ///< Samples that saw a luminaire (StillImage::luminous).
+  int mirroring = 0;     ///< Samples that met a mirror, gloss or glass first.
   int samples = 0;
   int earlier = 0;  ///< Samples that this replicate of the pixel had before.
 };
@@ -88,8 +89,8 @@ class Film {
   std::size_t bands_;
   std::size_t replicates_;
   std::size_t parts_;
-  // depth, normal: sums over samples that saw something; luminous: their number; albedo_stderr: squared
-  // deviations of blocks from their mean, each as often as it has samples.
+  // depth, normal: sums over samples that saw something; luminous, mirroring: their number;
+  // albedo_stderr: squared deviations of blocks from their mean, each as often as it has samples.
   StillImage image_;
   std::array<std::vector<float>, kReplicates> means_;
   std::vector<float> seen_;

@@ -18,6 +18,7 @@ void check_consistent(const StillImage& image) {
     check(*layer, values, true);
   check(image.samples, pixels, true);
   check(image.luminous, pixels, true);
+  check(image.mirroring, pixels, true);
   check(image.depth, pixels, true);
   check(image.normal, 3 * pixels, true);
 }

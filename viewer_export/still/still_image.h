@@ -36,6 +36,8 @@ struct StillImage {
   std::vector<float> samples;  ///< One per pixel: camera rays.
   /// One per pixel: the share of them that saw a luminaire, straight or over smooth mirrors and panes.
   std::vector<float> luminous;
+  std::vector<float>
+      mirroring;              ///< One per pixel: the share of them that met a mirror, gloss or glass first.
   std::vector<float> depth;   ///< One per pixel: distance from the eye [m]; +inf where nothing is seen.
   std::vector<float> normal;  ///< Three per pixel: unit, world coordinates; 0 where nothing is seen.
 

@@ -15,6 +15,9 @@ constexpr float kLeastAlbedo = 0.02F;
 constexpr float kNothing = 1e6F;  ///< Depth [m] of a pixel that sees nothing.
 /// Added to normals of luminaires: more than two normals can differ by.
 constexpr float kLamp = 4;
+/// Added to normals of mirrors, glass and gloss: a little more than what normals of unlike things differ by,
+/// so that pixels on the rim of one are like each other.
+constexpr float kMirror = 1.25F;
 /// Of the depth: a slope is taken to be at most this.
 constexpr float kSteepest = 0.1F;
 
@@ -53,6 +56,8 @@ StillPlanes::StillPlanes(const StillImage& image, const StillHalves& halves)
       const float luminous = image.luminous[p];
       depth[p] = std::isfinite(image.depth[p]) ? image.depth[p] : kNothing;
       for (std::size_t k = 0; k < 3; ++k) normal[k][p] = image.normal[3 * p + k];
+      // A mirror on a wall faces as it does, and what it shows may be as bright.
+      normal[1][p] += kMirror * image.mirroring[p];
       // A lamp in a ceiling is a thing of its own, and what a pixel on its rim happens to see of it is no
       // noise of the ceiling around.
       sees_luminaire[p] = luminous > 0 ? 1 : 0;

@@ -176,8 +176,10 @@ void TileRenderer::add_sample(double x, double y, int sample, PixelSums& sums, G
   for (std::size_t b = 0; b < bands; ++b) sums.albedo[b] += sums.share * reflectance[b];
   sums.sees_luminaire = surfaces.emits(hit.triangle, hit.front);
   add_seen(point, all_.data(), 1, sample, sums, batch);
-  if (surfaces.is_specular(hit.triangle, hit.front))
+  if (surfaces.is_specular(hit.triangle, hit.front)) {
+    ++sums.found.mirroring;
     add_over_mirrors(point, hit.distance, sample, sums, batch);
+  }
   if (sums.sees_luminaire) ++sums.found.luminous;
 }
 

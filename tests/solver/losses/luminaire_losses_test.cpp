@@ -184,8 +184,22 @@ TEST_F(LuminaireLosses, LampsOnASurfaceAreNamed) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].surface, SurfaceId(0));
   // Half of the sphere; 4096 stratified directions.
-  EXPECT_NEAR(found[0].lost + found[0].touching, 0.5, 0.02);
+  EXPECT_NEAR(found[0].touching, 0.5, 0.02);
+  EXPECT_EQ(found[0].lost, 0);
   EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("'bulb'"), HasSubstr("lies in 'quad0'"))));
+}
+
+TEST_P(LuminaireLosses, LampsInAnEdgeOrACornerLightItAndLoseNothing) {
+  walls(GetParam());
+  light(PointLight{"edge", Vec3(0, 1, 0), room_.flat(1)});
+  light(PointLight{"corner", Vec3(0, 3, 0), room_.flat(1)});
+  light(SpotLight{"spot", Vec3(0, 1.5, 0), Vec3(0, -1, 0), room_.flat(1), 0.3, 1});
+  const std::vector<OpeningLoss> found = losses();
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_NEAR(found[0].touching, 0.75, 0.02);
+  EXPECT_NEAR(found[1].touching, 0.875, 0.02);
+  EXPECT_NEAR(found[2].touching, 0.75, 0.02);
+  for (const OpeningLoss& loss : found) EXPECT_EQ(loss.lost, 0);
 }
 
 TEST_F(LuminaireLosses, BacksFarAwayCountToo) {

@@ -32,6 +32,7 @@ struct Seen {
   Vec3 normal{0, 0, 1};
   double depth = 2;
   bool luminous = false;
+  bool mirroring = false;
 };
 
 struct Noisy {
@@ -54,6 +55,7 @@ void add(Film& film, int x, int y, std::size_t replicate, const Seen& seen, cons
             .depth = seen.depth,
             .seen = 1,
             .luminous = seen.luminous ? 1 : 0,
+            .mirroring = seen.mirroring ? 1 : 0,
             .samples = 1});
 }
 
@@ -298,16 +300,16 @@ TEST(Smoothing, keeps_the_border_of_a_shadow) {
 }
 
 TEST(Smoothing, does_not_cross_edges_of_things) {
-  // Less apart than the noise, so that only normals, or depths, tell them apart.
-  for (const bool by_normal : {true, false}) {
-    const auto sides = [by_normal](int x, int /*y*/) {
+  // Less apart than the noise, so that only normals, or depths, or that one is a mirror, tell them apart.
+  enum class By { kNormals, kDepths, kMirrors };
+  for (const By by : {By::kNormals, By::kDepths, By::kMirrors}) {
+    const auto sides = [by](int x, int /*y*/) {
       Seen seen{.light = 1};
       if (x < kWidth / 2) return seen;
       seen.light = 1.05;
-      if (by_normal)
-        seen.normal = {1, 0, 0};
-      else
-        seen.depth = 3;
+      if (by == By::kNormals) seen.normal = {1, 0, 0};
+      if (by == By::kDepths) seen.depth = 3;
+      seen.mirroring = by == By::kMirrors;
       return seen;
     };
     Noisy noisy = noisy_picture(sides);
@@ -320,7 +322,7 @@ TEST(Smoothing, does_not_cross_edges_of_things) {
       right += static_cast<double>(noisy.image.radiance[static_cast<std::size_t>(y * kWidth + at)]);
     }
     // The means of 64 pixels, which smoothing makes of some 500 on their side: 0.5 % noise each.
-    EXPECT_NEAR(right / left, 1.05, 0.03) << (by_normal ? "normals" : "depths");
+    EXPECT_NEAR(right / left, 1.05, 0.03) << static_cast<int>(by);
   }
 }
 
