@@ -36,8 +36,10 @@ constexpr int kMostPlaces = 1 << 14;
 /// places: light that few of them meet is not to be missed.
 constexpr double kLeastOfDirect = 0.35;
 constexpr int kLeastWithShadowRays = 64;
-/// Where nothing was found at any point of a set: light may come through a small opening.
+/// Where nothing was found at any point of a set light may come through a small opening: up to so many places
+/// a replicate, and gather rays of all points, are looked from before it is given up.
 constexpr int kMostInTheDark = 1024;
+constexpr double kMostRaysInTheDark = 2e7;
 /// Noise is that of the zones where rays have less than so much of it.
 constexpr double kRaysOfStalled = 0.7;
 
@@ -218,6 +220,9 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
   of_rays_.assign(points_.size() * bands_, 0.0);
   const std::size_t chunks = (points_.size() + kPointsOfTask - 1) / kPointsOfTask;
   const bool has_target = settings_.error_target > 0;
+  const double rays_of_place = static_cast<double>(points_.size() * kReplicates) * effort().gathers;
+  const int most_in_the_dark =
+      static_cast<int>(std::clamp(kMostRaysInTheDark / rays_of_place, 1.0, double{kMostInTheDark}));
   double share_done = 0;
   std::mutex progress_mutex;
   RefinedPart all;  // of which there is one: every point gets the same samples
@@ -236,11 +241,13 @@ void Measurer::gather_all(const std::vector<PointSet>& sets, const MeasureProgre
     if (!has_target) return;
     const Noise noise = worst_noise(sets);
     const double excess = std::pow(noise.all / RefinedPart::aim(settings_.error_target), 2);
-    share_done = std::min(1.0, 1 / excess);
+    const bool looks_into_the_dark = done < most_in_the_dark && any_is_dark(sets);
+    share_done =
+        looks_into_the_dark ? static_cast<double>(done) / most_in_the_dark : std::min(1.0, 1 / excess);
     if (done >= kLeastWithShadowRays && done < most_with_shadow_rays_ &&
         noise.direct < kLeastOfDirect * settings_.error_target)
       most_with_shadow_rays_ = done;
-    if (done < kMostInTheDark && any_is_dark(sets)) continue;
+    if (looks_into_the_dark) continue;
     all.look(excess, excess, noise.rays < kRaysOfStalled * noise.all);
   }
   limited_by_zones_ = all.is_stalled();
