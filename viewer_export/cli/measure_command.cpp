@@ -217,7 +217,7 @@ void add_point_options(CLI::App& command, MeasureOptions& options) {
                      "Gather rays per point, rounded up")
       ->excludes(error);
   add_integer_option(command, "--light-samples", options.settings.light_samples, 1, 65536,
-                     "Shadow rays per point, rounded up")
+                     "Shadow rays per point, rounded up; of up to 64 luminaires each gets so many")
       ->excludes(error);
   add_seed_and_threads(command, options.settings.seed, options.settings.threads);
 }

@@ -13,8 +13,9 @@
 namespace reemit {
 
 struct MeasureSettings {
-  int gather_rays = 4096;    ///< Per point, rounded up [1, 1048576].
-  int light_samples = 1024;  ///< Shadow rays per point, rounded up [1, 65536].
+  int gather_rays = 4096;  ///< Per point, rounded up [1, 1048576].
+  /// Shadow rays per point, of up to 64 luminaires to each; rounded up [1, 65536].
+  int light_samples = 1024;
   /// Relative error to reach as a fraction [0, 1), SetSummary::error of each set, with s the standard error
   /// of irradiance E. 0 = take the samples above; else only their ratio counts.
   double error_target = 0;
